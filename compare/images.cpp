@@ -23,13 +23,13 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 /// The values stored in a file, and their variances if the file has them.
-struct Picture {
+struct ComparedImage {
     ImageRgb values, variance;
     Encoding encoding = Encoding::kLinear;
     std::int64_t transparent = 0; ///< number of pixels whose alpha is not 1; alpha is not compared
 };
 
-ImageRgb stored_values(const PixelFile& file) {
+ImageRgb stored_values(const StoredImage& file) {
     ImageRgb image(file.width, file.height);
     const auto channels = static_cast<std::size_t>(file.channels);
     for (std::size_t i = 0; i < image.size(); ++i) {
@@ -39,7 +39,7 @@ ImageRgb stored_values(const PixelFile& file) {
     return image;
 }
 
-std::int64_t transparent_pixels(const PixelFile& file) {
+std::int64_t transparent_pixels(const StoredImage& file) {
     if (file.channels % 2 != 0) return 0; // gray or RGB
     const auto channels = static_cast<std::size_t>(file.channels);
     std::int64_t count = 0;
@@ -60,19 +60,19 @@ ImageRgb variance_channels(const ExrFile& file) {
     return image;
 }
 
-Picture read_picture(const fs::path& path, bool decode) {
-    const PixelFile file = read_pixel_file(path);
-    Picture picture{stored_values(file), {}, file.encoding, transparent_pixels(file)};
-    if (decode && picture.encoding == Encoding::kEncoded) {
-        picture.values = decoded(picture.values);
-        picture.encoding = Encoding::kLinear;
+ComparedImage read_compared_image(const fs::path& path, bool decode) {
+    const StoredImage file = read_stored_image(path);
+    ComparedImage image{stored_values(file), {}, file.encoding, transparent_pixels(file)};
+    if (decode && image.encoding == Encoding::kEncoded) {
+        image.values = decoded(image.values);
+        image.encoding = Encoding::kLinear;
     }
-    if (lower_case_ending(path) == ".exr") picture.variance = variance_channels(read_exr(path));
-    return picture;
+    if (lower_case_extension(path) == ".exr") image.variance = variance_channels(read_exr(path));
+    return image;
 }
 
-void check_comparable(const ImagesOptions& options, const Picture& a, const Picture& b) {
-    const auto size = [](const Picture& p) { return message(p.values.width(), "x", p.values.height()); };
+void check_comparable(const ImagesOptions& options, const ComparedImage& a, const ComparedImage& b) {
+    const auto size = [](const ComparedImage& p) { return message(p.values.width(), "x", p.values.height()); };
     if (size(a) != size(b))
         throw Error(message("the pictures differ in size: ", options.a.string(), " has ", size(a), " pixels, ",
                             options.reference.string(), " ", size(b)));
@@ -131,14 +131,14 @@ void print_z_test(std::ostream& out, const ZTest& z, bool a_exact, bool b_exact)
         << "rgb"[z.channel] << " over " << z.width << "x" << z.height << " pixels at (" << z.x << ", " << z.y << ")\n";
 }
 
-void print_table(std::ostream& out, const ImageMetrics& metrics, const Picture& a, const Picture& b) {
+void print_table(std::ostream& out, const ImageMetrics& metrics, const ComparedImage& a, const ComparedImage& b) {
     const ErrorMetrics& m = metrics.errors;
     out << (a.encoding == Encoding::kLinear
                 ? "linear values\n"
                 : "stored (sRGB-encoded) values; of relmse, smape and mean_signed_error the linear ones\n");
-    for (const Figure& figure : figures(metrics)) {
-        if (!metrics.z && figure.name.rfind("z_", 0) == 0) continue;
-        print_row(out, figure.name, text_of(figure.value), figure.meaning);
+    for (const MetricValue& metric : metric_values(metrics)) {
+        if (!metrics.z && metric.name.rfind("z_", 0) == 0) continue;
+        print_row(out, metric.name, text_of(metric.value), metric.meaning);
     }
     print_channels(out, "mean signed error", m.mean_signed_error);
     if (m.pixels > 0) out << "  worst pixel: (" << m.worst_x << ", " << m.worst_y << ")\n";
@@ -164,21 +164,22 @@ std::pair<std::string, std::string> page_names(const ImagesOptions& options) {
 }
 
 /// Returns the metrics, and for each image the number of pixels whose alpha was ignored.
-json figures_json(const ImageMetrics& metrics, const Picture& a, const Picture& b) {
+json metrics_json_with_alpha(const ImageMetrics& metrics, const ComparedImage& a, const ComparedImage& b) {
     json figures = metrics_json(metrics, "a", "b");
     figures["transparent"] = {{"a", a.transparent}, {"b", b.transparent}};
     return figures;
 }
 
-void write_page(const ImagesOptions& options, const Picture& a, const Picture& b, const ImageMetrics& metrics) {
+void write_page(const ImagesOptions& options, const ComparedImage& a, const ComparedImage& b,
+                const ImageMetrics& metrics) {
     const bool encoded = a.encoding == Encoding::kEncoded;
     const ImageRgb linear_a = encoded ? decoded(a.values) : a.values, linear_b = encoded ? decoded(b.values) : b.values;
     const auto [name_a, name_b] = page_names(options);
     const double range = difference_range(linear_a, linear_b);
-    write_image(options.folder / "difference.png", difference_picture(linear_a, linear_b, range));
+    write_image(options.folder / "difference.png", difference_image(linear_a, linear_b, range));
     write_json(options.folder / "report.json", {{"a", options.a.string()},
                                                 {"b", options.reference.string()},
-                                                {"metrics", figures_json(metrics, a, b)},
+                                                {"metrics", metrics_json_with_alpha(metrics, a, b)},
                                                 {"difference_range", range}});
     write_file(
         options.folder / "index.html",
@@ -192,7 +193,8 @@ void write_page(const ImagesOptions& options, const Picture& a, const Picture& b
 int compare_images(const ImagesOptions& options) {
     check_json_path(options.stats);
     const std::vector<Limit> limits = parse_limits(options.limits);
-    const Picture a = read_picture(options.a, options.decode), b = read_picture(options.reference, options.decode);
+    const ComparedImage a = read_compared_image(options.a, options.decode),
+                        b = read_compared_image(options.reference, options.decode);
     check_comparable(options, a, b);
     const bool variances = !a.variance.empty() || !b.variance.empty();
     check_limits(limits, variances);
@@ -202,8 +204,8 @@ int compare_images(const ImagesOptions& options) {
     if (variances) metrics.z = z_test({a.values, a.variance}, {b.values, b.variance});
     if (!options.folder.empty()) write_page(options, a, b, metrics);
     if (!options.quiet && options.stats != "-") print_table(std::cout, metrics, a, b);
-    if (!options.stats.empty()) write_json(options.stats, figures_json(metrics, a, b));
-    const std::vector<std::string> failures = exceeded(limits, figures(metrics));
+    if (!options.stats.empty()) write_json(options.stats, metrics_json_with_alpha(metrics, a, b));
+    const std::vector<std::string> failures = exceeded(limits, metric_values(metrics));
     for (const std::string& failure : failures) std::cerr << "compare: " << failure << '\n';
     return failures.empty() ? kExitOk : kExitFailed;
 }

@@ -24,31 +24,31 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// The results of one pipeline.
-struct Side {
+/// The results of one renderer.
+struct RendererResult {
     Rendering rendering;
     Image<Hit> hits;
     RenderContext context;
 };
 
 /// Renders the image, then the hits. Returns nothing after an interrupt signal.
-std::optional<Side> render_side(const Pipeline& pipeline, const View& view, const RunOptions& options,
-                                const InterruptFlag& interrupt) {
-    Side side;
-    ProgressBar bar(pipeline.name, options.quiet);
+std::optional<RendererResult> run_renderer(const Renderer& renderer, const View& view, const RunOptions& options,
+                                           const InterruptFlag& interrupt) {
+    RendererResult side;
+    ProgressBar bar(renderer.name, options.quiet);
     Control control{&interrupt.flag(), [&](double fraction) { bar.update(fraction); }};
     Stopwatch watch;
-    side.rendering = pipeline.picture(view, control);
+    side.rendering = renderer.render_image(view, control);
     side.context.render_seconds = watch.lap();
-    side.context.prepare_seconds = pipeline.prepare_seconds;
+    side.context.prepare_seconds = renderer.prepare_seconds;
     Control hits_control{&interrupt.flag(), {}};
-    if (!interrupt.raised()) side.hits = pipeline.hits(view, hits_control).hit;
+    if (!interrupt.raised()) side.hits = renderer.render_hits(view, hits_control).hit;
     if (interrupt.raised()) return {};
     return side;
 }
 
-void complete(RenderContext& context, const std::string& program, const RunOptions& options, const View& view,
-              double load_seconds) {
+void fill_context(RenderContext& context, const std::string& program, const RunOptions& options, const View& view,
+                  double load_seconds) {
     context.program = program;
     context.scene = options.scene.string();
     context.width = view.width;
@@ -59,21 +59,20 @@ void complete(RenderContext& context, const std::string& program, const RunOptio
 }
 
 /// Writes a side's image and records the time it took.
-void write_picture(Side& side, const fs::path& path) {
+void write_rendering(RendererResult& side, const fs::path& path) {
     const Stopwatch watch;
     write_image(path, side.rendering.radiance);
     side.context.write_seconds = watch.seconds();
 }
 
-ReportSide page_side(const std::string& name, const Side& side) {
+ReportImage report_image(const std::string& name, const RendererResult& side) {
     return {name, side.rendering.radiance, ReportRendering{side.context, side.rendering.statistics}};
 }
 
-void print_summary(const fs::path& page, const Side& raster, const Side& raytrace, const HitAgreement& hits,
-                   const ImageMetrics& metrics) {
-    std::cerr << "raster:   " << readable_seconds(raster.context.prepare_seconds + raster.context.render_seconds)
-              << '\n'
-              << "raytrace: " << readable_seconds(raytrace.context.prepare_seconds + raytrace.context.render_seconds)
+void print_summary(const fs::path& page, const RendererResult& raster, const RendererResult& raytrace,
+                   const HitAgreement& hits, const ImageMetrics& metrics) {
+    std::cerr << "raster:   " << format_duration(raster.context.prepare_seconds + raster.context.render_seconds) << '\n'
+              << "raytrace: " << format_duration(raytrace.context.prepare_seconds + raytrace.context.render_seconds)
               << '\n'
               << "hits:     " << hits.same << " of " << hits.pixels << " the same, " << hits.edge << " at edges, "
               << hits.depth_tie << " depth ties, " << hits.unexplained << " unexplained\n"
@@ -93,30 +92,32 @@ int run(const RunOptions& options) {
     const View view{scene.camera, options.size.width > 0 ? options.size.width : scene.width,
                     options.size.height > 0 ? options.size.height : scene.height};
 
-    std::optional<Side> raster = render_side(raster_pipeline(scene, options.settings), view, options, interrupt);
+    std::optional<RendererResult> raster =
+        run_renderer(raster_renderer(scene, options.settings), view, options, interrupt);
     if (!raster) return kExitInterrupted;
-    std::optional<Side> raytrace = render_side(raytrace_pipeline(scene, options.settings), view, options, interrupt);
+    std::optional<RendererResult> raytrace =
+        run_renderer(raytrace_renderer(scene, options.settings), view, options, interrupt);
     if (!raytrace) return kExitInterrupted;
-    complete(raster->context, "raster", options, view, load_seconds);
-    complete(raytrace->context, "raytrace", options, view, load_seconds);
+    fill_context(raster->context, "raster", options, view, load_seconds);
+    fill_context(raytrace->context, "raytrace", options, view, load_seconds);
 
     const ImageRgb &a = raster->rendering.radiance, &b = raytrace->rendering.radiance;
     const ImageMetrics metrics = image_metrics(a, b, Encoding::kLinear, options.settings.threads);
     const HitAgreement agreement = compare_hits(scene, view, raster->hits, raytrace->hits, options.settings.threads);
     if (interrupt.raised()) return kExitInterrupted;
 
-    write_picture(*raster, folder / "raster.png");
-    write_picture(*raytrace, folder / "raytrace.png");
+    write_rendering(*raster, folder / "raster.png");
+    write_rendering(*raytrace, folder / "raytrace.png");
     const double range = difference_range(a, b);
-    write_image(folder / "difference.png", difference_picture(a, b, range));
+    write_image(folder / "difference.png", difference_image(a, b, range));
     const json report = {{"raster", statistics_json(raster->context, raster->rendering.statistics)},
                          {"raytrace", statistics_json(raytrace->context, raytrace->rendering.statistics)},
                          {"metrics", metrics_json(metrics, "raster", "raytrace")},
                          {"hits", hits_json(agreement, scene)},
                          {"difference_range", range}};
     write_json(folder / "report.json", report);
-    write_file(folder / "index.html", report_page({scene.path.filename().string(), page_side("Rasterizer", *raster),
-                                                   page_side("Path tracer", *raytrace), metrics, Encoding::kLinear,
+    write_file(folder / "index.html", report_page({scene.path.filename().string(), report_image("Rasterizer", *raster),
+                                                   report_image("Path tracer", *raytrace), metrics, Encoding::kLinear,
                                                    ReportHits{scene, raster->hits, raytrace->hits, agreement}}));
     if (!options.stats.empty()) write_json(options.stats, report);
     if (!options.quiet) print_summary(folder / "index.html", *raster, *raytrace, agreement, metrics);

@@ -1,7 +1,7 @@
 // `compare run`: renders one scene with both pipelines and writes one report.
 #pragma once
 
-#include "compare/pipeline.h"
+#include "compare/renderer.h"
 
 #include <filesystem>
 #include <string>
@@ -10,8 +10,8 @@ namespace duet::compare {
 
 struct RunOptions {
     std::filesystem::path scene, folder;
-    PictureSize size{0, 0}; ///< 0: the scene's size
-    PipelineSettings settings;
+    ImageSize size{0, 0}; ///< 0: the scene's size
+    ComparisonSettings settings;
     std::string stats; ///< file for a copy of report.json; "-" for standard output; empty: none
     bool quiet = false;
 };

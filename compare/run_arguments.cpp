@@ -15,7 +15,7 @@ Subcommand add_run(CLI::App& app) {
     const auto all = std::make_shared<RunOptions>();
     const auto size = std::make_shared<std::string>();
     RunOptions& options = *all;
-    PipelineSettings& settings = options.settings;
+    ComparisonSettings& settings = options.settings;
     run->add_option("SCENE", options.scene,
                     "A scene file (.json) or a bare mesh (.obj: framed, on a ground under a sky)")
         ->required();
@@ -31,14 +31,14 @@ Subcommand add_run(CLI::App& app) {
                     "The path tracer's scattering events at most: 0 emission only, 1 direct light (default 64)")
         ->check(CLI::Range(0, 1 << 20));
     run->add_option("--threads", settings.threads, "Threads (default: all)")->check(CLI::Range(1, 1024));
-    run->add_option("--seed", settings.seed, "Seed of all random numbers (default 0)")->check(whole_number());
+    run->add_option("--seed", settings.seed, "Seed of all random numbers (default 0)")->check(unsigned_integer());
     run->add_option("--stats", options.stats, "Write the figures of report.json to this file too (-: standard output)");
     run->add_flag("--quiet", options.quiet, "No progress bar, no summary");
     run->footer(std::string("Example:\n  compare run models/cornell.json -o out --size 512x512 --spp 256\n"
                             "then open out/index.html in a browser.") +
                 kExitCodes);
     return {run, [all, size] {
-                if (!size->empty()) all->size = parse_picture_size(*size);
+                if (!size->empty()) all->size = parse_image_size(*size);
                 return compare::run(*all);
             }};
 }

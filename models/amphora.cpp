@@ -37,14 +37,15 @@ void add_wall(MeshBuilder& mesh) {
 
 /// Adds the handle at x > 0 or x < 0, from the shoulder up and over to the neck below the lip.
 void add_handle(MeshBuilder& mesh, double side) {
-    constexpr std::array kWay = {Vec2d(0.152, 0.59), Vec2d(0.235, 0.70), Vec2d(0.235, 0.89), Vec2d(0.082, 0.806)};
+    constexpr std::array kHandleCurve = {Vec2d(0.152, 0.59), Vec2d(0.235, 0.70), Vec2d(0.235, 0.89),
+                                         Vec2d(0.082, 0.806)};
     Tube tube;
     tube.columns = 8;
     tube.rows = 24;
     tube.center = [&](double t) { // a cubic Bézier curve
         const double s = 1 - t;
-        const Vec2d p =
-            kWay[0] * (s * s * s) + kWay[1] * (3 * s * s * t) + kWay[2] * (3 * s * t * t) + kWay[3] * (t * t * t);
+        const Vec2d p = kHandleCurve[0] * (s * s * s) + kHandleCurve[1] * (3 * s * s * t) +
+                        kHandleCurve[2] * (3 * s * t * t) + kHandleCurve[3] * (t * t * t);
         return Vec3d(side * p.x, p.y, 0);
     };
     tube.radii = [](double) { return Vec2d(0.013, 0.021); };

@@ -1,7 +1,7 @@
 // This header declares the amphora's texture.
 #pragma once
 
-#include "models/picture.h"
+#include "models/image.h"
 
 namespace duet::models {
 

@@ -1,7 +1,7 @@
 // This file paints the amphora: bands of ornament in black-figure style.
 #include "models/amphora.h"
 
-#include "models/field.h"
+#include "models/distance_field.h"
 
 #include <algorithm>
 #include <array>

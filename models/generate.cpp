@@ -34,7 +34,7 @@ std::span<const Model> all_models() {
     return models;
 }
 
-void make(const Model& model, const std::filesystem::path& folder) {
+void generate_model(const Model& model, const std::filesystem::path& folder) {
     for (const std::string& file : model.files) std::filesystem::create_directories((folder / file).parent_path());
     model.write(folder);
 }

@@ -28,7 +28,7 @@ struct Model {
 std::span<const Model> all_models();
 
 /// Generates one model's files, and their subfolders, below the folder.
-void make(const Model& model, const std::filesystem::path& folder);
+void generate_model(const Model& model, const std::filesystem::path& folder);
 
 // Each model has one function, in the file of its name.
 void write_amphora(const std::filesystem::path& folder);

@@ -46,7 +46,7 @@ int run(const std::vector<std::string>& arguments) {
     if (chosen.empty())
         for (const Model& model : all_models())
             if (model.kind != Model::Kind::kOnRequest) chosen.push_back(&model);
-    for (const Model* model : chosen) make(*model, folder);
+    for (const Model* model : chosen) generate_model(*model, folder);
     return 0;
 }
 

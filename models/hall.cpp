@@ -1,7 +1,7 @@
 // This file generates hall.obj: a vaulted hall of three aisles, seen from inside. It has long thin walls and finely
 // tessellated columns, with openings to the outside at one end, in the walls and above. Units are meters; the nave
 // runs along z.
-#include "models/field.h"
+#include "models/distance_field.h"
 #include "models/generate.h"
 #include "models/mesh_builder.h"
 #include "models/profile.h"
@@ -15,16 +15,16 @@ constexpr double kPi = kPiDouble;
 constexpr double kHalfNave = 5, kHalfWidth = 9; // in x: the columns' axes, the outer walls
 constexpr double kEnd = 18, kBay = 6; // in z: the end walls; from column to column
 // These are the heights of the arches' springing, of the nave's walls, and of the aisles' roofs.
-constexpr double kSpring = 4.2, kArcadeTop = 8, kRoof = 5.6;
-constexpr double kThick = 0.5; // wall thickness
+constexpr double kSpringingHeight = 4.2, kArcadeTop = 8, kRoof = 5.6;
+constexpr double kWallThickness = 0.5; // wall thickness
 constexpr int kBays = 6;
 constexpr int kVaultColumns = 40; // cells from the vault's base to its crown
 
 /// Adds a flat patch corner + s u + t v, divided into cells.
 void add_patch(MeshBuilder& mesh, Vec3d corner, Vec3d u, Vec3d v, int columns, int rows) {
-    Sheet sheet{.columns = columns, .rows = rows, .point = {}};
-    sheet.point = [=](double s, double t) { return corner + u * s + v * t; };
-    add_sheet(mesh, sheet);
+    ParametricSurface surface{.columns = columns, .rows = rows, .point = {}};
+    surface.point = [=](double s, double t) { return corner + u * s + v * t; };
+    add_parametric_surface(mesh, surface);
 }
 
 void add_box(MeshBuilder& mesh, Vec3d low, Vec3d high, int cells) {
@@ -56,16 +56,16 @@ struct ArchedWall {
 
     void add(MeshBuilder& mesh) const {
         for (const double side : {-0.5, 0.5}) {
-            Sheet face{.columns = 48, .rows = kRows, .point = {}};
+            ParametricSurface face{.columns = 48, .rows = kRows, .point = {}};
             face.point = [*this, side](double s, double t) {
                 s = side > 0 ? 1 - s : s; // so that normals point outward
                 return lerp(at(arch(s, half, foot, spring), side), at(border(s), side), t);
             };
-            add_sheet(mesh, face);
+            add_parametric_surface(mesh, face);
         }
-        Sheet reveal{.columns = 48, .rows = 4, .point = {}};
+        ParametricSurface reveal{.columns = 48, .rows = 4, .point = {}};
         reveal.point = [*this](double s, double t) { return at(arch(s, half, foot, spring), t - 0.5); };
-        add_sheet(mesh, reveal);
+        add_parametric_surface(mesh, reveal);
         if (foot > low) add_sill(mesh);
     }
 
@@ -75,7 +75,7 @@ private:
     /// Adds the sill and the wall below it. Its vertices match those of the wall beside the opening, so there are no
     /// cracks.
     void add_sill(MeshBuilder& mesh) const {
-        add_patch(mesh, at({-half, foot}, -0.5), Vec3d(0, 0, 2 * half), Vec3d(kThick, 0, 0), kSillColumns, 4);
+        add_patch(mesh, at({-half, foot}, -0.5), Vec3d(0, 0, 2 * half), Vec3d(kWallThickness, 0, 0), kSillColumns, 4);
         constexpr int kColumns = 2 * kRows + kSillColumns;
         const auto along = [&](int column) {
             if (column < kRows) return lerp(-half, -kBay / 2, (kRows - column) / double{kRows});
@@ -84,16 +84,16 @@ private:
             return lerp(-half, half, (column - kRows) / double{kSillColumns});
         };
         for (const double side : {-0.5, 0.5}) {
-            Sheet below{.columns = kColumns, .rows = 4, .point = {}};
+            ParametricSurface below{.columns = kColumns, .rows = 4, .point = {}};
             below.point = [&](double s, double t) {
                 return at({along(static_cast<int>(std::lround((side > 0 ? 1 - s : s) * kColumns))),
                            lerp(low, foot, t)}, side);
             };
-            add_sheet(mesh, below);
+            add_parametric_surface(mesh, below);
         }
     }
     Vec3d at(Vec2d along_and_height, double side) const {
-        return {x + side * kThick, along_and_height.y, middle + along_and_height.x};
+        return {x + side * kWallThickness, along_and_height.y, middle + along_and_height.x};
     }
     /// Returns the point of the wall's border that corresponds to the opening's point s: on its sides or its top.
     Vec2d border(double s) const {
@@ -106,12 +106,11 @@ private:
 
 /// Adds a fluted column with base and capital.
 void add_column(MeshBuilder& mesh, double x, double z) {
-    constexpr std::array kProfile =
-        {Vec2d(0.62, 0), Vec2d(0.62, 0.25), Vec2d(0.5, 0.3),   Vec2d(0.54, 0.42), Vec2d(0.42, 0.5),
-                                     Vec2d(0.4, 1.5), Vec2d(0.36, 3.3), Vec2d(0.38, 3.45), Vec2d(0.44, 3.55),
-                                     Vec2d(0.5, 3.9),
+    constexpr std::array kProfile = {Vec2d(0.62, 0), Vec2d(0.62, 0.25), Vec2d(0.5, 0.3), Vec2d(0.54, 0.42),
+                                     Vec2d(0.42, 0.5), Vec2d(0.4, 1.5), Vec2d(0.36, 3.3), Vec2d(0.38, 3.45),
+                                     Vec2d(0.44, 3.55), Vec2d(0.5, 3.9),
                                      // Below all of the arches' springing points, whose corners are at 0.65.
-                                     Vec2d(0.66, 4.0), Vec2d(0.66, kSpring)};
+                                     Vec2d(0.66, 4.0), Vec2d(0.66, kSpringingHeight)};
     constexpr int kRows = 32, kFlutes = 16;
     const std::vector<Vec2d> profile = sample_profile(kProfile, kRows);
     const std::size_t first = mesh.positions.size();
@@ -127,8 +126,8 @@ void add_column(MeshBuilder& mesh, double x, double z) {
 /// Adds the nave's vault: a half cylinder with coffers, open along the crown between the middle bays.
 void add_vault(MeshBuilder& mesh) {
     for (const double side : {-1.0, 1.0}) {
-        Sheet sheet{.columns = kVaultColumns, .rows = 240, .point = {}};
-        sheet.point = [side](double s, double t) {
+        ParametricSurface surface{.columns = kVaultColumns, .rows = 240, .point = {}};
+        surface.point = [side](double s, double t) {
             const double z = lerp(-kEnd, kEnd, t);
             // The gap is a fraction of the angle, on each side of the crown.
             const double gap = 0.1 * smooth_step(9.0, 7.5, std::abs(z));
@@ -138,15 +137,15 @@ void add_vault(MeshBuilder& mesh) {
             const double around = side > 0 ? angle : kPi / 2 + angle;
             return Vec3d(radius * std::cos(around), kArcadeTop + radius * std::sin(around), z);
         };
-        add_sheet(mesh, sheet);
+        add_parametric_surface(mesh, surface);
     }
 }
 
 /// Adds the far end wall with a round window.
 void add_end_wall(MeshBuilder& mesh) {
-    // The tessellation matches that of the vault's four sheets, so there are no gaps between vertices.
-    Sheet sheet{.columns = 4 * kVaultColumns, .rows = 24, .closed_s = true, .point = {}};
-    sheet.point = [](double s, double t) {
+    // The tessellation matches that of the vault's four surfaces, so there are no gaps between vertices.
+    ParametricSurface surface{.columns = 4 * kVaultColumns, .rows = 24, .closed_s = true, .point = {}};
+    surface.point = [](double s, double t) {
         const double angle = 2 * kPi * s;
         const Vec2d direction(std::cos(angle), std::sin(angle));
         const double up = direction.y >= 0 ? kHalfNave // the border is the vault above and a rectangle below
@@ -155,19 +154,19 @@ void add_end_wall(MeshBuilder& mesh) {
         const double r = lerp(1.6, up, t);
         return Vec3d(r * direction.x, kArcadeTop + r * direction.y, -kEnd);
     };
-    add_sheet(mesh, sheet);
+    add_parametric_surface(mesh, surface);
     for (const double side : {-1.0, 1.0})
         add_patch(mesh, {side > 0 ? kHalfNave : -kHalfWidth, 0, -kEnd}, {kHalfWidth - kHalfNave, 0, 0}, {0, kRoof, 0},
                   16, 16);
 }
 
 void add_floor(MeshBuilder& mesh) {
-    Sheet sheet{.columns = 60, .rows = 120, .point = {}};
-    sheet.point = [](double s, double t) { // worn slabs
+    ParametricSurface surface{.columns = 60, .rows = 120, .point = {}};
+    surface.point = [](double s, double t) { // worn slabs
         const double x = lerp(-kHalfWidth, kHalfWidth, s), z = lerp(kEnd, -kEnd, t);
         return Vec3d(x, 0.012 * gradient_noise(Vec3d(x, 0, z) * 1.3), z);
     };
-    add_sheet(mesh, sheet);
+    add_parametric_surface(mesh, surface);
 }
 
 void add_bench(MeshBuilder& mesh, double x, double z) {
@@ -188,7 +187,8 @@ void write_hall(const std::filesystem::path& folder) {
     for (const double side : {-1.0, 1.0}) {
         for (int bay = 0; bay < kBays; ++bay) {
             const double middle = -kEnd + kBay * (bay + 0.5);
-            ArchedWall{side * kHalfNave, middle, 2.4, kSpring, kSpring, kSpring, kArcadeTop}.add(mesh);
+            ArchedWall{side * kHalfNave, middle, 2.4, kSpringingHeight, kSpringingHeight, kSpringingHeight, kArcadeTop}
+                .add(mesh);
             ArchedWall{side * kHalfWidth, middle, 1.1, 1.6, 3.4, 0, kRoof}.add(mesh);
         }
         for (int i = 0; i <= kBays; ++i) add_column(mesh, side * kHalfNave, -kEnd + kBay * i);

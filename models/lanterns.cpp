@@ -2,9 +2,9 @@
 // many lights.
 #include "common/system/file.h"
 #include "common/vec/vec.h"
+#include "models/format_number.h"
 #include "models/generate.h"
 #include "models/random.h"
-#include "models/text.h"
 
 #include <algorithm>
 #include <array>
@@ -14,10 +14,11 @@ namespace {
 
 constexpr int kDecimals = 3;
 constexpr int kLanterns = 1000;
-constexpr double kReach = 12; ///< the market is a square of twice this side, in meters
+constexpr double kHalfExtent = 12; ///< the market is a square of twice this side, in meters
 
 std::string triple(double x, double y, double z) {
-    return "[" + number(x, kDecimals) + ", " + number(y, kDecimals) + ", " + number(z, kDecimals) + "]";
+    return "[" + format_number(x, kDecimals) + ", " + format_number(y, kDecimals) + ", " + format_number(z, kDecimals) +
+           "]";
 }
 
 /// This is the list of objects of the scene file.
@@ -25,7 +26,7 @@ class Objects {
 public:
     void sphere(Vec3d center, double radius, const std::string& material) {
         add("{\"type\": \"sphere\", \"center\": " + triple(center.x, center.y, center.z) +
-            ", \"radius\": " + number(radius, kDecimals) + ", \"material\": \"" + material + "\"}");
+            ", \"radius\": " + format_number(radius, kDecimals) + ", \"material\": \"" + material + "\"}");
     }
     void box(Vec3d low, Vec3d high, const std::string& material) {
         add("{\"type\": \"box\", \"low\": " + triple(low.x, low.y, low.z) + ", \"high\": " +
@@ -47,7 +48,7 @@ constexpr std::array<std::array<double, 3>, 5> kColors{
     {{1, 0.55, 0.2}, {1, 0.3, 0.12}, {1, 0.75, 0.4}, {0.9, 0.2, 0.25}, {0.4, 0.6, 1}}};
 constexpr std::array<double, 3> kStrengths{4, 12, 60};
 
-std::string lamp_name(std::size_t color, std::size_t strength) {
+std::string emitter_name(std::size_t color, std::size_t strength) {
     return "lamp" + std::to_string(color) + std::to_string(strength);
 }
 
@@ -60,8 +61,8 @@ std::string materials() {
         for (std::size_t strength = 0; strength < kStrengths.size(); ++strength) {
             const auto& c = kColors[color];
             const double s = kStrengths[strength];
-            text += ",\n    \"" + lamp_name(color, strength) + "\": {\"type\": \"emissive\", \"radiance\": " +
-                    triple(c[0] * s, c[1] * s, c[2] * s) + "}";
+            text += ",\n    \"" + emitter_name(color, strength) +
+                    "\": {\"type\": \"emissive\", \"radiance\": " + triple(c[0] * s, c[1] * s, c[2] * s) + "}";
         }
     return text;
 }
@@ -81,7 +82,7 @@ void add_stall(Objects& objects, Random& random, double x, double z) {
 
 void write_lanterns(const std::filesystem::path& folder) {
     Objects objects;
-    objects.ground(kReach * 4, "ground");
+    objects.ground(kHalfExtent * 4, "ground");
     Random random(7);
     for (int row = -3; row <= 3; ++row)
         for (int column = -3; column <= 3; ++column) {
@@ -89,12 +90,12 @@ void write_lanterns(const std::filesystem::path& folder) {
             add_stall(objects, random, x, z);
         }
     for (int i = 0; i < kLanterns; ++i) {
-        const double x = random.uniform(-kReach, kReach), z = random.uniform(-kReach, kReach);
+        const double x = random.uniform(-kHalfExtent, kHalfExtent), z = random.uniform(-kHalfExtent, kHalfExtent);
         const double y = random.uniform(1.3, 2.6), radius = random.uniform(0.025, 0.06);
         const double kind = random.uniform();
         const std::size_t strength = kind < 0.7 ? 0 : kind < 0.97 ? 1 : 2;
         const auto color = std::min(static_cast<std::size_t>(random.uniform() * kColors.size()), kColors.size() - 1);
-        objects.sphere({x, y, z}, radius, lamp_name(color, strength));
+        objects.sphere({x, y, z}, radius, emitter_name(color, strength));
     }
     write_file(folder / "lanterns.json",
                "{\n  \"description\": \"1,000 lamps of 15 kinds over a market: which is worth a shadow ray?\",\n"

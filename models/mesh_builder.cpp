@@ -1,7 +1,7 @@
 #include "models/mesh_builder.h"
 
 #include "common/system/file.h"
-#include "models/text.h"
+#include "models/format_number.h"
 
 #include <algorithm>
 
@@ -52,8 +52,8 @@ void append_face(std::string& text, const MeshBuilder& mesh, const MeshBuilder::
 
 } // namespace
 
-void add_sheet(MeshBuilder& mesh, const Sheet& sheet) {
-    const int columns = sheet.columns, rows = sheet.rows;
+void add_parametric_surface(MeshBuilder& mesh, const ParametricSurface& surface) {
+    const int columns = surface.columns, rows = surface.rows;
     const auto s_of = [&](double i) { return i / columns; };
     const auto t_of = [&](double j) { return j / rows; };
     std::vector<std::uint32_t> ids(static_cast<std::size_t>((columns + 1) * (rows + 1)));
@@ -62,36 +62,36 @@ void add_sheet(MeshBuilder& mesh, const Sheet& sheet) {
     };
     for (int j = 0; j <= rows; ++j) {
         for (int i = 0; i <= columns; ++i) {
-            const bool pole = (j == 0 && sheet.pole_low) || (j == rows && sheet.pole_high);
+            const bool pole = (j == 0 && surface.pole_low) || (j == rows && surface.pole_high);
             if (i > 0 && pole)
                 id(i, j) = id(0, j);
-            else if (i == columns && sheet.closed_s)
+            else if (i == columns && surface.closed_s)
                 id(i, j) = id(0, j);
-            else if (j == rows && sheet.closed_t)
+            else if (j == rows && surface.closed_t)
                 id(i, j) = id(i, 0);
             else {
                 id(i, j) = index(mesh.positions.size());
-                mesh.positions.push_back(sheet.point(s_of(i), t_of(j)));
+                mesh.positions.push_back(surface.point(s_of(i), t_of(j)));
             }
         }
     }
     const auto first_uv = mesh.uvs.size();
     for (int j = 0; j <= rows; ++j)
-        for (int i = 0; i <= columns; ++i) mesh.uvs.push_back(sheet.uv(s_of(i), t_of(j)));
+        for (int i = 0; i <= columns; ++i) mesh.uvs.push_back(surface.uv(s_of(i), t_of(j)));
     const auto corner = [&](int i, int j) {
         return Corner{id(i, j), index(first_uv) + static_cast<std::uint32_t>(j * (columns + 1) + i), 0};
     };
     // At a pole each triangle has its own uv, halfway along its edge.
     const auto pole_corner = [&](int i, int j) {
-        mesh.uvs.push_back(sheet.uv(s_of(i + 0.5), t_of(j)));
+        mesh.uvs.push_back(surface.uv(s_of(i + 0.5), t_of(j)));
         return Corner{id(i, j), index(mesh.uvs.size() - 1), 0};
     };
     for (int j = 0; j < rows; ++j) {
         for (int i = 0; i < columns; ++i) {
             const Corner a = corner(i, j), b = corner(i + 1, j), c = corner(i + 1, j + 1), d = corner(i, j + 1);
-            if (j == 0 && sheet.pole_low)
+            if (j == 0 && surface.pole_low)
                 mesh.triangles.push_back({pole_corner(i, j), c, d});
-            else if (j == rows - 1 && sheet.pole_high)
+            else if (j == rows - 1 && surface.pole_high)
                 mesh.triangles.push_back({a, b, pole_corner(i, j + 1)});
             else {
                 mesh.triangles.push_back({a, b, c});
@@ -103,30 +103,30 @@ void add_sheet(MeshBuilder& mesh, const Sheet& sheet) {
 
 void add_revolution(MeshBuilder& mesh, std::span<const Vec2d> profile, int columns,
                     const std::function<double(std::size_t row)>& v_of) {
-    Sheet sheet;
-    sheet.columns = columns;
-    sheet.rows = static_cast<int>(profile.size()) - 1;
-    sheet.closed_s = true;
-    sheet.pole_low = profile.front().x == 0;
-    sheet.pole_high = profile.back().x == 0;
-    const auto row = [&](double t) { return static_cast<std::size_t>(std::lround(t * sheet.rows)); };
-    sheet.point = [&](double s, double t) {
+    ParametricSurface surface;
+    surface.columns = columns;
+    surface.rows = static_cast<int>(profile.size()) - 1;
+    surface.closed_s = true;
+    surface.pole_low = profile.front().x == 0;
+    surface.pole_high = profile.back().x == 0;
+    const auto row = [&](double t) { return static_cast<std::size_t>(std::lround(t * surface.rows)); };
+    surface.point = [&](double s, double t) {
         const double angle = 2 * kPiDouble * s;
         const Vec2d p = profile[row(t)];
         return Vec3d(p.x * std::sin(angle), p.y, p.x * std::cos(angle));
     };
-    sheet.uv = [&](double s, double t) { return Vec2d(s, v_of(row(t))); };
-    add_sheet(mesh, sheet);
+    surface.uv = [&](double s, double t) { return Vec2d(s, v_of(row(t))); };
+    add_parametric_surface(mesh, surface);
 }
 
 void add_tube(MeshBuilder& mesh, const Tube& tube) {
     // The first and last `kDome` of t round the ends: there the radius decreases to zero along a quarter ellipse.
     constexpr double kDome = 0.06;
-    Sheet sheet;
-    sheet.columns = tube.columns;
-    sheet.rows = tube.rows;
-    sheet.closed_s = sheet.pole_low = sheet.pole_high = true;
-    sheet.point = [&](double s, double t) {
+    ParametricSurface surface;
+    surface.columns = tube.columns;
+    surface.rows = tube.rows;
+    surface.closed_s = surface.pole_low = surface.pole_high = true;
+    surface.point = [&](double s, double t) {
         const double end = std::min({t / kDome, (1 - t) / kDome, 1.0});
         const double swell = safe_sqrt(1 - sqr(1 - end));
         const Vec3d tangent = normalize(tube.center(std::min(t + 1e-4, 1.0)) - tube.center(std::max(t - 1e-4, 0.0)));
@@ -135,10 +135,10 @@ void add_tube(MeshBuilder& mesh, const Tube& tube) {
         const Vec2d r = tube.radii(t) * swell;
         return tube.center(t) + across * (r.x * std::cos(angle)) + up * (r.y * std::sin(angle));
     };
-    sheet.uv = [&](double s, double t) {
+    surface.uv = [&](double s, double t) {
         return Vec2d(lerp(tube.uv_low.x, tube.uv_high.x, s), lerp(tube.uv_low.y, tube.uv_high.y, t));
     };
-    add_sheet(mesh, sheet);
+    add_parametric_surface(mesh, surface);
 }
 
 void compute_normals(MeshBuilder& mesh, double crease_degrees) {
@@ -180,7 +180,7 @@ void write_obj(const std::filesystem::path& path, const MeshBuilder& mesh, const
     if (!mtl.empty()) text += "mtllib " + mtl + "\n";
     for (const Vec3d& p : mesh.positions) append_vector(text, "v", p, decimals);
     for (const Vec2d& uv : mesh.uvs)
-        text += "vt " + number(uv.x, kUnitDecimals) + " " + number(uv.y, kUnitDecimals) + "\n";
+        text += "vt " + format_number(uv.x, kUnitDecimals) + " " + format_number(uv.y, kUnitDecimals) + "\n";
     for (const Vec3d& n : mesh.normals) append_vector(text, "vn", n, kUnitDecimals);
     auto run = mesh.materials.begin();
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {

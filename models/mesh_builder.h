@@ -36,9 +36,9 @@ struct MeshBuilder {
     void use_material(std::string name) { materials.push_back({triangles.size(), std::move(name)}); }
 };
 
-/// A sheet is a curved rectangular grid of columns × rows cells over (s, t) in [0, 1]²: a surface of revolution, a
-/// swept tube, or a patch. ∂p/∂s × ∂p/∂t points outward.
-struct Sheet {
+/// A ParametricSurface is a curved rectangular grid of columns × rows cells over (s, t) in [0, 1]²: a surface of
+/// revolution, a swept tube, or a patch. ∂p/∂s × ∂p/∂t points outward.
+struct ParametricSurface {
     int columns = 1, rows = 1;
     bool closed_s = false, closed_t = false; ///< s = 1 and s = 0 share vertices, although uv extends to 1
     bool pole_low = false, pole_high = false; ///< all of row t = 0 (t = 1) is one point
@@ -46,8 +46,8 @@ struct Sheet {
     std::function<Vec2d(double s, double t)> uv = [](double s, double t) { return Vec2d(s, t); };
 };
 
-/// Adds a sheet with two triangles per cell, or one at a pole. Vertices at closed sides and poles are shared.
-void add_sheet(MeshBuilder& mesh, const Sheet& sheet);
+/// Adds a surface with two triangles per cell, or one at a pole. Vertices at closed sides and poles are shared.
+void add_parametric_surface(MeshBuilder& mesh, const ParametricSurface& surface);
 
 /// Adds the surface of revolution about the y axis of a profile of (radius, height), given upward along the outside.
 /// The surface is closed where the profile's ends are on the axis (radius 0). u runs once around, to the right seen

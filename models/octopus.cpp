@@ -3,7 +3,7 @@
 // and the ball by the constants of octopus.h.
 #include "models/octopus.h"
 
-#include "models/field.h"
+#include "models/distance_field.h"
 #include "models/generate.h"
 #include "models/implicit.h"
 #include "models/profile.h"
@@ -11,7 +11,7 @@
 namespace duet::models {
 namespace {
 
-constexpr int kSteps = 160; ///< beads per arm
+constexpr int kSteps = 160; ///< spheres per arm
 
 struct Sucker {
     Vec3d center, outwards;
@@ -24,7 +24,7 @@ struct ArmPlan {
     double length;
     double sway, phase; ///< amplitude (radians) and phase of its bends along the ground
     double curl;        ///< turns of the tip, signed: counter-clockwise seen from above
-    double lift; ///< upward fraction of the curl: 0 is flat, 1 is upright
+    double uprightness; ///< upward fraction of the curl: 0 is flat, 1 is upright
 };
 
 constexpr ArmPlan kArms[] = {
@@ -37,28 +37,28 @@ double arm_radius(double s) { return 0.014 + 0.131 * std::pow(1 - s, 1.05); }
 
 /// This is an arm with two rows of suckers along the underside.
 struct Arm {
-    std::vector<Bead> beads;
+    std::vector<LimbSphere> spheres;
     std::vector<Sucker> suckers;
 };
 
-/// Transports a frame along the beads without twist and places suckers in two rows about the preferred direction
+/// Transports a frame along the spheres without twist and places suckers in two rows about the preferred direction
 /// `underside(i)`.
 template <typename Underside> void add_suckers(Arm& arm, const Underside& underside) {
-    double travelled = 0, next = 0.3;
-    for (std::size_t i = 1; i + 1 < arm.beads.size(); ++i) {
-        travelled += length(arm.beads[i].center - arm.beads[i - 1].center);
-        const double r = arm.beads[i].radius;
-        if (travelled < next || r < 0.042) continue;
-        const Vec3d tangent = normalize(arm.beads[i + 1].center - arm.beads[i - 1].center);
-        const Vec3d wish = underside(i);
-        const Vec3d down = normalize(wish - tangent * dot(wish, tangent)), side = cross(tangent, down);
+    double traveled = 0, next = 0.3;
+    for (std::size_t i = 1; i + 1 < arm.spheres.size(); ++i) {
+        traveled += length(arm.spheres[i].center - arm.spheres[i - 1].center);
+        const double r = arm.spheres[i].radius;
+        if (traveled < next || r < 0.042) continue;
+        const Vec3d tangent = normalize(arm.spheres[i + 1].center - arm.spheres[i - 1].center);
+        const Vec3d preferred = underside(i);
+        const Vec3d down = normalize(preferred - tangent * dot(preferred, tangent)), side = cross(tangent, down);
         const double size = 0.42 * r;
         for (const double sign : {-1.0, 1.0}) {
             const Vec3d outwards = normalize(down * 0.86 + side * (sign * 0.5));
             arm.suckers.push_back(
-                {arm.beads[i].center + outwards * (0.93 * r) + tangent * (sign * 0.25 * size), outwards, size});
+                {arm.spheres[i].center + outwards * (0.93 * r) + tangent * (sign * 0.25 * size), outwards, size});
         }
-        next = travelled + 2.15 * size;
+        next = traveled + 2.15 * size;
     }
 }
 
@@ -71,23 +71,24 @@ Arm ground_arm(const ArmPlan& plan) {
     std::vector<Vec3d> undersides;
     for (int i = 0; i <= kSteps; ++i) {
         const double s = static_cast<double>(i) / kSteps, r = arm_radius(s);
-        arm.beads.push_back({p, r});
+        arm.spheres.push_back({p, r});
         const double tip = smooth_step(0.45, 1.0, s);
         curled += plan.curl * 2 * kPiDouble * tip * tip * 2.6 / kSteps;
         const double sway = plan.sway * std::sin(2 * kPiDouble * (1.1 * s + plan.phase)) * smooth_step(0.1, 0.4, s);
-        const double azimuth = azimuth0 + sway + curled * (1 - plan.lift);
+        const double azimuth = azimuth0 + sway + curled * (1 - plan.uprightness);
         const double landing = -std::atan(5 * (p.y - 0.97 * r)); // steers the arm onto the ground
         elevation = lerp(elevation, clamp(landing, -1.0, 0.6), 0.12);
-        const double rise = elevation * (1 - plan.lift * tip) + std::abs(curled) * plan.lift;
+        const double rise = elevation * (1 - plan.uprightness * tip) + std::abs(curled) * plan.uprightness;
         const Vec3d ahead(std::cos(azimuth) * std::cos(rise), std::sin(rise), std::sin(azimuth) * std::cos(rise));
         // Suckers face the ground. Along the tip they face the inside of its curl or, where it is upright, upward and
         // back.
         const double turn = plan.curl > 0 ? 1 : -1;
         const Vec3d inwards = Vec3d(-std::sin(azimuth), 0, std::cos(azimuth)) * turn;
         const Vec3d standing(-std::cos(azimuth) * std::sin(rise), std::cos(rise), -std::sin(azimuth) * std::sin(rise));
-        const double bare = smooth_step(0.12, 0.45, s);
-        undersides.push_back(lerp(Vec3d(0, -1, 0), lerp(inwards * 0.9 + Vec3d(0, 0.35, 0), standing, plan.lift), bare) +
-                             ahead * 0.01);
+        const double toward_tip = smooth_step(0.12, 0.45, s);
+        undersides.push_back(
+            lerp(Vec3d(0, -1, 0), lerp(inwards * 0.9 + Vec3d(0, 0.35, 0), standing, plan.uprightness), toward_tip) +
+            ahead * 0.01);
         p += ahead * step;
         p.y = max(p.y, 0.97 * arm_radius(min(s + 1.0 / kSteps, 1.0)));
     }
@@ -105,25 +106,25 @@ Vec3d spline(std::span<const Vec3d> points, double t) {
 
 /// Returns the arm that extends to the ball and winds around it, from below upward.
 Arm holding_arm() {
-    std::vector<Vec3d> way{{0.05, 0.55, -0.02}, {0.15, 0.42, 0.07}, {0.36, 0.25, 0.21}, {0.66, 0.17, 0.35}};
+    std::vector<Vec3d> path{{0.05, 0.55, -0.02}, {0.15, 0.42, 0.07}, {0.36, 0.25, 0.21}, {0.66, 0.17, 0.35}};
     constexpr int kTurnSteps = 14;
     for (int i = 0; i <= kTurnSteps; ++i) {
         const double f = static_cast<double>(i) / kTurnSteps;
         const double azimuth = radians(lerp(-44.0, 404.0, f)), latitude = radians(lerp(-36.0, 44.0, std::pow(f, 1.2)));
         const double distance = kBallRadius + arm_radius(lerp(0.3, 1.0, f)) * 0.97;
-        way.push_back(kBallCenter + Vec3d(std::cos(latitude) * std::cos(azimuth), std::sin(latitude),
-                                          std::cos(latitude) * std::sin(azimuth)) *
-                                        distance);
+        path.push_back(kBallCenter + Vec3d(std::cos(latitude) * std::cos(azimuth), std::sin(latitude),
+                                           std::cos(latitude) * std::sin(azimuth)) *
+                                         distance);
     }
-    way.push_back(way.back() * 2.0 - way[way.size() - 2]);
+    path.push_back(path.back() * 2.0 - path[path.size() - 2]);
     Arm arm;
     for (int i = 0; i <= kSteps; ++i) {
         const double s = static_cast<double>(i) / kSteps;
-        arm.beads.push_back({spline(way, s), arm_radius(s)});
+        arm.spheres.push_back({spline(path, s), arm_radius(s)});
     }
     add_suckers(arm, [&](std::size_t i) {
         const double s = static_cast<double>(i) / kSteps;
-        return lerp(Vec3d(0, -1, 0), normalize(kBallCenter - arm.beads[i].center), smooth_step(0.1, 0.3, s)) +
+        return lerp(Vec3d(0, -1, 0), normalize(kBallCenter - arm.spheres[i].center), smooth_step(0.1, 0.3, s)) +
                Vec3d(0.001, 0, 0);
     });
     return arm;
@@ -142,7 +143,7 @@ public:
         const double k = lerp(0.16, 0.02, smooth_step(0.25, 0.75, from_head));
         double d = body(p);
         const double far = d + 0.3;
-        for (const Grown& arm : arms_) {
+        for (const ArmShape& arm : arms_) {
             const double reach = arm.limb.distance(p, max(d, 0.0) + 0.35);
             d = smooth_min(d, with_suckers(p, reach, arm), k);
         }
@@ -155,36 +156,36 @@ public:
     static constexpr Vec3d kLow{-2.3, -0.2, -2.3}, kHigh{2.3, 2.2, 2.3};
 
 private:
-    struct Grown {
+    struct ArmShape {
         Limb limb;
         std::vector<Sucker> suckers;
     };
-    void add(Arm arm) { arms_.push_back({Limb(std::move(arm.beads)), std::move(arm.suckers)}); }
+    void add(Arm arm) { arms_.push_back({Limb(std::move(arm.spheres)), std::move(arm.suckers)}); }
 
     /// Returns the distance to mantle, head and brows.
     static double body(Vec3d p) {
-        static const Limb mantle(mantle_beads());
+        static const Limb mantle(mantle_spheres());
         double d = mantle.distance(p, 10);
-        d = smooth_min(d, link_distance(p, {{0, 0.36, 0.0}, 0.27}, {{0, 0.62, 0.04}, 0.25}), 0.15);
+        d = smooth_min(d, round_cone_distance(p, {{0, 0.36, 0.0}, 0.27}, {{0, 0.62, 0.04}, 0.25}), 0.15);
         const Vec3d q(std::abs(p.x), p.y, p.z); // mirror symmetry
         return smooth_min(d, length(q - Vec3d(kEyeX - 0.10, kEyeY - 0.01, kEyeZ - 0.07)) - kEyeRadius * 1.5, 0.08);
     }
 
-    static std::vector<Bead> mantle_beads() {
+    static std::vector<LimbSphere> mantle_spheres() {
         // The mantle leans back over the arms. The radii follow a spline of their own.
-        const Vec3d way[] = {{0, 0.4, 0.1},    {0, 0.62, 0.03},  {0, 0.85, -0.08}, {0, 1.10, -0.30},
-                             {0, 1.22, -0.62}, {0, 1.14, -0.95}, {0, 1.02, -1.16}, {0, 0.95, -1.3}};
+        const Vec3d path[] = {{0, 0.4, 0.1},    {0, 0.62, 0.03},  {0, 0.85, -0.08}, {0, 1.10, -0.30},
+                              {0, 1.22, -0.62}, {0, 1.14, -0.95}, {0, 1.02, -1.16}, {0, 0.95, -1.3}};
         const Vec3d radii[] = {{0.2, 0, 0},  {0.24, 0, 0}, {0.27, 0, 0}, {0.39, 0, 0},
                                {0.44, 0, 0}, {0.31, 0, 0}, {0.12, 0, 0}, {0.0, 0, 0}};
-        std::vector<Bead> beads;
-        for (int i = 0; i <= 40; ++i) beads.push_back({spline(way, i / 40.0), spline(radii, i / 40.0).x});
-        return beads;
+        std::vector<LimbSphere> spheres;
+        for (int i = 0; i <= 40; ++i) spheres.push_back({spline(path, i / 40.0), spline(radii, i / 40.0).x});
+        return spheres;
     }
 
-    static double with_suckers(Vec3d p, double arm, const Grown& grown) {
+    static double with_suckers(Vec3d p, double arm, const ArmShape& arm_shape) {
         if (arm > 0.1) return arm;
         double d = arm;
-        for (const Sucker& sucker : grown.suckers) {
+        for (const Sucker& sucker : arm_shape.suckers) {
             const Vec3d away = p - sucker.center;
             if (length_squared(away) > sqr(sucker.radius + 0.1)) continue;
             // A sucker is a flattened sphere with a hollow in its face.
@@ -205,7 +206,7 @@ private:
         return upper * (folds + warts);
     }
 
-    std::vector<Grown> arms_;
+    std::vector<ArmShape> arms_;
 };
 
 void write_octopus_mesh(const std::filesystem::path& path, double cell) {

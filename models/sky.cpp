@@ -1,8 +1,8 @@
 // This file generates sky.hdr, an environment map of an evening sky: blue above, warm at the horizon, with clouds and
 // a low sun behind haze.
-#include "models/field.h"
+#include "models/distance_field.h"
 #include "models/generate.h"
-#include "models/picture.h"
+#include "models/image.h"
 
 namespace duet::models {
 namespace {

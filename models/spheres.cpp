@@ -2,9 +2,9 @@
 // §14.1), with our own random numbers.
 #include "common/system/file.h"
 #include "common/vec/vec.h"
+#include "models/format_number.h"
 #include "models/generate.h"
 #include "models/random.h"
-#include "models/text.h"
 
 namespace duet::models {
 namespace {
@@ -12,7 +12,8 @@ namespace {
 constexpr int kDecimals = 3;
 
 std::string triple(Vec3d v) {
-    return "[" + number(v.x, kDecimals) + ", " + number(v.y, kDecimals) + ", " + number(v.z, kDecimals) + "]";
+    return "[" + format_number(v.x, kDecimals) + ", " + format_number(v.y, kDecimals) + ", " +
+           format_number(v.z, kDecimals) + "]";
 }
 
 /// Converts the book's fuzz to roughness. The book moves a mirrored direction by up to `fuzz` within a sphere:
@@ -30,14 +31,14 @@ struct Lists {
         materials += std::string(materials.empty() ? "" : ",\n") + "    \"" + name + "\": {" + material + "}";
         objects += std::string(objects.empty() ? "" : ",\n") +
                    "    {\"type\": \"sphere\", \"center\": " + triple(center) +
-                   ", \"radius\": " + number(radius, kDecimals) + ", \"material\": \"" + name + "\"}";
+                   ", \"radius\": " + format_number(radius, kDecimals) + ", \"material\": \"" + name + "\"}";
     }
 };
 
 std::string diffuse(Vec3d albedo) { return "\"type\": \"diffuse\", \"albedo\": " + triple(albedo); }
 std::string metal(Vec3d reflectance, double fuzz) {
     return "\"type\": \"metal\", \"reflectance\": " + triple(reflectance) +
-           ", \"roughness\": " + number(roughness_of_fuzz(fuzz), kDecimals);
+           ", \"roughness\": " + format_number(roughness_of_fuzz(fuzz), kDecimals);
 }
 std::string glass() { return "\"type\": \"dielectric\", \"ior\": 1.5"; }
 
@@ -84,7 +85,7 @@ void write_spheres(const std::filesystem::path& folder) {
     write_file(
         folder / "spheres.json",
         "{\n  \"camera\": {\"eye\": [13, 2, 3], \"look_at\": [0, 0, 0], \"fov_degrees\": 20, \"aperture_radius\": " +
-            number(aperture, 6) + ", \"focus_distance\": 10},\n" +
+            format_number(aperture, 6) + ", \"focus_distance\": 10},\n" +
             "  \"image\": {\"width\": 1200, \"height\": 675},\n" + "  \"materials\": {\n" + lists.materials +
             "\n  },\n  \"objects\": [\n" + lists.objects +
             "\n  ],\n  \"environment\": {\"type\": \"sky\", \"down\": [1, 1, 1], \"up\": [0.5, 0.7, 1]}\n}\n");

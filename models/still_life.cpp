@@ -1,9 +1,9 @@
 // This file generates the objects of a still life: pear.obj (three materials: pear.mtl), bowl.obj and plinth.obj.
 #include "common/system/file.h"
-#include "models/field.h"
+#include "models/distance_field.h"
 #include "models/generate.h"
+#include "models/image.h"
 #include "models/mesh_builder.h"
-#include "models/picture.h"
 #include "models/profile.h"
 
 #include <array>

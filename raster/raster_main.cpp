@@ -13,7 +13,8 @@ int main(int argc, char** argv) {
     bool no_environment = false, no_culling = false, sample_shading = false, edges = false, shadows = true;
     bool indirect = true, screen_reflections = true, screen_refractions = true, prefiltered = true, transformed_cosines = true;
     int multisamples = 0;
-    int shadow_map_side = raster::Settings{}.shadow_map_side, shadow_cells = raster::Settings{}.shadow_cells;
+    int shadow_map_side = raster::RasterSettings{}.shadow_map_side,
+        shadow_cells = raster::RasterSettings{}.shadow_cells;
     RenderProgram program;
     program.name = "raster";
     program.description = "Renders a scene with the software rasterizer.";
@@ -32,10 +33,10 @@ int main(int argc, char** argv) {
         app.add_flag("--no-environment", no_environment, "Leave the environment's light and background out");
         app.add_flag("--shadows,!--no-shadows", shadows,
                      "Shadow maps: sharp ones of point, spot and sun lights, soft ones of surfaces (default: on)");
-        app.add_option(
-            "--shadow-map", shadow_map_side,
-            "Texels along a shadow map's side, 64 to 8192; a face of a cube of them has half, of a surface light a quarter "
-            "(default 2048); fewer where there would be too many for memory");
+        app.add_option("--shadow-map", shadow_map_side,
+                       "TextureSampler along a shadow map's side, 64 to 8192; a face of a cube of them has half, of a "
+                       "surface light a quarter "
+                       "(default 2048); fewer where there would be too many for memory");
         app.add_option("--shadow-cells", shadow_cells,
                        "Pieces along each side of a rectangular light, 1 to 8, each with maps of its own (default 2)");
         app.add_option(
@@ -59,17 +60,17 @@ int main(int argc, char** argv) {
                      "Draw back faces of closed meshes and what is outside the frustum, too (same picture)");
     };
     program.prepare = [&](const Scene& scene, const RenderSettings& common, std::optional<int> spp) -> RenderFunction {
-        raster::Settings settings;
+        raster::RasterSettings settings;
         static_cast<RenderSettings&>(settings) = common;
         settings.samples_per_pixel = spp.value_or(1);
-        settings.shading = raster::shading(shading_name);
+        settings.shading = raster::parse_shading(shading_name);
         settings.quality = raster::quality(quality_name);
         if (multisamples != 0) raster::multisample_pattern(multisamples); // throws for an unsupported number
         settings.multisamples = multisamples;
         settings.edges = edges;
         settings.sample_shading = sample_shading;
         settings.environment = !no_environment;
-        settings.ambient_occlusion = raster::ambient_occlusion(occlusion_name);
+        settings.ambient_occlusion = raster::parse_ambient_occlusion(occlusion_name);
         settings.occlusion_radius = occlusion_radius;
         settings.prefiltered_environment = prefiltered;
         settings.transformed_cosines = transformed_cosines;

@@ -1,22 +1,22 @@
 #include "raster/render.h"
 
-#include "raster/account.h"
-#include "raster/display.h"
+#include "raster/gbuffer/screen_gbuffer.h"
 #include "raster/geometry/geometry.h"
+#include "raster/output/alpha_depth.h"
+#include "raster/output/display_tile.h"
+#include "raster/output/framebuffer.h"
+#include "raster/output/statistics.h"
 #include "raster/overlay/overlay.h"
-#include "raster/picture.h"
-#include "raster/screen/look.h"
-#include "raster/screen/screen.h"
-#include "raster/shade.h"
+#include "raster/shading/alpha_layers.h"
+#include "raster/shading/built_in_shaders.h"
 #include "raster/shading/deferred.h"
-#include "raster/shadings/shadings.h"
-#include "raster/split.h"
-#include "raster/visibility/cover.h"
+#include "raster/shading/light_components.h"
+#include "raster/shading/screen_gbuffer_pass.h"
+#include "raster/shading/shade_sample.h"
 #include "raster/visibility/hit_lists.h"
-#include "raster/visibility/layered_nearness.h"
-#include "raster/visibility/layers.h"
+#include "raster/visibility/hit_tile.h"
 #include "raster/visibility/multisample.h"
-#include "raster/visibility/strip_samples.h"
+#include "raster/visibility/packet_primitives.h"
 
 #include "common/image/srgb.h"
 #include "common/system/error.h"
@@ -29,9 +29,9 @@
 namespace duet::raster {
 namespace {
 
-void check(const View& view, const Settings& settings) {
-    if (view.width < 1 || view.height < 1 || view.width > kMaxPictureSide || view.height > kMaxPictureSide)
-        throw Error(message("picture size ", view.width, "x", view.height, ": expected 1 to ", kMaxPictureSide,
+void validate(const View& view, const RasterSettings& settings) {
+    if (view.width < 1 || view.height < 1 || view.width > kMaxRenderSide || view.height > kMaxRenderSide)
+        throw Error(message("framebuffer size ", view.width, "x", view.height, ": expected 1 to ", kMaxRenderSide,
                             " pixels a side"));
     if (settings.samples_per_pixel < 1)
         throw Error(message(settings.samples_per_pixel, " samples a pixel: expected at least 1"));
@@ -42,8 +42,8 @@ void check(const View& view, const Settings& settings) {
         throw Error("edges with multisampling: expected several samples a pixel instead");
 }
 
-std::vector<Pass> plan(const PreparedData& data, const View& view, const CameraModel& camera,
-                       const Settings& settings) {
+std::vector<Pass> plan_view(const RasterSceneData& data, const View& view, const CameraModel& camera,
+                            const RasterSettings& settings) {
     if (settings.multisamples > 0) return {Pass{.samples = multisample_pattern(settings.multisamples)}};
     const bool shutter = view.camera.shutter_close != view.camera.shutter_open;
     // Edge detection needs exactly one sample of every pixel per pass.
@@ -53,20 +53,20 @@ std::vector<Pass> plan(const PreparedData& data, const View& view, const CameraM
 }
 
 /// Holds the state that all passes of a rendering share.
-struct Frame {
-    const PreparedData& data;
-    const Settings& settings;
-    const Program* program; ///< null for Shading::kLit
+struct FrameContext {
+    const RasterSceneData& data;
+    const RasterSettings& settings;
+    const ShaderProgram* program; ///< null for Shading::kLit
     TileGrid grid;
     Geometry& geometry;
     Geometry* layers; ///< alpha-masked and alpha-blended surfaces; null if there are none
-    Account& account;
+    StatisticsCollector& collector;
     Progress& progress;
     Control& control;
 };
 
 PassView pass_view_of(const CameraModel& camera, const View& view, const Pass& pass) {
-    const Pinhole pinhole = camera.through(pass.lens);
+    const Pinhole pinhole = camera.pinhole(pass.lens);
     return {.pinhole = pinhole,
             .time = static_cast<float>(camera.time(pass.time)),
             .viewport = viewport_of(view, pinhole),
@@ -75,195 +75,206 @@ PassView pass_view_of(const CameraModel& camera, const View& view, const Pass& p
 
 /// Renders one pass: processes its geometry, then calls render_tile(view, index) for each tile.
 template <typename RenderTile>
-void render_pass(const Frame& frame, const CameraModel& camera, const View& view, const Pass& pass,
+void render_pass(const FrameContext& frame, const CameraModel& camera, const View& view, const Pass& pass,
                  const RenderTile& render_tile) {
     PassView pass_view = pass_view_of(camera, view, pass);
     process_geometry(frame.data, frame.grid, pass_view, frame.settings, frame.geometry);
-    frame.account.add(frame.geometry);
+    frame.collector.add(frame.geometry);
     if (frame.layers != nullptr) {
         process_layers(frame.data, frame.grid, pass_view, frame.settings, *frame.layers);
-        frame.account.add(*frame.layers);
+        frame.collector.add(*frame.layers);
     }
     const Stopwatch watch;
-    const std::unique_ptr<const Screen> screen =
-        look_at_screen(frame.data, frame.settings, frame.grid, pass_view, frame.control);
-    pass_view.screen = screen.get();
-    frame.account.prepass += watch.seconds();
-    if (screen) frame.account.add(*screen, *frame.data.geometries);
+    const std::unique_ptr<const ScreenGBuffer> gbuffer =
+        render_screen_gbuffer(frame.data, frame.settings, frame.grid, pass_view, frame.control);
+    pass_view.gbuffer = gbuffer.get();
+    frame.collector.prepass += watch.seconds();
+    if (gbuffer) frame.collector.add(*gbuffer, *frame.data.geometries);
     const Stopwatch tiles_watch;
     parallel_for(frame.grid.size(), frame.settings.threads, [&](std::size_t i) {
         if (frame.control.stopped()) return;
         render_tile(pass_view, i);
-        frame.account.tiles_done += 1;
+        frame.collector.tiles_done += 1;
         frame.progress.step();
     });
-    frame.account.tiles += tiles_watch.seconds();
+    frame.collector.tiles += tiles_watch.seconds();
 }
 
 /// Shades the samples of a tile with a program, one row of packets at a time.
-void shade_tile(const Frame& frame, const PassView& view, const DepthTile& depths, Picture& picture) {
+void shade_tile(const FrameContext& frame, const PassView& view, const DepthTile& depths, Framebuffer& framebuffer) {
     const PixelRect& rect = depths.rect();
     const auto shader = frame.program->for_tile(frame.data, frame.geometry, view, rect);
-    constexpr int kColumns = kStripWidth, kRows = DepthTile::kStripRows;
-    std::array<StripPlace, TileGrid::kTileSize / kColumns> places;
-    std::array<StripColors, TileGrid::kTileSize / kColumns> colors;
-    std::array<std::uint32_t, TileGrid::kTileSize / kColumns> seen;
+    constexpr int kColumns = kPacketWidth, kRows = DepthTile::kPacketRows;
+    std::array<SamplePacket, TileGrid::kTileSize / kColumns> packets;
+    std::array<ColorPacket, TileGrid::kTileSize / kColumns> colors;
+    std::array<std::uint32_t, TileGrid::kTileSize / kColumns> visible;
     for (int y0 = rect.y0; y0 < rect.y1; y0 += kRows) {
         std::size_t count = 0;
-        for (int x0 = rect.x0; x0 < rect.x1; x0 += kColumns) places[count++] = strip_place(depths, x0, y0);
-        shader->shade(std::span(places).first(count), colors.data(), seen.data());
+        for (int x0 = rect.x0; x0 < rect.x1; x0 += kColumns) packets[count++] = sample_packet(depths, x0, y0);
+        shader->shade(std::span(packets).first(count), colors.data(), visible.data());
         for (int y = y0; y < std::min(y0 + kRows, rect.y1); ++y)
             for (int x = rect.x0; x < rect.x1; ++x) {
                 const auto strip = static_cast<std::size_t>((x - rect.x0) / kColumns);
                 const auto i = static_cast<std::size_t>((y - y0) * kColumns + (x - rect.x0) % kColumns);
-                const StripColors& own = colors[strip];
-                picture.add(x, y, seen[strip] >> i & 1 ? Rgb(own.r[i], own.g[i], own.b[i]) : Rgb());
+                const ColorPacket& packet_colors = colors[strip];
+                framebuffer.add(
+                    x, y,
+                    visible[strip] >> i & 1 ? Rgb(packet_colors.r[i], packet_colors.g[i], packet_colors.b[i]) : Rgb());
             }
     }
 }
 
 /// Returns true if alpha-masked or alpha-blended surfaces overlap the tile.
-bool layered(const Frame& frame, std::size_t tile) { return frame.layers != nullptr && touches(*frame.layers, tile); }
+bool has_layers_in(const FrameContext& frame, std::size_t tile) {
+    return frame.layers != nullptr && overlaps_tile(*frame.layers, tile);
+}
 /// Returns true if the tile's radiance is computed sample by sample: always for Shading::kLit, and for any shading
 /// in front of which there are transparent layers.
-bool all_one_by_one(const Frame& frame, std::size_t tile) { return frame.program == nullptr || layered(frame, tile); }
+bool shades_per_sample(const FrameContext& frame, std::size_t tile) {
+    return frame.program == nullptr || has_layers_in(frame, tile);
+}
 /// Returns true if any output of the tile is computed sample by sample, auxiliary images included.
-bool one_by_one(const Frame& frame, std::size_t tile) {
-    return all_one_by_one(frame, tile) || frame.settings.aovs.any();
+bool needs_per_sample(const FrameContext& frame, std::size_t tile) {
+    return shades_per_sample(frame, tile) || frame.settings.aovs.any();
 }
 
 /// Shades the samples of a tile one by one.
-void shade_samples(const Frame& frame, const PassView& view, std::size_t index, const DepthTile& depths,
-                   Picture& picture) {
+void shade_samples(const FrameContext& frame, const PassView& view, std::size_t index, const DepthTile& depths,
+                   Framebuffer& framebuffer) {
     HitTile tile(depths, frame.geometry, view);
     std::optional<Layers> layers;
-    if (layered(frame, index))
+    if (has_layers_in(frame, index))
         layers.emplace(frame.data, frame.settings, frame.program, *frame.layers, view, depths.offset(), index, tile);
     const PixelRect& rect = depths.rect();
     const bool central =
         view.samples.size() == 1 && depths.offset().x == SampleOffset().x && depths.offset().y == SampleOffset().y;
     for (int y = rect.y0; y < rect.y1; ++y)
         for (int x = rect.x0; x < rect.x1; ++x) {
-            const Rgb* known = central && !layers ? seen_before(frame.data, frame.settings, tile, x, y) : nullptr;
-            if (known != nullptr) {
-                picture.add(x, y, *known);
+            const Rgb* prepass_color =
+                central && !layers ? prepass_radiance(frame.data, frame.settings, tile, x, y) : nullptr;
+            if (prepass_color != nullptr) {
+                framebuffer.add(x, y, *prepass_color);
                 continue;
             }
-            Shaded shaded = shade(frame.data, frame.settings, tile, x, y);
+            ShadedSample shaded = shade_sample(frame.data, frame.settings, tile, x, y);
             if (layers) {
                 if (frame.program != nullptr && tile.hit(x, y).valid())
                     shaded.radiance =
                         frame.program->shade_hit(frame.data, view, tile.hit(x, y), depths.offset().position(x, y));
                 shaded = layers->over(x, y, shaded);
             }
-            if (frame.settings.aovs.any()) picture.add_auxiliary(tile, x, y, shaded);
-            if (all_one_by_one(frame, index)) picture.add(x, y, shaded.radiance);
+            if (frame.settings.aovs.any()) framebuffer.add_aovs(tile, x, y, shaded);
+            if (shades_per_sample(frame, index)) framebuffer.add(x, y, shaded.radiance);
         }
 }
 
 /// Shades one layer of a multisampled tile. Each primitive is shaded once per pixel and weighted by its number of
 /// samples.
-void shade_layer(const Frame& frame, const PassView& view, const LayeredTile& tile, std::size_t layer,
-                 Picture& picture) {
+void shade_layer(const FrameContext& frame, const PassView& view, const LayeredTile& tile, std::size_t layer,
+                 Framebuffer& framebuffer) {
     const PixelRect& rect = tile.rect();
     const auto for_each = [&](const auto& visit) { // calls visit() for the pixels in the layer
         for (int y = rect.y0; y < rect.y1; ++y)
             for (int x = rect.x0; x < rect.x1; ++x)
-                if (const int count = tile.layer(layer).count(tile.place(x, y)); count > 0) visit(x, y, count);
+                if (const int count = tile.layer(layer).count(tile.sample_index(x, y)); count > 0) visit(x, y, count);
     };
     if (frame.program == nullptr || frame.settings.aovs.any()) {
         const HitTile hits(tile, layer, frame.geometry, view);
         const int samples = static_cast<int>(view.samples.size());
         for_each([&](int x, int y, int count) {
-            if (const Rgb* known = count == samples ? seen_before(frame.data, frame.settings, hits, x, y) : nullptr) {
-                picture.add(x, y, *known, count);
+            if (const Rgb* prepass_color =
+                    count == samples ? prepass_radiance(frame.data, frame.settings, hits, x, y) : nullptr) {
+                framebuffer.add(x, y, *prepass_color, count);
                 return;
             }
-            const Shaded shaded = shade(frame.data, frame.settings, hits, x, y);
-            for (int i = 0; i < count && frame.settings.aovs.any(); ++i) picture.add_auxiliary(hits, x, y, shaded);
-            if (frame.program == nullptr) picture.add(x, y, shaded.radiance, count);
+            const ShadedSample shaded = shade_sample(frame.data, frame.settings, hits, x, y);
+            for (int i = 0; i < count && frame.settings.aovs.any(); ++i) framebuffer.add_aovs(hits, x, y, shaded);
+            if (frame.program == nullptr) framebuffer.add(x, y, shaded.radiance, count);
         });
     }
     if (frame.program == nullptr) return;
     const auto shader = frame.program->for_tile(frame.data, frame.geometry, view, rect);
-    LayeredTile::Strip strip;
-    for (int y0 = rect.y0; y0 < rect.y1; y0 += DepthTile::kStripRows)
-        for (int x0 = rect.x0; x0 < rect.x1; x0 += static_cast<int>(kStripWidth)) {
-            tile.strip(layer, x0, y0, strip);
-            if (strip.place.ids == nullptr) continue;
-            StripColors colors;
-            const std::uint32_t seen = shader->shade(strip.place, colors), first = tile.place(x0, y0);
-            for (std::uint32_t i = 0; i < kStrip; ++i)
+    LayeredTile::LayerPacket layer_packet;
+    for (int y0 = rect.y0; y0 < rect.y1; y0 += DepthTile::kPacketRows)
+        for (int x0 = rect.x0; x0 < rect.x1; x0 += static_cast<int>(kPacketWidth)) {
+            tile.layer_packet(layer, x0, y0, layer_packet);
+            if (layer_packet.packet.ids == nullptr) continue;
+            ColorPacket colors;
+            const std::uint32_t visible = shader->shade(layer_packet.packet, colors), first = tile.sample_index(x0, y0);
+            for (std::uint32_t i = 0; i < kPacketSize; ++i)
                 if (const int count = tile.layer(layer).count(first + i); count > 0) {
-                    const int x = x0 + static_cast<int>(i % kStripWidth), y = y0 + static_cast<int>(i / kStripWidth);
+                    const int x = x0 + static_cast<int>(i % kPacketWidth), y = y0 + static_cast<int>(i / kPacketWidth);
                     if (x < rect.x1 && y < rect.y1)
-                        picture.add(x, y, seen >> i & 1 ? Rgb(colors.r[i], colors.g[i], colors.b[i]) : Rgb(), count);
+                        framebuffer.add(x, y, visible >> i & 1 ? Rgb(colors.r[i], colors.g[i], colors.b[i]) : Rgb(),
+                                        count);
                 }
         }
 }
 
 /// Renders one tile with multisampling: determines the coverage of all samples, then shades each primitive once.
-void render_layers(const Frame& frame, const PassView& view, std::size_t index, Picture& picture) {
+void render_multisampled_tile(const FrameContext& frame, const PassView& view, std::size_t index,
+                              Framebuffer& framebuffer) {
     const PixelRect rect = frame.grid.tile(index);
     Stopwatch watch;
     LayeredTile tile(rect, static_cast<int>(view.samples.size()));
     DepthTile depths;
     for (const SampleOffset offset : view.samples) {
-        cover(frame.geometry, view, offset, rect, index, depths);
+        rasterize_tile(frame.geometry, view, offset, rect, index, depths);
         tile.add(depths);
     }
-    frame.account.cover_work += static_cast<std::int64_t>(watch.lap() * 1e9);
-    for (std::size_t layer = 0; layer < tile.layers(); ++layer) shade_layer(frame, view, tile, layer, picture);
-    frame.account.shade_work += static_cast<std::int64_t>(watch.lap() * 1e9);
+    frame.collector.coverage_work += static_cast<std::int64_t>(watch.lap() * 1e9);
+    for (std::size_t layer = 0; layer < tile.layers(); ++layer) shade_layer(frame, view, tile, layer, framebuffer);
+    frame.collector.shade_work += static_cast<std::int64_t>(watch.lap() * 1e9);
 }
 
 /// Renders one tile: determines the coverage of each sample, then shades it.
-void render_tile(const Frame& frame, const PassView& view, std::size_t index, Picture& picture) {
+void render_tile(const FrameContext& frame, const PassView& view, std::size_t index, Framebuffer& framebuffer) {
     const PixelRect rect = frame.grid.tile(index);
     DepthTile depths;
     for (const SampleOffset offset : view.samples) {
         Stopwatch watch;
-        cover(frame.geometry, view, offset, rect, index, depths);
-        frame.account.cover_work += static_cast<std::int64_t>(watch.lap() * 1e9);
-        if (one_by_one(frame, index)) shade_samples(frame, view, index, depths, picture);
-        if (!all_one_by_one(frame, index)) shade_tile(frame, view, depths, picture);
-        frame.account.shade_work += static_cast<std::int64_t>(watch.lap() * 1e9);
+        rasterize_tile(frame.geometry, view, offset, rect, index, depths);
+        frame.collector.coverage_work += static_cast<std::int64_t>(watch.lap() * 1e9);
+        if (needs_per_sample(frame, index)) shade_samples(frame, view, index, depths, framebuffer);
+        if (!shades_per_sample(frame, index)) shade_tile(frame, view, depths, framebuffer);
+        frame.collector.shade_work += static_cast<std::int64_t>(watch.lap() * 1e9);
     }
 }
 
 /// Renders a pass with one sample per pixel, and adds its edges to the overlay.
-void render_inked(const Frame& frame, const CameraModel& camera, const View& view, const Pass& pass, Picture& picture,
-                  Overlay& overlay) {
-    SeenPicture seen(view.width, view.height);
-    const std::unique_ptr<Program> normals = smooth_normal_program(); // bumps are not edges
+void render_with_edges(const FrameContext& frame, const CameraModel& camera, const View& view, const Pass& pass,
+                       Framebuffer& framebuffer, Overlay& overlay) {
+    EdgeBuffer edge_buffer(view.width, view.height);
+    const std::unique_ptr<ShaderProgram> normals = smooth_normal_program(); // bumps are not edges
     render_pass(frame, camera, view, pass, [&](const PassView& pass_view, std::size_t i) {
-        render_tile(frame, pass_view, i, picture);
+        render_tile(frame, pass_view, i, framebuffer);
         const SampleOffset offset = pass_view.samples.front();
         DepthTile depths;
-        cover(frame.geometry, pass_view, offset, frame.grid.tile(i), i, depths);
-        seen.add(depths, frame.geometry, *normals->for_tile(frame.data, frame.geometry, pass_view, frame.grid.tile(i)));
-        if (layered(frame, i))
-            seen.add_layers(frame.data, *frame.layers, pass_view, offset, i, HitTile(depths, frame.geometry, pass_view),
-                            *normals);
+        rasterize_tile(frame.geometry, pass_view, offset, frame.grid.tile(i), i, depths);
+        edge_buffer.add(depths, frame.geometry,
+                        *normals->for_tile(frame.data, frame.geometry, pass_view, frame.grid.tile(i)));
+        if (has_layers_in(frame, i))
+            edge_buffer.add_layers(frame.data, *frame.layers, pass_view, offset, i,
+                                   HitTile(depths, frame.geometry, pass_view), *normals);
     });
-    if (!frame.control.stopped()) overlay.add_edges(seen);
+    if (!frame.control.stopped()) overlay.add_edges(edge_buffer);
 }
 
 /// Returns true if deferred shading renders the frame. It does not handle transparent layers, auxiliary images and
 /// multisampling yet; frames with them are shaded sample by sample.
-bool is_deferred(const Frame& frame) {
-    const Settings& settings = frame.settings;
+bool is_deferred(const FrameContext& frame) {
+    const RasterSettings& settings = frame.settings;
     return frame.program == nullptr && settings.quality == Quality::kRealtime && frame.layers == nullptr &&
            !settings.aovs.any() && settings.multisamples == 0;
 }
 
 /// Renders one pass of Shading::kLit by deferred shading, and calls use(radiance) for each sample of a pixel.
 template <typename Use>
-void render_deferred(const Frame& frame, const CameraModel& camera, const View& view, const Pass& pass,
+void render_deferred(const FrameContext& frame, const CameraModel& camera, const View& view, const Pass& pass,
                      const Use& use) {
     const PassView pass_view = pass_view_of(camera, view, pass);
     process_geometry(frame.data, frame.grid, pass_view, frame.settings, frame.geometry);
-    frame.account.add(frame.geometry);
+    frame.collector.add(frame.geometry);
     const Stopwatch watch;
     DeferredFramePool& pool = *frame.data.deferred_frames;
     std::unique_ptr<DeferredFrame> images = pool.take();
@@ -271,12 +282,12 @@ void render_deferred(const Frame& frame, const CameraModel& camera, const View& 
         if (frame.control.stopped()) break;
         shade_deferred(frame.data, frame.settings, frame.geometry, pass_view, frame.grid, offset, frame.control,
                        *images);
-        for (const auto& [stage, seconds] : images->seconds) frame.account.add_stage(stage, seconds);
+        for (const auto& [stage, seconds] : images->seconds) frame.collector.add_stage(stage, seconds);
         use(images->radiance);
     }
     pool.give_back(std::move(images));
-    frame.account.tiles += watch.seconds();
-    for (std::size_t i = 0; i < frame.grid.size(); ++i) frame.account.tiles_done += 1, frame.progress.step();
+    frame.collector.tiles += watch.seconds();
+    for (std::size_t i = 0; i < frame.grid.size(); ++i) frame.collector.tiles_done += 1, frame.progress.step();
 }
 
 /// Calls visit(x, y) for all pixels, in parallel.
@@ -287,39 +298,39 @@ template <typename Visit> void for_each_pixel(const View& view, int threads, con
 }
 
 /// Renders one pass per lens point or time, and averages them.
-Rendering render_picture(const Frame& frame, const CameraModel& camera, const View& view,
-                         const std::vector<Pass>& passes) {
+Rendering render_image(const FrameContext& frame, const CameraModel& camera, const View& view,
+                       const std::vector<Pass>& passes) {
     const bool lines = frame.settings.shading == Shading::kLines, edges = draws_edges(frame.settings);
-    Picture picture(view, frame.settings, passes.size() > 1 || passes.front().samples.size() > 1);
+    Framebuffer framebuffer(view, frame.settings, passes.size() > 1 || passes.front().samples.size() > 1);
     std::optional<Overlay> overlay;
     if (lines || edges) overlay.emplace(frame.data, frame.settings, view);
     for (const Pass& pass : passes) {
         if (frame.control.stopped()) break;
         if (edges) {
-            render_inked(frame, camera, view, pass, picture, *overlay);
+            render_with_edges(frame, camera, view, pass, framebuffer, *overlay);
             continue;
         }
         if (lines) overlay->add_lines(pass_view_of(camera, view, pass));
         if (is_deferred(frame)) {
             render_deferred(frame, camera, view, pass, [&](const Planes3& radiance) {
                 for_each_pixel(view, frame.settings.threads,
-                               [&](int x, int y) { picture.add(x, y, radiance.color_at(x, y)); });
+                               [&](int x, int y) { framebuffer.add(x, y, radiance.color_at(x, y)); });
             });
             continue;
         }
         render_pass(frame, camera, view, pass, [&](const PassView& pass_view, std::size_t i) {
             // Transparent layers are sorted per sample, so each sample is shaded.
             if (frame.settings.multisamples > 0 && !frame.settings.sample_shading && frame.layers == nullptr)
-                render_layers(frame, pass_view, i, picture);
+                render_multisampled_tile(frame, pass_view, i, framebuffer);
             else
-                render_tile(frame, pass_view, i, picture);
+                render_tile(frame, pass_view, i, framebuffer);
         });
     }
     const Stopwatch watch;
-    frame.account.picture_bytes = picture.memory_bytes();
-    Rendering result = picture.finish(frame.settings.threads);
-    if (overlay) overlay->put(result.radiance);
-    frame.account.resolve = watch.seconds();
+    frame.collector.framebuffer_bytes = framebuffer.memory_bytes();
+    Rendering result = framebuffer.finish(frame.settings.threads);
+    if (overlay) overlay->composite(result.radiance);
+    frame.collector.resolve = watch.seconds();
     return result;
 }
 
@@ -328,17 +339,17 @@ template <typename Pixel> void resize(Image<Pixel>& image, const View& view) {
 }
 
 /// Renders one sample per pixel directly to the format of a display or a shadow map.
-void render_display(const Frame& frame, const CameraModel& camera, const View& view, const Pass& pass,
-                    Rendering& result) {
-    const bool depths_only = frame.settings.output == Output::kNearness;
-    if (depths_only) {
-        resize(result.nearness, view);
-        frame.account.picture_bytes = result.nearness.size() * sizeof(float);
+void render_direct_output(const FrameContext& frame, const CameraModel& camera, const View& view, const Pass& pass,
+                          Rendering& result) {
+    const bool depth_only = frame.settings.output == Output::kReversedDepth;
+    if (depth_only) {
+        resize(result.reversed_depth, view);
+        frame.collector.framebuffer_bytes = result.reversed_depth.size() * sizeof(float);
     } else {
         resize(result.srgb, view);
-        frame.account.picture_bytes = result.srgb.size() * sizeof(Rgba8);
+        frame.collector.framebuffer_bytes = result.srgb.size() * sizeof(Rgba8);
     }
-    if (!depths_only && is_deferred(frame)) {
+    if (!depth_only && is_deferred(frame)) {
         const SrgbEncoder& encoder = srgb_encoder();
         render_deferred(frame, camera, view, pass, [&](const Planes3& radiance) {
             for_each_pixel(view, frame.settings.threads, [&](int x, int y) {
@@ -349,68 +360,72 @@ void render_display(const Frame& frame, const CameraModel& camera, const View& v
         return;
     }
     render_pass(frame, camera, view, pass, [&](const PassView& pass_view, std::size_t i) {
-        if (depths_only && frame.layers != nullptr)
-            keep_layered_nearness(frame.data, frame.geometry, *frame.layers, pass_view, frame.grid.tile(i), i,
-                                  result.nearness);
-        else if (depths_only)
-            keep_nearness(frame.geometry, pass_view, frame.grid.tile(i), i, result.nearness);
+        if (depth_only && frame.layers != nullptr)
+            render_alpha_depth_tile(frame.data, frame.geometry, *frame.layers, pass_view, frame.grid.tile(i), i,
+                                    result.reversed_depth);
+        else if (depth_only)
+            render_depth_tile(frame.geometry, pass_view, frame.grid.tile(i), i, result.reversed_depth);
         else
             display_tile(frame.data, frame.settings, frame.program, frame.geometry, pass_view, frame.grid.tile(i), i,
                          result.srgb);
     });
 }
 
-void render_with(const Prepared& prepared, const View& view, const Settings& settings, const Program* program,
-                 Control& control, Rendering& result) {
-    check(view, settings);
-    const PreparedData& data = prepared.data();
+void render_with(const RasterScene& prepared, const View& view, const RasterSettings& settings,
+                 const ShaderProgram* program, Control& control, Rendering& result) {
+    validate(view, settings);
+    const RasterSceneData& data = prepared.data();
     const CameraModel camera(view);
-    Settings used = settings;
-    if (settings.output == Output::kNearness) used.samples_per_pixel = 1, used.multisamples = 0, used.edges = false;
-    const std::vector<Pass> passes = plan(data, view, camera, used);
+    RasterSettings effective_settings = settings;
+    if (settings.output == Output::kReversedDepth)
+        effective_settings.samples_per_pixel = 1, effective_settings.multisamples = 0, effective_settings.edges = false;
+    const std::vector<Pass> passes = plan_view(data, view, camera, effective_settings);
     const TileGrid grid{{0, 0, view.width, view.height}};
-    Account account;
+    StatisticsCollector collector;
     Progress progress(control, grid.size() * passes.size());
-    GeometryLoan geometry(*data.geometries);
-    GeometryLoan layers(*data.geometries);
-    const Frame frame{data,    used,     program, grid, *geometry, data.has_layers() ? &*layers : nullptr,
-                      account, progress, control};
+    PooledGeometry geometry(*data.geometries);
+    PooledGeometry layers(*data.geometries);
+    const FrameContext frame{data,      effective_settings, program,
+                             grid,      *geometry,          data.has_layers() ? &*layers : nullptr,
+                             collector, progress,           control};
 
-    const bool overlaid = draws_edges(used) || used.shading == Shading::kLines;
+    const bool has_overlay = draws_edges(effective_settings) || effective_settings.shading == Shading::kLines;
     const bool one_sample = passes.size() == 1 && passes.front().samples.size() == 1;
-    if (used.output == Output::kNearness ||
-        (used.output == Output::kSrgb8 && one_sample && !overlaid && !data.has_layers())) {
-        render_display(frame, camera, view, passes.front(), result);
+    if (effective_settings.output == Output::kReversedDepth ||
+        (effective_settings.output == Output::kSrgb8 && one_sample && !has_overlay && !data.has_layers())) {
+        render_direct_output(frame, camera, view, passes.front(), result);
         result.statistics = {};
     } else {
-        result = render_picture(frame, camera, view, passes);
+        result = render_image(frame, camera, view, passes);
         if (settings.output == Output::kSrgb8) encode(result.radiance, settings.threads, result.srgb);
     }
-    fill_statistics(result.statistics, data, used, account, passes, grid);
+    fill_statistics(result.statistics, data, effective_settings, collector, passes, grid);
 }
 
 } // namespace
 
-std::shared_ptr<const Screen> screen_of(const Prepared& prepared, const View& view, const Settings& settings) {
-    check(view, settings);
-    const PreparedData& data = prepared.data();
+std::shared_ptr<const ScreenGBuffer> make_screen_gbuffer(const RasterScene& prepared, const View& view,
+                                                         const RasterSettings& settings) {
+    validate(view, settings);
+    const RasterSceneData& data = prepared.data();
     const TileGrid grid{{0, 0, view.width, view.height}};
-    return look_at_screen(data, settings, grid, pass_view_of(CameraModel(view), view, Pass{}), Control{});
+    return render_screen_gbuffer(data, settings, grid, pass_view_of(CameraModel(view), view, Pass{}), Control{});
 }
 
-void render(const Prepared& prepared, const View& view, const Settings& settings, Control& control, Rendering& result) {
-    const std::unique_ptr<Program> built_in = program(settings.shading, view.camera);
+void render(const RasterScene& prepared, const View& view, const RasterSettings& settings, Control& control,
+            Rendering& result) {
+    const std::unique_ptr<ShaderProgram> built_in = built_in_program(settings.shading, view.camera);
     render_with(prepared, view, settings, built_in.get(), control, result);
 }
 
-void render(const Prepared& prepared, const View& view, const Settings& settings, const Program& program,
+void render(const RasterScene& prepared, const View& view, const RasterSettings& settings, const ShaderProgram& program,
             Control& control, Rendering& result) {
-    Settings other = settings; // the environment must not be in the background, which only kLit shows
+    RasterSettings other = settings; // the environment must not be in the background, which only kLit shows
     if (other.shading == Shading::kLit) other.shading = Shading::kAlbedo;
     render_with(prepared, view, other, &program, control, result);
 }
 
-Rendering render(const Prepared& prepared, const View& view, const Settings& settings, Control& control) {
+Rendering render(const RasterScene& prepared, const View& view, const RasterSettings& settings, Control& control) {
     Rendering result;
     render(prepared, view, settings, control, result);
     return result;

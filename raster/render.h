@@ -21,24 +21,24 @@ enum class Shading {
     kToon,      ///< Phong's model, in bands
     kWireframe, ///< edges with hidden lines removed
     kLines,     ///< edges as one-pixel lines, white on black, without hidden-line removal
-    kEdges,     ///< Settings::edges alone, black on white
+    kEdges,     ///< RasterSettings::edges alone, black on white
     kNormal,    ///< shading normals as colors: (n + 1)/2
     kAlbedo,    ///< base colors
     kDepth,     ///< d / (d + depth), where d is the distance from the camera to its look-at point
 };
 /// Returns the shading of a name that shading_names() lists ("lit", "phong" …). Throws Error for any other name.
-Shading shading(std::string_view name);
+Shading parse_shading(std::string_view name);
 /// Returns the list of names, "lit, phong … or depth".
 std::string shading_names();
 
 /// Selects the method that estimates the environment's occlusion from screen-space depths
-/// (raster/screen/ambient_occlusion.h).
+/// (raster/screen_space/ambient_occlusion.h).
 enum class AmbientOcclusion { kNone, kSsao, kGtao };
 /// Returns the method named "none", "ssao" or "gtao". Throws Error for any other name.
-AmbientOcclusion ambient_occlusion(std::string_view name);
+AmbientOcclusion parse_ambient_occlusion(std::string_view name);
 
-/// Selects the light parts that Shading::kLit computes (LightParts in raster/split.h).
-struct PartSet {
+/// Selects the light parts that Shading::kLit computes (LightComponents in raster/shading/light_components.h).
+struct LightComponentSet {
     bool emission = true, direct = true, environment = true, reflection = true;
 
     bool all() const { return emission && direct && environment && reflection; }
@@ -54,15 +54,15 @@ Quality quality(std::string_view name);
 
 /// Selects the output format of a rendering.
 enum class Output {
-    kRadiance, ///< Rendering::radiance and the requested auxiliary images
-    kSrgb8,    ///< Rendering::srgb; with one sample per pixel, each is encoded as soon as it is shaded
-    kNearness, ///< Rendering::nearness: reversed depth only, e.g. for a shadow map; nothing is shaded
+    kRadiance,      ///< Rendering::radiance and the requested auxiliary images
+    kSrgb8,         ///< Rendering::srgb; with one sample per pixel, each is encoded as soon as it is shaded
+    kReversedDepth, ///< Rendering::reversed_depth: reversed depth only, e.g. for a shadow map; nothing is shaded
 };
 
-struct Settings : RenderSettings {
+struct RasterSettings : RenderSettings {
     Shading shading = Shading::kLit;
     Quality quality = Quality::kHigh;
-    Output output = Output::kRadiance; ///< kNearness uses only one sample per pixel
+    Output output = Output::kRadiance; ///< kReversedDepth uses only one sample per pixel
     bool front_faces_only = false;     ///< cull back faces of all meshes and quads, as real-time renderers do
     /// Multisampling (raster/visibility/multisample.h) takes 2, 4, 8 or 16 samples per pixel for coverage and depth,
     /// and shades once per primitive. 0 turns it off. It requires samples_per_pixel = 1, and uses the lens center and
@@ -70,7 +70,7 @@ struct Settings : RenderSettings {
     int multisamples = 0;
     bool sample_shading = false; ///< with multisamples: shade every sample, i.e. supersample with its pattern
     bool edges = false; ///< draw lines where depth, normals or objects change (raster/overlay/edges.h)
-    PartSet parts; ///< turn parts off to examine the others or to measure their cost
+    LightComponentSet components; ///< turn parts off to examine the others or to measure their cost
     bool shadows = true; ///< Shading::kLit: use shadow maps; prepare() must be called with this setting as well
     /// A shadow map has this many texels per side, in [64, 8192]. Each face of a cube map has half as many, and an
     /// area light's map a quarter. Maps are smaller if all of them would take too much memory.
@@ -91,31 +91,32 @@ struct Settings : RenderSettings {
         true;
 };
 
-struct PreparedData; // raster/prepare.h
-class Program;       // raster/shader/strip_shader.h
+struct RasterSceneData; // raster/raster_scene.h
+class ShaderProgram;    // raster/shading/packet_shader.h
 
 /// Holds the data computed once per scene, for any number of views. It refers to the scene, which must outlive it.
-class Prepared {
+class RasterScene {
 public:
-    explicit Prepared(std::shared_ptr<const PreparedData> data) : data_(std::move(data)) {}
-    const PreparedData& data() const { return *data_; }
+    explicit RasterScene(std::shared_ptr<const RasterSceneData> data) : data_(std::move(data)) {}
+    const RasterSceneData& data() const { return *data_; }
 
 private:
-    std::shared_ptr<const PreparedData> data_;
+    std::shared_ptr<const RasterSceneData> data_;
 };
 
 /// Prepares a scene. Throws Error if the shadow settings are out of range.
-Prepared prepare(const Scene& scene, const Settings& settings);
+RasterScene prepare(const Scene& scene, const RasterSettings& settings);
 /// Returns one sentence for each way in which images with these settings differ from the path tracer's. Only those
 /// that apply to the scene and to the requested parts are included.
-std::vector<std::string> approximations(const Prepared& prepared, const Settings& settings);
+std::vector<std::string> approximations(const RasterScene& prepared, const RasterSettings& settings);
 /// Renders one image. If `control` stops it, the result contains the completed parts, and the rest is black.
-Rendering render(const Prepared& prepared, const View& view, const Settings& settings, Control& control);
+Rendering render(const RasterScene& prepared, const View& view, const RasterSettings& settings, Control& control);
 /// Renders into an earlier rendering. Images of the right size are overwritten, so that an animation allocates
 /// memory only once.
-void render(const Prepared& prepared, const View& view, const Settings& settings, Control& control, Rendering& result);
-/// Renders with a program in place of Settings::shading. draw() (raster/draw.h) creates a program from a shader.
-void render(const Prepared& prepared, const View& view, const Settings& settings, const Program& program,
+void render(const RasterScene& prepared, const View& view, const RasterSettings& settings, Control& control,
+            Rendering& result);
+/// Renders with a program in place of RasterSettings::shading. draw() (raster/draw.h) creates a program from a shader.
+void render(const RasterScene& prepared, const View& view, const RasterSettings& settings, const ShaderProgram& program,
             Control& control, Rendering& result);
 
 } // namespace duet::raster

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/film/film.h"
-#include "raytrace/plan.h"
+#include "raytrace/render_plan.h"
 
 namespace duet::raytrace {
 
@@ -10,10 +10,10 @@ namespace duet::raytrace {
 /// at the same time.
 class AovBuffers {
 public:
-    AovBuffers(const RenderPlan& plan, const View& view, const AovSet& asked);
+    AovBuffers(const RenderPlan& plan, const View& view, const AovSet& requested);
 
     /// Returns whether any of these images is requested, so that add() has to be called.
-    bool any() const { return asked_.depth || asked_.normal || asked_.albedo || asked_.hit; }
+    bool any() const { return requested_.depth || requested_.normal || requested_.albedo || requested_.hit; }
     /// Adds the first hit of a camera ray, which is sample `index` of its pixel. The hit may be invalid.
     void add(int x, int y, std::uint32_t index, const Ray& ray, const Hit& hit);
     /// Moves the requested images to `rendering`, also those that the film provides.
@@ -29,7 +29,7 @@ private:
     };
     const RenderPlan& plan_;
     Vec3d forward_; // view direction of the camera
-    AovSet asked_;
+    AovSet requested_;
     Image<Sums> sums_;
     Image<Hit> hits_;
 };

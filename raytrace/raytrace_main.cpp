@@ -3,8 +3,8 @@
 #include "common/program/render_program.h"
 #include "common/system/error.h"
 #include "common/system/file.h"
-#include "raytrace/explain.h"
-#include "raytrace/merge.h"
+#include "raytrace/merge_films.h"
+#include "raytrace/pixel_debug.h"
 #include "raytrace/render.h"
 
 #include <CLI/CLI.hpp>
@@ -17,7 +17,7 @@ namespace {
 using namespace duet;
 
 // Sets first_sample and samples_per_pixel from "A:B".
-void set_samples(const std::string& text, raytrace::Settings& settings) {
+void set_samples(const std::string& text, raytrace::PathTracerSettings& settings) {
     std::uint32_t first = 0, last = 0;
     const char* const end = text.data() + text.size();
     const auto a = std::from_chars(text.data(), end, first);
@@ -35,15 +35,15 @@ void set_samples(const std::string& text, raytrace::Settings& settings) {
 int main(int argc, char** argv) {
     if (argc > 1 && std::string_view(argv[1]) == "merge") return raytrace::run_merge(argc - 1, argv + 1);
     std::string integrator_name = "path", sampler = "sobol", filter = "box", bvh = "default", film, samples, pixel;
-    raytrace::Settings settings;
+    raytrace::PathTracerSettings settings;
     bool no_environment = false;
     std::optional<bool> adaptive;
     RenderProgram program;
     program.check = [&](const OutputOptions& output) {
-        if (!pixel.empty()) raytrace::parse_sample_name(pixel);
+        if (!pixel.empty()) raytrace::parse_sample_id(pixel);
         if (film.empty()) return;
         if (output.frames > 0) throw Error("--film: keeps one picture, cannot go with --orbit");
-        if (lower_case_ending(film) != ".exr") throw Error(message("--film: found ", film, ", expected an .exr"));
+        if (lower_case_extension(film) != ".exr") throw Error(message("--film: found ", film, ", expected an .exr"));
         if (film == output.path) throw Error("--film: is the picture's own file, expected another");
         const auto folder = std::filesystem::absolute(film).parent_path();
         if (!std::filesystem::is_directory(folder)) throw Error(message("--film: no folder ", folder.string()));
@@ -95,7 +95,7 @@ int main(int argc, char** argv) {
                        "where triangles are long or overlap; the same picture)");
         app.add_flag("--no-environment", no_environment, "Leave the environment's light and background out");
     };
-    const auto set_up = [&](const RenderSettings& common, std::optional<int> spp) {
+    const auto apply_options = [&](const RenderSettings& common, std::optional<int> spp) {
         const bool limited = settings.time_limit > 0 || settings.error_limit > 0;
         static_cast<RenderSettings&>(settings) = common;
         settings.samples_per_pixel = spp.value_or(limited ? 1 << 24 : 64);
@@ -107,18 +107,19 @@ int main(int argc, char** argv) {
         settings.integrator = raytrace::integrator(integrator_name);
         settings.sampler = sampler_kind(sampler);
         settings.filter = filter_kind(filter);
-        settings.adaptive = adaptive.value_or(limited && samples.empty() && !depends_on_count(settings.sampler));
+        settings.adaptive = adaptive.value_or(limited && samples.empty() && !needs_sample_count(settings.sampler));
         settings.bvh = raytrace::bvh_quality(bvh);
         settings.environment = !no_environment;
     };
-    program.prints_text = [&] { return !pixel.empty(); };
-    program.text = [&](const Scene& scene, const View& view, const RenderSettings& common, std::optional<int> spp) {
-        set_up(common, spp);
-        return raytrace::explain(raytrace::prepare(scene, settings), view, settings,
-                                 raytrace::parse_sample_name(pixel));
+    program.wants_text_output = [&] { return !pixel.empty(); };
+    program.text_output = [&](const Scene& scene, const View& view, const RenderSettings& common,
+                              std::optional<int> spp) {
+        apply_options(common, spp);
+        return raytrace::debug_pixel(raytrace::prepare(scene, settings), view, settings,
+                                     raytrace::parse_sample_id(pixel));
     };
     program.prepare = [&](const Scene& scene, const RenderSettings& common, std::optional<int> spp) -> RenderFunction {
-        set_up(common, spp);
+        apply_options(common, spp);
         return [prepared = raytrace::prepare(scene, settings), settings](const View& view, Control& control) {
             return raytrace::render(prepared, view, settings, control);
         };

@@ -2,9 +2,9 @@
 
 #include "common/system/error.h"
 #include "common/system/stopwatch.h"
-#include "raytrace/film_keeper.h"
-#include "raytrace/pass.h"
-#include "raytrace/schedule.h"
+#include "raytrace/film_checkpoint.h"
+#include "raytrace/render_pass.h"
+#include "raytrace/sample_schedule.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@ namespace duet::raytrace {
 
 namespace {
 
-void check(const View& view, const Settings& settings) {
+void check(const View& view, const PathTracerSettings& settings) {
     if (view.width < 1 || view.height < 1)
         throw Error(message("picture of ", view.width, " x ", view.height, " pixels: expected at least 1 x 1"));
     if (settings.samples_per_pixel < 1)
@@ -21,10 +21,10 @@ void check(const View& view, const Settings& settings) {
     if (!settings.film.empty() &&
         (settings.aovs.depth || settings.aovs.normal || settings.aovs.albedo || settings.aovs.hit))
         throw Error("a film keeps no depth, normal, albedo or hit: expected none of these auxiliary pictures with it");
-    if (settings.first_sample > 0 && depends_on_count(settings.sampler))
+    if (settings.first_sample > 0 && needs_sample_count(settings.sampler))
         throw Error(message("samples of the ", sampler_name(settings.sampler),
                             " sampler depend on how many there are, and are not taken in parts: expected another"));
-    if (settings.adaptive && (settings.first_sample > 0 || depends_on_count(settings.sampler)))
+    if (settings.adaptive && (settings.first_sample > 0 || needs_sample_count(settings.sampler)))
         throw Error(
             "adaptive sampling gives pixels different numbers of samples: expected no shard, and a sampler whose "
             "samples do not depend on how many there are");
@@ -33,13 +33,13 @@ void check(const View& view, const Settings& settings) {
 
 // Returns the fraction of the work that is done after `samples` samples per pixel and `seconds`, as far as the
 // limits on samples and time determine it.
-double fraction_done(const Settings& settings, double samples, double seconds) {
+double fraction_done(const PathTracerSettings& settings, double samples, double seconds) {
     const double by_count = samples / static_cast<double>(settings.samples_per_pixel);
     const double by_time = settings.time_limit > 0 ? seconds / settings.time_limit : 0;
     return std::min(std::max(by_count, by_time), 1.0);
 }
 
-double all_promised(const Film& film) {
+double total_target(const Film& film) {
     double sum = 0;
     for (const Film::Pixel& pixel : film.pixels()) sum += pixel.target;
     return sum;
@@ -51,39 +51,41 @@ std::int64_t film_bytes(const Film& film) {
 
 } // namespace
 
-Rendering render(const Prepared& prepared, const View& view, const Settings& settings, Control& control) {
+Rendering render(const PathTracerScene& prepared, const View& view, const PathTracerSettings& settings,
+                 Control& control) {
     check(view, settings);
     Stopwatch watch;
     Rendering rendering;
     const RenderPlan plan(prepared.data(), view, settings);
     rendering.statistics.seconds.emplace_back("plan", watch.lap());
-    FilmKeeper keeper(plan.scene, view, settings);
-    Film& film = keeper.film();
+    FilmCheckpoint checkpoint(plan.scene, view, settings);
+    Film& film = checkpoint.film();
     AovBuffers aovs(plan, view, settings.aovs);
     RayCounts rays;
-    const PassTarget target{plan, view, settings, control, keeper, aovs, rays, rendering.statistics.first_invalid};
+    const PassContext context{plan,       view, settings, control,
+                              checkpoint, aovs, rays,     rendering.statistics.first_invalid};
 
     RenderStatistics& statistics = rendering.statistics;
     const auto pixels = static_cast<double>(film.pixels().size());
-    const std::int64_t begun = film.all_taken();
-    double finished = film.least_taken(), progress = 0; // finished: mean samples per pixel
+    const std::int64_t samples_at_start = film.total_samples_taken();
+    double finished = film.min_samples_taken(), progress = 0; // finished: mean samples per pixel
     for (;;) {
-        const Spent spent{watch.seconds(), film.all_taken() - begun};
+        const SpentBudget spent{watch.seconds(), film.total_samples_taken() - samples_at_start};
         if (film.complete() && !plan_pass(settings, spent, film)) break;
-        const double after = all_promised(film) - static_cast<double>(begun);
+        const double after = total_target(film) - static_cast<double>(samples_at_start);
         const double time = spent.samples > 0 ? spent.seconds * after / static_cast<double>(spent.samples) : 0;
-        const double next = std::max(progress, fraction_done(settings, all_promised(film) / pixels, time));
-        if (!render_pass(target, progress, next)) {
+        const double next = std::max(progress, fraction_done(settings, total_target(film) / pixels, time));
+        if (!render_pass(context, progress, next)) {
             statistics.interrupted = true;
             break;
         }
-        finished = static_cast<double>(film.all_taken()) / pixels;
+        finished = static_cast<double>(film.total_samples_taken()) / pixels;
         progress = next;
         ++statistics.passes;
     }
     statistics.seconds.emplace_back("trace", watch.lap());
     if (!settings.film.empty()) {
-        keeper.keep();
+        checkpoint.save();
         statistics.seconds.emplace_back("film", watch.lap());
     }
 

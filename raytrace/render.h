@@ -26,9 +26,9 @@ enum class Integrator {
     kNaive,       ///< BSDF sampling only, as in book 1 of Ray Tracing in One Weekend
     kDirect,      ///< emission and direct light: paths of at most one scattering event
     kUnshadowed,  ///< direct light by light sampling without visibility: the rasterizer's quantity
-    kLights,      ///< components of path: LightParts::emission and direct, Scene::lights and their shadows
-    kEnvironment, ///< component of path: LightParts::environment, the environment's light on diffuse surfaces
-    kReflection,  ///< component of path: LightParts::reflection, light through metal and glass at the first hit
+    kLights,      ///< components of path: LightComponents::emission and direct, Scene::lights and their shadows
+    kEnvironment, ///< component of path: LightComponents::environment, the environment's light on diffuse surfaces
+    kReflection,  ///< component of path: LightComponents::reflection, light through metal and glass at the first hit
     kNormal,      ///< the shading normal as a color: (n + 1)/2
     kAlbedo,      ///< base colors
 };
@@ -37,18 +37,19 @@ enum class Integrator {
 Integrator integrator(std::string_view name);
 std::string_view integrator_name(Integrator integrator);
 
-struct Settings : RenderSettings {
-    Settings() { samples_per_pixel = 64; }
+struct PathTracerSettings : RenderSettings {
+    PathTracerSettings() { samples_per_pixel = 64; }
     Integrator integrator = Integrator::kPath;
     SamplerKind sampler = SamplerKind::kSobol;
     FilterKind filter = FilterKind::kBox;
     int max_depth = 64; ///< maximum number of scattering events: 0 = emission only, 1 = direct light
     bool russian_roulette = true;
     BvhQuality bvh = BvhQuality::kDefault; ///< quality of the hierarchies; the image does not depend on it
-    bool environment = true; ///< see raster::Settings::environment
-    bool adaptive = false; ///< more samples where the error is larger; samples_per_pixel in the mean (schedule.h)
+    bool environment = true;               ///< see raster::RasterSettings::environment
+    bool adaptive =
+        false; ///< more samples where the error is larger; samples_per_pixel in the mean (sample_schedule.h)
     std::uint32_t first_sample = 0; ///< first of the samples_per_pixel samples; more than 0 in a shard
-    std::filesystem::path film;     ///< file of the film, which is continued if it exists (film_keeper.h); empty: none
+    std::filesystem::path film; ///< file of the film, which is continued if it exists (film_checkpoint.h); empty: none
     double film_interval = 60;      ///< seconds between two writes of that file
     double time_limit = 0;   ///< seconds; stops between passes; 0: none
     double error_limit = 0;  ///< estimated relMSE; stops between passes; 0: none
@@ -56,32 +57,33 @@ struct Settings : RenderSettings {
     /// Returns whether the film must estimate its error. Samples then fall into two replicates
     /// (common/sampling/sampler.h). Otherwise all samples of a pixel are stratified together, which reduces the
     /// error.
-    bool knows_error() const { return adaptive || error_limit > 0 || aovs.variance; }
-    std::uint32_t replicates() const { return knows_error() ? 2 : 1; }
+    bool estimates_error() const { return adaptive || error_limit > 0 || aovs.variance; }
+    std::uint32_t replicates() const { return estimates_error() ? 2 : 1; }
     /// Returns the sampler of a render with these settings.
     Sampler make_sampler() const { return {sampler, seed, samples_per_pixel, replicates()}; }
 };
 
-struct PreparedData; // raytrace/prepare.h
+struct PathTracerSceneData; // raytrace/path_tracer_scene.h
 
 /// Holds a scene prepared for any number of views. It refers to the scene, which must outlive it.
-class Prepared {
+class PathTracerScene {
 public:
-    explicit Prepared(std::shared_ptr<const PreparedData> data) : data_(std::move(data)) {}
-    const PreparedData& data() const { return *data_; }
+    explicit PathTracerScene(std::shared_ptr<const PathTracerSceneData> data) : data_(std::move(data)) {}
+    const PathTracerSceneData& data() const { return *data_; }
 
 private:
-    std::shared_ptr<const PreparedData> data_;
+    std::shared_ptr<const PathTracerSceneData> data_;
 };
 
-Prepared prepare(const Scene& scene, const Settings& settings);
-/// Renders one image. If `control` stops it, it returns the mean of the samples taken so far. With Settings::film it
-/// continues that film, bit-equal to a single run. Throws Error for invalid settings, for a film of another image,
-/// and for a film that cannot be written.
-Rendering render(const Prepared& prepared, const View& view, const Settings& settings, Control& control);
+PathTracerScene prepare(const Scene& scene, const PathTracerSettings& settings);
+/// Renders one image. If `control` stops it, it returns the mean of the samples taken so far. With
+/// PathTracerSettings::film it continues that film, bit-equal to a single run. Throws Error for invalid settings, for a
+/// film of another image, and for a film that cannot be written.
+Rendering render(const PathTracerScene& prepared, const View& view, const PathTracerSettings& settings,
+                 Control& control);
 
 /// Returns the first hit of one ray, for oracles and tests of hits. It is bit-equal to the hits of render's camera
 /// rays.
-Hit trace(const Prepared& prepared, const Ray& ray);
+Hit trace(const PathTracerScene& prepared, const Ray& ray);
 
 } // namespace duet::raytrace

@@ -14,14 +14,14 @@ namespace {
 // Rounds a point to float coordinates. Both pipelines then use exactly the same eye point, as they use the same float
 // vertices. The code uses conversion instructions instead of casts to float and back, because GCC 12 removes such a
 // pair of casts when it vectorizes; rays through the lens then no longer passed through their origin.
-Vec3d rounded(Vec3d p) {
+Vec3d round_to_float(Vec3d p) {
     const auto one = [](double x) {
         return _mm_cvtsd_f64(_mm_cvtss_sd(_mm_setzero_pd(), _mm_cvtsd_ss(_mm_setzero_ps(), _mm_set_sd(x))));
     };
     return {one(p.x), one(p.y), one(p.z)};
 }
 
-Vec3T<DoubleBatch> rounded(const Vec3T<DoubleBatch>& p) {
+Vec3T<DoubleBatch> round_to_float(const Vec3T<DoubleBatch>& p) {
     const auto one = [](DoubleBatch x) {
         alignas(64) std::array<float, kDoubleLanes> floats;
         store_floats(x, floats.data());
@@ -81,7 +81,7 @@ CameraModel::CameraModel(const View& view)
       shutter_open_(view.camera.shutter_open), shutter_close_(view.camera.shutter_close) {
     const Camera& camera = view.camera;
     const bool orthographic = camera.projection == Camera::Projection::kOrthographic;
-    const Vec3d eye = rounded(camera.eye);
+    const Vec3d eye = round_to_float(camera.eye);
     const Vec3d forward = normalize(camera.look_at - eye);
     right_ = normalize(cross(forward, usable_up(forward, camera.up)));
     up_ = cross(right_, forward);
@@ -95,7 +95,7 @@ CameraModel::CameraModel(const View& view)
     center_.forward = forward;
     center_.near = camera.near_distance();
     if (orthographic) {
-        center_.origin = rounded(eye + corner);
+        center_.origin = round_to_float(eye + corner);
         center_.origin_dx = dx;
         center_.origin_dy = dy;
         center_.direction = forward;
@@ -109,7 +109,7 @@ CameraModel::CameraModel(const View& view)
 }
 
 // Holds a ray before its rounding to float. T is double or a batch of doubles.
-template <typename T> struct CameraModel::Exact {
+template <typename T> struct CameraModel::UnroundedRay {
     Vec3T<T> origin, direction;
     T t_min;
 };
@@ -117,13 +117,13 @@ template <typename T> struct CameraModel::Exact {
 // Returns the offset of a lens point from the lens center. The lens point itself is rounded to float coordinates.
 template <typename T> Vec3T<T> CameraModel::lens_offset(Vec2T<T> on_disk) const {
     const Vec2T<T> lens = on_disk * T(aperture_radius_);
-    const Vec3T<T> origin = spread<T>(center_.origin);
-    return rounded(origin + spread<T>(right_) * lens.x + spread<T>(up_) * lens.y) - origin;
+    const Vec3T<T> origin = broadcast<T>(center_.origin);
+    return round_to_float(origin + broadcast<T>(right_) * lens.x + broadcast<T>(up_) * lens.y) - origin;
 }
 
 // The plane of focus is the same for all lens points: the ray of a pixel passes through the point at
 // focus_distance · direction from the lens center. Because of rounding, the lens offset itself has a tiny depth.
-Pinhole CameraModel::through(Vec2d lens_sample) const {
+Pinhole CameraModel::pinhole(Vec2d lens_sample) const {
     if (!has_lens()) return center_;
     const Vec3d offset = lens_offset(Vec2d(concentric_disk(Vec2(lens_sample))));
     const double depth = focus_distance_ - dot(offset, center_.forward);
@@ -136,49 +136,49 @@ Pinhole CameraModel::through(Vec2d lens_sample) const {
     return view;
 }
 
-// Computes the same ray as through(lens_sample).ray(pixel), but without the matrix. `on_disk` is the lens sample mapped
+// Computes the same ray as pinhole(lens_sample).ray(pixel), but without the matrix. `on_disk` is the lens sample mapped
 // to the unit disk.
-template <typename T> CameraModel::Exact<T> CameraModel::exact_ray(Vec2T<T> pixel, Vec2T<T> on_disk) const {
-    Vec3T<T> d = spread<T>(center_.direction) + spread<T>(center_.direction_dx) * pixel.x +
-                 spread<T>(center_.direction_dy) * pixel.y;
+template <typename T> CameraModel::UnroundedRay<T> CameraModel::unrounded_ray(Vec2T<T> pixel, Vec2T<T> on_disk) const {
+    Vec3T<T> d = broadcast<T>(center_.direction) + broadcast<T>(center_.direction_dx) * pixel.x +
+                 broadcast<T>(center_.direction_dy) * pixel.y;
     Vec3T<T> origin;
     if (has_lens()) {
         const Vec3T<T> offset = lens_offset(on_disk);
-        d = (d * T(focus_distance_) - offset) / (T(focus_distance_) - dot(offset, spread<T>(center_.forward)));
-        origin = spread<T>(center_.origin) + offset;
+        d = (d * T(focus_distance_) - offset) / (T(focus_distance_) - dot(offset, broadcast<T>(center_.forward)));
+        origin = broadcast<T>(center_.origin) + offset;
     } else {
-        origin = spread<T>(center_.origin) + spread<T>(center_.origin_dx) * pixel.x +
-                 spread<T>(center_.origin_dy) * pixel.y;
+        origin = broadcast<T>(center_.origin) + broadcast<T>(center_.origin_dx) * pixel.x +
+                 broadcast<T>(center_.origin_dy) * pixel.y;
     }
     const T per_depth = length(d); // distance along the ray per unit of depth
     return {origin, d / per_depth, T(center_.near) * per_depth};
 }
 
 Ray CameraModel::ray(Vec2d pixel, Vec2d lens_sample, double time_sample) const {
-    const Exact<double> exact =
-        exact_ray<double>(pixel, has_lens() ? Vec2d(concentric_disk(Vec2(lens_sample))) : Vec2d());
+    const UnroundedRay<double> unrounded =
+        unrounded_ray<double>(pixel, has_lens() ? Vec2d(concentric_disk(Vec2(lens_sample))) : Vec2d());
     Ray ray;
-    ray.origin = Vec3(exact.origin);
-    ray.direction = Vec3(exact.direction);
-    ray.t_min = static_cast<float>(exact.t_min);
+    ray.origin = Vec3(unrounded.origin);
+    ray.direction = Vec3(unrounded.direction);
+    ray.t_min = static_cast<float>(unrounded.t_min);
     ray.time = static_cast<float>(time(time_sample));
     return ray;
 }
 
-void CameraModel::rays(std::span<const Point> points, std::span<Ray> rays) const {
+void CameraModel::rays(std::span<const Sample> samples, std::span<Ray> rays) const {
     using Floats = FloatBatch<kSimdLanes>;
     constexpr std::size_t kLanes = std::max(kSimdLanes, kDoubleLanes);
     using Row = std::array<float, kLanes>;
     std::size_t done = 0;
-    for (; points.size() - done >= kLanes; done += kLanes) {
-        const auto some = points.subspan(done, kLanes);
+    for (; samples.size() - done >= kLanes; done += kLanes) {
+        const auto batch = samples.subspan(done, kLanes);
         alignas(64) Row lens_x{}, lens_y{};
         alignas(64) std::array<double, kLanes> x, y;
         for (std::size_t i = 0; i < kLanes; ++i) {
-            lens_x[i] = some[i].lens.x;
-            lens_y[i] = some[i].lens.y;
-            x[i] = some[i].pixel.x;
-            y[i] = some[i].pixel.y;
+            lens_x[i] = batch[i].lens.x;
+            lens_y[i] = batch[i].lens.y;
+            x[i] = batch[i].pixel.x;
+            y[i] = batch[i].pixel.y;
         }
         if (has_lens())
             for (std::size_t i = 0; i < kLanes; i += kSimdLanes) {
@@ -187,28 +187,28 @@ void CameraModel::rays(std::span<const Point> points, std::span<Ray> rays) const
                 disk.x.store_aligned(&lens_x[i]);
                 disk.y.store_aligned(&lens_y[i]);
             }
-        alignas(64) std::array<Row, 7> numbers;
+        alignas(64) std::array<Row, 7> components;
         for (std::size_t i = 0; i < kLanes; i += kDoubleLanes) {
-            const auto exact =
-                exact_ray<DoubleBatch>({DoubleBatch::load_aligned(&x[i]), DoubleBatch::load_aligned(&y[i])},
-                                       {load_doubles(&lens_x[i]), load_doubles(&lens_y[i])});
+            const auto unrounded =
+                unrounded_ray<DoubleBatch>({DoubleBatch::load_aligned(&x[i]), DoubleBatch::load_aligned(&y[i])},
+                                           {load_doubles(&lens_x[i]), load_doubles(&lens_y[i])});
             for (std::size_t axis = 0; axis < 3; ++axis) {
-                store_floats(exact.origin[axis], &numbers[axis][i]);
-                store_floats(exact.direction[axis], &numbers[3 + axis][i]);
+                store_floats(unrounded.origin[axis], &components[axis][i]);
+                store_floats(unrounded.direction[axis], &components[3 + axis][i]);
             }
-            store_floats(exact.t_min, &numbers[6][i]);
+            store_floats(unrounded.t_min, &components[6][i]);
         }
         for (std::size_t i = 0; i < kLanes; ++i) {
             Ray& ray = rays[done + i];
-            ray.origin = {numbers[0][i], numbers[1][i], numbers[2][i]};
-            ray.direction = {numbers[3][i], numbers[4][i], numbers[5][i]};
-            ray.t_min = numbers[6][i];
+            ray.origin = {components[0][i], components[1][i], components[2][i]};
+            ray.direction = {components[3][i], components[4][i], components[5][i]};
+            ray.t_min = components[6][i];
             ray.t_max = kInfinity;
-            ray.time = static_cast<float>(time(static_cast<double>(some[i].time)));
+            ray.time = static_cast<float>(time(static_cast<double>(batch[i].time)));
         }
     }
-    for (; done < points.size(); ++done)
-        rays[done] = ray(points[done].pixel, Vec2d(points[done].lens), static_cast<double>(points[done].time));
+    for (; done < samples.size(); ++done)
+        rays[done] = ray(samples[done].pixel, Vec2d(samples[done].lens), static_cast<double>(samples[done].time));
 }
 
 double CameraModel::time(double time_sample) const { return lerp(shutter_open_, shutter_close_, time_sample); }

@@ -55,26 +55,26 @@ public:
     explicit CameraModel(const View& view);
 
     /// Returns the view through the lens point of a sample in [0, 1)². The sample (0.5, 0.5) is the lens center.
-    Pinhole through(Vec2d lens_sample = {0.5, 0.5}) const;
+    Pinhole pinhole(Vec2d lens_sample = {0.5, 0.5}) const;
     /// Returns a camera ray for a pixel position, a lens sample in [0, 1)² and a time sample in [0, 1). The ray is
     /// computed in double and then rounded to float.
     Ray ray(Vec2d pixel, Vec2d lens_sample = {0.5, 0.5}, double time_sample = 0) const;
     /// A camera sample holds the arguments of ray().
-    struct Point {
+    struct Sample {
         Vec2d pixel;
         Vec2 lens{0.5f, 0.5f};
         float time = 0;
     };
-    /// Computes the rays of all points with SIMD; `rays` must have at least as many elements as `points`. The results
+    /// Computes the rays of all samples with SIMD; `rays` must have at least as many elements as `samples`. The results
     /// equal those of ray() bit for bit.
-    void rays(std::span<const Point> points, std::span<Ray> rays) const;
+    void rays(std::span<const Sample> samples, std::span<Ray> rays) const;
     /// Maps a time sample in [0, 1] to a time between shutter_open and shutter_close.
     double time(double time_sample) const;
     bool has_lens() const { return aperture_radius_ > 0; }
 
 private:
-    template <typename T> struct Exact;
-    template <typename T> Exact<T> exact_ray(Vec2T<T> pixel, Vec2T<T> on_disk) const;
+    template <typename T> struct UnroundedRay;
+    template <typename T> UnroundedRay<T> unrounded_ray(Vec2T<T> pixel, Vec2T<T> on_disk) const;
     template <typename T> Vec3T<T> lens_offset(Vec2T<T> on_disk) const;
 
     Pinhole center_;

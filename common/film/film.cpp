@@ -37,26 +37,26 @@ Rgbd Film::variance(int x, int y) const {
 
 std::uint32_t Film::samples(int x, int y) const { return pixels_(x, y).count[0] + pixels_(x, y).count[1]; }
 
-std::uint32_t Film::taken(int x, int y) const { return samples(x, y) + invalid(x, y); }
+std::uint32_t Film::samples_taken(int x, int y) const { return samples(x, y) + invalid(x, y); }
 
-std::uint32_t Film::least_taken() const {
+std::uint32_t Film::min_samples_taken() const {
     std::uint32_t least = std::numeric_limits<std::uint32_t>::max();
     for (int y = 0; y < height(); ++y)
-        for (int x = 0; x < width(); ++x) least = min(least, taken(x, y));
+        for (int x = 0; x < width(); ++x) least = min(least, samples_taken(x, y));
     return least;
 }
 
-std::int64_t Film::all_taken() const {
+std::int64_t Film::total_samples_taken() const {
     std::int64_t sum = 0;
     for (int y = 0; y < height(); ++y)
-        for (int x = 0; x < width(); ++x) sum += taken(x, y);
+        for (int x = 0; x < width(); ++x) sum += samples_taken(x, y);
     return sum;
 }
 
 bool Film::complete() const {
     for (int y = 0; y < height(); ++y)
         for (int x = 0; x < width(); ++x)
-            if (taken(x, y) < pixels_(x, y).target) return false;
+            if (samples_taken(x, y) < pixels_(x, y).target) return false;
     return true;
 }
 
@@ -90,13 +90,13 @@ std::int64_t Film::invalid_samples() const {
 namespace {
 
 // Returns the maximum of each channel over the up to eight neighbors of a pixel.
-Rgbd brightest_neighbour(const Image<Rgbd>& means, int x, int y) {
-    Rgbd most;
+Rgbd brightest_neighbor(const Image<Rgbd>& means, int x, int y) {
+    Rgbd brightest;
     for (int j = std::max(y - 1, 0); j <= std::min(y + 1, means.height() - 1); ++j)
         for (int i = std::max(x - 1, 0); i <= std::min(x + 1, means.width() - 1); ++i)
             if (i != x || j != y)
-                for (std::size_t c = 0; c < 3; ++c) most[c] = std::max(most[c], means(i, j)[c]);
-    return most;
+                for (std::size_t c = 0; c < 3; ++c) brightest[c] = std::max(brightest[c], means(i, j)[c]);
+    return brightest;
 }
 
 } // namespace
@@ -112,10 +112,10 @@ double Film::estimated_relmse() const {
             const Rgbd m = means(x, y), v = variance(x, y);
             if (!is_finite(v)) continue;
             ++known;
-            const Rgbd around = brightest_neighbour(means, x, y);
+            const Rgbd neighbor_max = brightest_neighbor(means, x, y);
             for (std::size_t c = 0; c < 3; ++c) {
                 const double lower = std::max(m[c] - std::sqrt(v[c]), 0.0);
-                sum += v[c] / (sqr(std::min(m[c], std::max(around[c], lower))) + 0.01);
+                sum += v[c] / (sqr(std::min(m[c], std::max(neighbor_max[c], lower))) + 0.01);
             }
         }
     return 2 * known >= pixels_.size() ? sum / (3.0 * static_cast<double>(known)) : -1;

@@ -31,11 +31,11 @@ public:
     Rgbd mean(int x, int y) const;
     /// Returns the number of samples taken for a pixel, including the dropped ones. If samples are taken in order, this
     /// is the index of the next sample.
-    std::uint32_t taken(int x, int y) const;
-    /// Returns the minimum of taken() over all pixels.
-    std::uint32_t least_taken() const;
-    /// Returns the sum of taken() over all pixels.
-    std::int64_t all_taken() const;
+    std::uint32_t samples_taken(int x, int y) const;
+    /// Returns the minimum of samples_taken() over all pixels.
+    std::uint32_t min_samples_taken() const;
+    /// Returns the sum of samples_taken() over all pixels.
+    std::int64_t total_samples_taken() const;
     /// Returns whether every pixel has reached its target number of samples (see Pixel::target).
     bool complete() const;
     /// Returns the estimated variance of mean(x, y) for each channel, or infinity if a replicate has no sample.

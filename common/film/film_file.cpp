@@ -44,18 +44,18 @@ private:
     const ExrFile& file_;
 };
 
-std::uint32_t number(const std::filesystem::path& path, const std::string& text) {
+std::uint32_t parse_number(const std::filesystem::path& path, const std::string& text) {
     std::uint32_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size())
-        throw Error(message(path.string(), ": ", kPrefix, kFirstSample, ": found ", text, ", expected a number"));
+        throw Error(message(path.string(), ": ", kPrefix, kFirstSample, ": found ", text, ", expected a parse_number"));
     return value;
 }
 
 } // namespace
 
-void write_film(const std::filesystem::path& path, const KeptFilm& kept) {
-    const Film& film = kept.film;
+void write_film(const std::filesystem::path& path, const StoredFilm& stored) {
+    const Film& film = stored.film;
     std::vector<ExrChannel> channels = rgb_channels("", film.image());
     for (std::size_t r = 0; r < Film::kReplicates; ++r) {
         for (std::size_t c = 0; c < 3; ++c)
@@ -68,16 +68,16 @@ void write_film(const std::filesystem::path& path, const KeptFilm& kept) {
     }
     channels.push_back(integers("invalid", film, [](const Film::Pixel& pixel) { return pixel.invalid; }));
     channels.push_back(integers("target", film, [](const Film::Pixel& pixel) { return pixel.target; }));
-    std::vector<ExrAttribute> attributes{{kPrefix + kFirstSample, std::to_string(kept.first_sample)}};
-    for (const auto& [name, value] : kept.settings) attributes.push_back({kPrefix + name, value});
+    std::vector<ExrAttribute> attributes{{kPrefix + kFirstSample, std::to_string(stored.first_sample)}};
+    for (const auto& [name, value] : stored.settings) attributes.push_back({kPrefix + name, value});
     write_exr(path, film.width(), film.height(), channels, attributes);
 }
 
-KeptFilm read_film(const std::filesystem::path& path) {
+StoredFilm read_film(const std::filesystem::path& path) {
     const ExrFile file = read_exr(path);
     const Channels channels(path, file);
-    KeptFilm kept{Film(file.width, file.height), {}, 0};
-    Image<Film::Pixel>& pixels = kept.film.pixels();
+    StoredFilm stored{Film(file.width, file.height), {}, 0};
+    Image<Film::Pixel>& pixels = stored.film.pixels();
     for (std::size_t r = 0; r < Film::kReplicates; ++r) {
         for (std::size_t c = 0; c < 3; ++c) {
             const auto &high = channels[sum_name(r, c, true)], &low = channels[sum_name(r, c, false)];
@@ -100,22 +100,23 @@ KeptFilm read_film(const std::filesystem::path& path) {
         if (!name.starts_with(kPrefix)) continue;
         const std::string setting = name.substr(kPrefix.size());
         if (setting == kFirstSample)
-            kept.first_sample = number(path, value);
+            stored.first_sample = parse_number(path, value);
         else
-            kept.settings.push_back({setting, value});
+            stored.settings.push_back({setting, value});
     }
-    return kept;
+    return stored;
 }
 
-void check_same_picture(const std::string& name, const KeptFilm& found, const KeptFilm& expected) {
-    const auto check = [&](const std::string& what, const std::string& its, const std::string& wanted) {
-        if (its != wanted)
-            throw Error(message(name, ": a film of another picture: ", what, ": found ", its, ", expected ", wanted));
+void check_same_image(const std::string& name, const StoredFilm& found, const StoredFilm& expected) {
+    const auto check = [&](const std::string& what, const std::string& found_value, const std::string& expected_value) {
+        if (found_value != expected_value)
+            throw Error(message(name, ": a film of another picture: ", what, ": found ", found_value, ", expected ",
+                                expected_value));
     };
     const auto size = [](const Film& film) { return message(film.width(), " x ", film.height()); };
     check("size", size(found.film), size(expected.film));
     for (const auto& [setting, value] : expected.settings) {
-        const auto same_name = [&, &setting = setting](const KeptFilm::Setting& s) { return s.name == setting; };
+        const auto same_name = [&, &setting = setting](const StoredFilm::Setting& s) { return s.name == setting; };
         const auto other = std::find_if(found.settings.begin(), found.settings.end(), same_name);
         check(setting, other == found.settings.end() ? "none" : other->value, value);
     }

@@ -11,7 +11,7 @@
 namespace duet {
 
 /// A film together with the settings that it was rendered with.
-struct KeptFilm {
+struct StoredFilm {
     /// A setting that determines the samples, for example {"seed", "0"}.
     struct Setting {
         std::string name, value;
@@ -20,7 +20,8 @@ struct KeptFilm {
 
     Film film;
     std::vector<Setting> settings;  ///< settings with distinct names, in any order
-    std::uint32_t first_sample = 0; ///< index of every pixel's first sample; Film::taken is the number of samples
+    std::uint32_t first_sample =
+        0; ///< index of every pixel's first sample; Film::samples_taken is the number of samples
 };
 
 /// Writes a film as an EXR file that any viewer can display: channels R, G and B are the means of the pixels. Further
@@ -28,14 +29,14 @@ struct KeptFilm {
 /// sumN.C.high and sumN.C.low, where N is the replicate and C is R, G or B; the other channels are countN, invalid and
 /// target. The settings are text attributes named `duet:film.NAME`. The file is written atomically: it is complete or
 /// absent. Throws an Error (exit code 1) if writing fails.
-void write_film(const std::filesystem::path& path, const KeptFilm& kept);
+void write_film(const std::filesystem::path& path, const StoredFilm& stored);
 
 /// Reads a film file. The film has exactly the bits that were written. Throws an Error that names the file and the
 /// missing or wrong data if the file is not a film.
-KeptFilm read_film(const std::filesystem::path& path);
+StoredFilm read_film(const std::filesystem::path& path);
 
 /// Checks that two films belong to the same image. Throws an Error for the first difference in size or in one of the
 /// settings of `expected`; its message contains `name`, the value found and the value expected.
-void check_same_picture(const std::string& name, const KeptFilm& found, const KeptFilm& expected);
+void check_same_image(const std::string& name, const StoredFilm& found, const StoredFilm& expected);
 
 } // namespace duet

@@ -20,7 +20,7 @@ struct AovSet {
 
 /// Each flag enables a shortcut that skips work which cannot change the expected image; `compare skip` verifies this.
 /// All shortcuts are on by default. A pipeline reads the flags that it supports once, before its loops.
-struct Skips {
+struct SkipFlags {
     bool lens = true;          ///< skips lens samples for a pinhole camera
     bool motion = true;        ///< skips time samples where nothing moves
     bool environment = true;   ///< skips a black environment
@@ -42,17 +42,17 @@ struct RenderSettings {
     int threads = 0; ///< number of threads; 0: all available
     std::uint64_t seed = 0;
     AovSet aovs;
-    Skips skips;
+    SkipFlags skips;
 };
 
 /// Reports work that a render skipped because the scene does not need it. Either `why` or `count` describes it.
-struct Skipped {
+struct SkippedWork {
     std::string what, why;
     std::int64_t count = -1; ///< number of skipped items; −1: not counted, `why` gives the reason
 };
 
 /// These statistics are sums over all bounding volume hierarchies (BVHs) of the path tracer.
-struct HierarchyStatistics {
+struct BvhStatistics {
     std::string quality;         ///< "default" or "high"; empty: there is no BVH
     std::int64_t nodes = 0;      ///< number of wide nodes
     std::int64_t references = 0; ///< primitives and instances in leaves; a split primitive counts once per leaf
@@ -67,7 +67,7 @@ struct InvalidSample {
     friend auto operator<=>(const InvalidSample&, const InvalidSample&) = default;
 };
 /// Returns the earlier of two samples. If one of them is empty, returns the other.
-inline std::optional<InvalidSample> first_of(std::optional<InvalidSample> a, std::optional<InvalidSample> b) {
+inline std::optional<InvalidSample> earlier_sample(std::optional<InvalidSample> a, std::optional<InvalidSample> b) {
     return !a || (b && *b < *a) ? b : a;
 }
 
@@ -82,8 +82,8 @@ struct RenderStatistics {
     std::int64_t invalid_samples = 0; ///< dropped samples: NaN, infinite or negative
     std::optional<InvalidSample> first_invalid; ///< first invalid sample of this render (path tracer only)
     double estimated_relmse = -1;     ///< see Film::estimated_relmse; −1: not estimated
-    HierarchyStatistics bvh;
-    std::vector<Skipped> skipped;
+    BvhStatistics bvh;
+    std::vector<SkippedWork> skipped;
     std::vector<std::string> approximations; ///< differences from the path-traced reference, one sentence each
     bool interrupted = false;
 };
@@ -100,7 +100,7 @@ struct Rendering {
     Image<std::uint32_t> samples; ///< number of samples taken
     // The rasterizer fills these images instead of radiance where raster::Output requests them.
     Image<Rgba8> srgb;   ///< 8 bits per channel, sRGB-encoded, opaque
-    ImageFloat nearness; ///< reversed depth near / depth, in (0, 1]; 0 on a miss
+    ImageFloat reversed_depth; ///< reversed depth near / depth, in (0, 1]; 0 on a miss
     RenderStatistics statistics;
 };
 

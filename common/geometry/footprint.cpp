@@ -6,8 +6,8 @@ void set_footprint(const RayFootprint& footprint, Vec3 direction, SurfacePoint& 
     const Vec3d n(point.ng), d(direction), dpdu(point.dpdu), dpdv(point.dpdv);
     const double det = dot(n, cross(dpdu, dpdv));
     if (det == 0) return;
-    const auto uv_step = [&](Vec3 beside) {
-        const Vec3d q(beside);
+    const auto uv_step = [&](Vec3 offset) {
+        const Vec3d q(offset);
         const Vec3d dp = q - d * (dot(n, q) / dot(n, d));
         return Vec2(Vec2d(dot(n, cross(dp, dpdv)), dot(n, cross(dpdu, dp))) * (1 / det));
     };

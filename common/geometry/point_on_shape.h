@@ -2,7 +2,7 @@
 // type, so that one source computes one point (surface_point) or the points of a SIMD batch of paths.
 #pragma once
 
-#include "common/geometry/smooth_lift.h"
+#include "common/geometry/shading_terminator.h"
 #include "common/geometry/surface_point.h"
 
 #include <array>
@@ -16,9 +16,9 @@ template <typename T> struct PointOnShapeT {
     Vec3T<T> magnitude;  ///< sum of the magnitudes of p's terms, per axis; the error of p is a multiple of it
     Vec3T<T> ng;         ///< of any length
     bool unit = false;   ///< whether ng has unit length
-    bool smooth = false; ///< whether the shape has vertex normals; else ns is ng, and lift is (0, 0, 0)
+    bool smooth = false; ///< whether the shape has vertex normals; else ns is ng, and terminator_offset is (0, 0, 0)
     Vec3T<T> ns;         ///< of any length
-    Vec3T<T> lift;       ///< vector to the smooth surface on the viewer's side (see lift_to_smooth)
+    Vec3T<T> terminator_offset; ///< vector to the smooth surface on the viewer's side (see shading_terminator_offset)
 };
 
 /// Returns the point corner + u·du + v·dv of a triangle or, where `quad` holds, of a quad.
@@ -44,7 +44,7 @@ inline PointOnShapeT<T> point_on_smooth_triangle(const std::array<Vec3T<T>, 3>& 
     const T w = T(1.0) - u - v;
     point.smooth = true;
     point.ns = normals[0] * w + normals[1] * u + normals[2] * v;
-    point.lift = lift_to_smooth<T>(point.p, vertices, normals, {w, u, v}, point.ng, direction);
+    point.terminator_offset = shading_terminator_offset<T>(point.p, vertices, normals, {w, u, v}, point.ng, direction);
     return point;
 }
 
@@ -64,15 +64,15 @@ inline PointOnShapeT<T> point_on_sphere(const Vec3T<T>& center, T radius, const 
 /// Twice the bound of one rounding to float.
 inline constexpr double kPointRounding = 2 * static_cast<double>(kRoundoff<float>);
 
-/// Sets the shading normal, and the shading-terminator fix by the lift. The other fields must have been set. T is float
+/// Sets the shading normal, and the shading-terminator fix by the offset to the smooth surface. The other fields must have been set. T is float
 /// or a batch of floats.
-template <typename T> inline void set_shading_normal(SurfaceGeometryT<T>& point, Vec3T<T> ns, Vec3T<T> lift) {
+template <typename T> inline void set_shading_normal(SurfaceGeometryT<T>& point, Vec3T<T> ns, Vec3T<T> offset) {
     ns = select(is_finite(ns), ns, point.ng);
     point.ns = select(dot(ns, point.ng) < T(0), -ns, ns);
-    // A lift within the error of p is ignored.
-    const MaskOf<T> bulges = abs(dot(lift, point.ng)) > dot(abs(point.ng), point.p_error);
-    point.horizon = select(bulges, point.ns, point.ng);
-    point.lift = select(bulges, lift, Vec3T<T>(T(0), T(0), T(0)));
+    // An offset within the error of p is ignored.
+    const MaskOf<T> bulges = abs(dot(offset, point.ng)) > dot(abs(point.ng), point.p_error);
+    point.terminator_normal = select(bulges, point.ns, point.ng);
+    point.terminator_offset = select(bulges, offset, Vec3T<T>(T(0), T(0), T(0)));
 }
 
 /// Returns the surface geometry of a point whose object space is the world space.
@@ -81,7 +81,7 @@ template <typename T> inline auto surface_geometry(const PointOnShapeT<T>& local
     using F = decltype(n.x);
     SurfaceGeometryT<F> point{
         to_floats(local.p), to_floats(local.magnitude * T(kPointRounding)), n, n, n, Vec3T<F>(F(0), F(0), F(0))};
-    if (local.smooth) set_shading_normal(point, to_floats(normalize(local.ns)), to_floats(local.lift));
+    if (local.smooth) set_shading_normal(point, to_floats(normalize(local.ns)), to_floats(local.terminator_offset));
     return point;
 }
 

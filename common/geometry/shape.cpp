@@ -27,13 +27,13 @@ Box3d sphere_bounds(const Sphere& sphere, const Mat4d& m) {
 }
 
 // Rounds a box outward to float. The box is enlarged by the rounding error of points that are transformed in float.
-Box3 rounded_outwards(const Box3d& box) {
+Box3 rounded_outward(const Box3d& box) {
     Box3 result;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const double magnitude = std::max(std::abs(box.low[axis]), std::abs(box.high[axis]));
-        const double room = magnitude * static_cast<double>(gamma_bound(4));
-        result.low[axis] = next_down(static_cast<float>(box.low[axis] - room));
-        result.high[axis] = next_up(static_cast<float>(box.high[axis] + room));
+        const double margin = magnitude * static_cast<double>(gamma_bound(4));
+        result.low[axis] = next_down(static_cast<float>(box.low[axis] - margin));
+        result.high[axis] = next_up(static_cast<float>(box.high[axis] + margin));
     }
     return result;
 }
@@ -42,7 +42,7 @@ Box3 rounded_outwards(const Box3d& box) {
 
 Box3 bounds(const Shape& shape, const Mat4& transform) {
     const Mat4d m(transform);
-    if (const auto* sphere = std::get_if<Sphere>(&shape)) return rounded_outwards(sphere_bounds(*sphere, m));
+    if (const auto* sphere = std::get_if<Sphere>(&shape)) return rounded_outward(sphere_bounds(*sphere, m));
     Box3d box;
     const auto extend = [&](Vec3 p) { box.extend(transform_point(m, Vec3d(p))); };
     if (const auto* mesh = std::get_if<Mesh>(&shape))
@@ -50,7 +50,7 @@ Box3 bounds(const Shape& shape, const Mat4& transform) {
     else
         for (const Quad& quad : std::get<QuadList>(shape).quads)
             for (const Vec3& p : corners(quad)) extend(p);
-    return rounded_outwards(box);
+    return rounded_outward(box);
 }
 
 QuadList box_quads(Vec3 low, Vec3 high) {
@@ -81,7 +81,7 @@ bool is_closed_outwards(const Mesh& mesh) {
     // Each connected component must enclose a positive volume. A component with reversed orientation would show its
     // back faces to the outside. The components are found by union-find over the edges.
     std::vector<std::uint32_t> parent = merged;
-    const auto part = [&](std::uint32_t i) {
+    const auto component = [&](std::uint32_t i) {
         while (parent[i] != i) i = parent[i] = parent[parent[i]];
         return i;
     };
@@ -92,19 +92,19 @@ bool is_closed_outwards(const Mesh& mesh) {
             const std::uint32_t from = merged[t[i]], to = merged[t[(i + 1) % 3]];
             if (from == to) continue;
             edges.emplace_back(from, to);
-            parent[part(from)] = part(to);
+            parent[component(from)] = component(to);
         }
     // The divergence theorem gives six times the volume of each component.
     std::vector<double> volume(mesh.positions.size(), 0.0);
     for (const auto& t : mesh.triangles) {
-        const std::uint32_t whole = part(merged[t[0]]);
+        const std::uint32_t root = component(merged[t[0]]);
         // Coordinates relative to a vertex of the component avoid cancellation far from the world's origin.
-        const Vec3d origin(mesh.positions[whole]);
+        const Vec3d origin(mesh.positions[root]);
         const auto corner = [&](std::size_t i) { return Vec3d(mesh.positions[t[i]]) - origin; };
-        volume[whole] += dot(corner(0), cross(corner(1), corner(2)));
+        volume[root] += dot(corner(0), cross(corner(1), corner(2)));
     }
     for (const auto& [from, to] : edges)
-        if (!(volume[part(from)] > 0)) return false;
+        if (!(volume[component(from)] > 0)) return false;
     std::sort(edges.begin(), edges.end());
     if (std::adjacent_find(edges.begin(), edges.end()) != edges.end()) return false;
     reversed.reserve(edges.size());

@@ -5,8 +5,8 @@
 namespace duet {
 
 std::optional<float> intersect_sphere(const Ray& ray, const Sphere& sphere) {
-    const SphereTest<double> test(Vec3d(sphere.center) - Vec3d(ray.origin), SphereLine<double>(Vec3d(ray.direction)),
-                                  static_cast<double>(sphere.radius));
+    const SphereTest<double> test(Vec3d(sphere.center) - Vec3d(ray.origin),
+                                  SphereTestLine<double>(Vec3d(ray.direction)), static_cast<double>(sphere.radius));
     if (!(test.discriminant >= 0)) return std::nullopt;
     const auto [near, far] = test.roots();
     const float t_near = static_cast<float>(near), t_far = static_cast<float>(far);
@@ -27,8 +27,8 @@ Vec2 sphere_uv(Vec3 n) {
 Vec3 sphere_direction(Vec2 uv) {
     const double longitude = (static_cast<double>(uv.x) - 0.5) * 2 * kPiDouble;
     const double latitude = (static_cast<double>(uv.y) - 0.5) * kPiDouble;
-    const double ring = std::cos(latitude);
-    return Vec3(Vec3d(ring * std::sin(longitude), std::sin(latitude), ring * std::cos(longitude)));
+    const double ring_radius = std::cos(latitude);
+    return Vec3(Vec3d(ring_radius * std::sin(longitude), std::sin(latitude), ring_radius * std::cos(longitude)));
 }
 
 // An environment map is seen from inside, which exchanges left and right. Negating z mirrors the direction accordingly.

@@ -12,14 +12,13 @@ namespace duet {
 
 /// A sphere line stores the direction of a line for tests against many spheres. d·d and its reciprocal are computed
 /// once.
-template <typename T> struct SphereLine {
+template <typename T> struct SphereTestLine {
     Vec3T<T> direction;
     T squared, inverse; ///< d·d and its reciprocal
 
-    explicit SphereLine(const Vec3T<T>& d) : direction(d), squared(dot(d, d)), inverse(T(1) / squared) {}
+    explicit SphereTestLine(const Vec3T<T>& d) : direction(d), squared(dot(d, d)), inverse(T(1) / squared) {}
     /// Broadcasts a line to all lanes of a batch.
-    explicit SphereLine(const SphereLine<double>& one)
-        requires(!std::is_same_v<T, double>)
+    explicit SphereTestLine(const SphereTestLine<double>& one) requires(!std::is_same_v<T, double>)
         : direction(T(one.direction.x), T(one.direction.y), T(one.direction.z)), squared(one.squared),
           inverse(one.inverse) {}
 };
@@ -37,7 +36,7 @@ template <typename T> struct SphereTest {
     T a, over_a, b, c; ///< coefficients of the quadratic equation; over_a = 1/a
     T discriminant;    ///< discriminant divided by a; the line hits the sphere if it is >= 0, so NaN is a miss
 
-    SphereTest(const Vec3T<T>& to_center, const SphereLine<T>& line, T radius)
+    SphereTest(const Vec3T<T>& to_center, const SphereTestLine<T>& line, T radius)
         : a(line.squared), over_a(line.inverse), b(dot(to_center, line.direction)),
           c(dot(to_center, to_center) - radius * radius) {
         // `closest` is the vector from the sphere's center to the nearest point of the line.
@@ -47,7 +46,7 @@ template <typename T> struct SphereTest {
 
     /// Returns whether the line hits the sphere at some t >= 0. Both roots are negative if the origin is outside the
     /// sphere and the line points away from it (b < 0 < c).
-    auto meets_ahead() const { return (discriminant >= T(0)) & ((b >= T(0)) | (c <= T(0))); }
+    auto hits_forward() const { return (discriminant >= T(0)) & ((b >= T(0)) | (c <= T(0))); }
 
     struct Roots {
         T near, far;

@@ -18,10 +18,10 @@ struct Parameterization {
 
 Parameterization on_sphere(const Sphere& sphere, Vec3d n) {
     Parameterization at{sphere_uv(Vec3(n)), {}, {}};
-    const double ring = std::hypot(n.x, n.z), r = static_cast<double>(sphere.radius);
-    if (ring > 0) { // at the poles, the direction of u is undefined
+    const double ring_radius = std::hypot(n.x, n.z), r = static_cast<double>(sphere.radius);
+    if (ring_radius > 0) { // at the poles, the direction of u is undefined
         at.dpdu = Vec3d(n.z, 0, -n.x) * (2 * kPiDouble * r);
-        at.dpdv = Vec3d(-n.y * n.x / ring, ring, -n.y * n.z / ring) * (kPiDouble * r);
+        at.dpdv = Vec3d(-n.y * n.x / ring_radius, ring_radius, -n.y * n.z / ring_radius) * (kPiDouble * r);
     }
     return at;
 }
@@ -83,7 +83,7 @@ SurfacePoint surface_point(const Shape& shape, const Hit& hit, const Ray& ray, c
         Rayd exact{Vec3d(ray.origin), Vec3d(ray.direction)};
         if (!identity) {
             const Mat4d m(to_world), inverse(to_object);
-            exact = {transform_point_back(m, inverse, exact.origin), transform_vector(inverse, exact.direction)};
+            exact = {transform_point_inverse(m, inverse, exact.origin), transform_vector(inverse, exact.direction)};
         }
         local = point_on_sphere(Vec3d(sphere.center), static_cast<double>(sphere.radius), exact.origin, exact.direction,
                                 static_cast<double>(hit.t));
@@ -105,18 +105,19 @@ SurfacePoint surface_point(const Shape& shape, const Hit& hit, const Ray& ray, c
     const Mat4d m(to_world), inverse(to_object);
     const Vec3d p = transform_point(m, local.p);
     point.p = Vec3(p);
-    // A ray that starts here is transformed to object space in float. Its origin there has an error of γ₄
+    // A ray from here is transformed to object space in float. Its origin there has an error of γ₄
     // |M⁻¹| |p − M 0|, which is an error of |M| times that in world space. γ₅ instead of γ₄ covers the
     // rounding of the stored inverse.
-    const Vec3d from_place = abs(p - transform_point(m, Vec3d()));
+    const Vec3d from_origin = abs(p - transform_point(m, Vec3d()));
     const Vec3d in_object = local.magnitude * kPointRounding +
-                            absolute_transform(to_object, from_place, 0) * static_cast<double>(gamma_bound(5));
+                            absolute_transform(to_object, from_origin, 0) * static_cast<double>(gamma_bound(5));
     point.p_error = Vec3(abs(p) * kPointRounding + absolute_transform(to_world, in_object, 0) +
                          absolute_transform(to_world, abs(local.p), 1) * static_cast<double>(gamma_bound(2)));
     point.ng = unit(transform_normal(inverse, local.ng));
-    point.ns = point.horizon = point.ng;
+    point.ns = point.terminator_normal = point.ng;
     if (local.smooth)
-        set_shading_normal(geometry, unit(transform_normal(inverse, local.ns)), Vec3(transform_vector(m, local.lift)));
+        set_shading_normal(geometry, unit(transform_normal(inverse, local.ns)),
+                           Vec3(transform_vector(m, local.terminator_offset)));
     point.dpdu = Vec3(transform_vector(m, at.dpdu));
     point.dpdv = Vec3(transform_vector(m, at.dpdv));
     return point;

@@ -12,7 +12,7 @@ namespace {
 
 // Returns the point on the boundary of a triangle that is nearest to a ray of direction d, for a ray that misses the
 // triangle by a rounding error. p holds the vertices relative to the ray's origin.
-TriangleHit rim_hit(Vec3d d, const std::array<Vec3d, 3>& p) {
+TriangleHit nearest_boundary_hit(Vec3d d, const std::array<Vec3d, 3>& p) {
     const double size = dot(d, d);
     double nearest = std::numeric_limits<double>::infinity(), t = 0;
     std::array<double, 3> weights{};
@@ -39,7 +39,7 @@ TriangleHit needle_hit(const ShearedRay& ray, Vec3 a, Vec3 b, Vec3 c) {
     const double e0 = dot(d, cross(pb, pc)), e1 = dot(d, cross(pc, pa)), e2 = dot(d, cross(pa, pb));
     const double det = e0 + e1 + e2;
     const bool inside = (e0 >= 0 && e1 >= 0 && e2 >= 0) || (e0 <= 0 && e1 <= 0 && e2 <= 0);
-    if (!inside || det == 0) return rim_hit(d, {pa, pb, pc});
+    if (!inside || det == 0) return nearest_boundary_hit(d, {pa, pb, pc});
     const std::size_t z_axis = ray.shear.kz;
     const double z = (e0 * pa[z_axis] + e1 * pb[z_axis] + e2 * pc[z_axis]) / det;
     return {static_cast<float>(z / d[z_axis]), static_cast<float>(e1 / det), static_cast<float>(e2 / det)};
@@ -66,15 +66,16 @@ std::optional<TriangleHit> intersect_triangle(const ShearedRay& ray, Vec3 a, Vec
     if (!(det != 0)) return std::nullopt;
     const float inv_det = 1 / det;
     TriangleHit hit{test.distance(inv_det), e1 * inv_det, e2 * inv_det};
-    const bool needle = test.is_needle(inv_det, ray.shear.speed);
+    const bool needle = test.is_needle(inv_det, ray.shear.depth_per_t);
     if (needle) hit = needle_hit(ray, a, b, c);
     // If |t| is within its error bound (or is NaN), t cannot tell whether the triangle is the surface that the ray
     // leaves or another one that touches it. The more exact distance to the plane decides.
-    const bool uncertain = !(abs(hit.t) > test.distance_error(inv_det, ray.shear.speed));
+    const bool uncertain = !(abs(hit.t) > test.distance_error(inv_det, ray.shear.depth_per_t));
     if (uncertain) {
         const float plane = plane_distance(ray, a, b, c);
         if (!(plane > ray.t_min)) return std::nullopt;
-        // For a needle, keep the previous t: a ray that misses it by a rounding error can intersect its plane far away.
+        // For a needle, retain the previous t: a ray that misses it by a rounding error can intersect its plane far
+        // away.
         if (!needle) hit.t = plane;
     }
     if (!(hit.t > ray.t_min && hit.t <= ray.t_max)) return std::nullopt;

@@ -25,13 +25,11 @@ template <typename T> struct Shear {
     std::size_t kx, ky, kz; ///< world axes; x and y are swapped if d.z < 0, to preserve the winding of triangles
     Vec3T<T> origin;        ///< origin of the rays, with permuted axes
     T sx, sy, sz;           ///< d.x / d.z, d.y / d.z and 1 / d.z for a direction d with permuted axes
-    T speed;                ///< |d.z|: converts a difference in t to a difference in depth along the z axis
+    T depth_per_t;          ///< |d.z|: converts a difference in t to a difference in depth along the z axis
 };
 
 /// A relative vertex is the difference between a vertex and the ray's origin.
-template <typename Vertex> struct Relative {
-    Vertex vertex;
-};
+template <typename Vertex> struct RelativeVertex { Vertex vertex; };
 
 /// A sheared ray stores the precomputed values of the watertight test.
 struct ShearedRay {
@@ -42,10 +40,11 @@ struct ShearedRay {
     explicit ShearedRay(const Ray& ray)
         : origin(ray.origin), direction(ray.direction), t_min(ray.t_min), t_max(ray.t_max) {
         // The code avoids branches, because the axes of incoherent rays are unpredictable.
-        constexpr std::array<std::array<std::uint8_t, 2>, 6> kAcross{{{1, 2}, {2, 0}, {0, 1}, {2, 1}, {0, 2}, {1, 0}}};
+        constexpr std::array<std::array<std::uint8_t, 2>, 6> kOtherAxes{
+            {{1, 2}, {2, 0}, {0, 1}, {2, 1}, {0, 2}, {1, 0}}};
         const std::array<float, 3> d{direction.x, direction.y, direction.z}, o{origin.x, origin.y, origin.z};
-        const std::size_t kz = longest_axis(abs(direction)), backwards = std::bit_cast<std::uint32_t>(d[kz]) >> 31;
-        const auto [kx, ky] = kAcross[kz + 3 * backwards];
+        const std::size_t kz = longest_axis(abs(direction)), is_negative = std::bit_cast<std::uint32_t>(d[kz]) >> 31;
+        const auto [kx, ky] = kOtherAxes[kz + 3 * is_negative];
         shear = {kx, ky, kz, {o[kx], o[ky], o[kz]}, d[kx] / d[kz], d[ky] / d[kz], 1 / d[kz], std::abs(d[kz])};
     }
 };
@@ -77,7 +76,7 @@ template <typename T> struct TriangleTest {
                            T(p[ray.kz]) - T(ray.origin.z)});
     }
     template <typename S, typename Vertex>
-    [[gnu::always_inline]] static Vec3T<T> sheared(const Shear<S>& ray, const Relative<Vertex>& p) {
+    [[gnu::always_inline]] static Vec3T<T> sheared(const Shear<S>& ray, const RelativeVertex<Vertex>& p) {
         return shear(ray, {T(p.vertex[ray.kx]), T(p.vertex[ray.ky]), T(p.vertex[ray.kz])});
     }
     /// Returns the edge function of the edge from p to q. In both triangles that share an edge, it has exactly the same
@@ -95,27 +94,29 @@ template <typename T> struct TriangleTest {
     /// Jakob and Humphreys 2023, §6.8.7). At a hit, every |bᵢ| is at most 1. Let |x| ≤ X, |y| ≤ Y, W = X + Y,
     /// and let D be the largest depth. The errors of the sheared coordinates are at most γ₅(X + D) and γ₅(Y + D),
     /// and the error of an edge function is at most 2(γ₂XY + γ₅(2XY + DW)) ≤ 2γ₅W(W + D). The order of the
-    /// products prevents overflow wherever the edge functions do not overflow. `speed` is Shear::speed. It is needed
-    /// because x and y are sheared by depths in world units, while z is in units of t.
-    template <typename S> [[gnu::always_inline]] T distance_error(T inv_det, const S& speed) const {
-        const T z = max(farthest(), -nearest()), width = this->width();
-        const T weights = width * abs(inv_det) * (width + z * T(speed)); // error of the weights bᵢ, divided by 2γ₅
+    /// products prevents overflow wherever the edge functions do not overflow. `depth_per_t` is Shear::depth_per_t. It
+    /// is needed because x and y are sheared by depths in world units, while z is in units of t.
+    template <typename S> [[gnu::always_inline]] T distance_error(T inv_det, const S& depth_per_t) const {
+        const T z = max(max_depth(), -min_depth()), width = this->width();
+        const T weights =
+            width * abs(inv_det) * (width + z * T(depth_per_t)); // error of the weights bᵢ, divided by 2γ₅
         return z * (T(6 * gamma_bound(3)) + T(6 * gamma_bound(5)) * weights);
     }
 
     /// Returns whether the triangle is a needle: so thin, seen along the ray, that the error of distance() may exceed
     /// distance_error(). The error of the sheared coordinates is about u·max_z, where u is the unit roundoff. The
     /// error of an edge function is that times the width of the triangle. Divided by det, it moves the hit along the
-    /// triangle, whose depth range is `spread`; the factor Shear::speed converts the range to world units. The
-    /// resulting error is no larger than the rounding of z, except where the triangle is much thinner than it is deep.
-    template <typename S> [[gnu::always_inline]] auto is_needle(T inv_det, const S& speed) const {
-        const T spread = farthest() - nearest();
-        return width() * abs(inv_det) * (spread * T(speed)) > T(8.0f);
+    /// triangle, whose depth range is `depth_range`; the factor Shear::depth_per_t converts the range to world units.
+    /// The resulting error is no larger than the rounding of z, except where the triangle is much thinner than it is
+    /// deep.
+    template <typename S> [[gnu::always_inline]] auto is_needle(T inv_det, const S& depth_per_t) const {
+        const T depth_range = max_depth() - min_depth();
+        return width() * abs(inv_det) * (depth_range * T(depth_per_t)) > T(8.0f);
     }
 
 private:
-    [[gnu::always_inline]] T farthest() const { return max(max(at.z, bt.z), ct.z); }
-    [[gnu::always_inline]] T nearest() const { return min(min(at.z, bt.z), ct.z); }
+    [[gnu::always_inline]] T max_depth() const { return max(max(at.z, bt.z), ct.z); }
+    [[gnu::always_inline]] T min_depth() const { return min(min(at.z, bt.z), ct.z); }
     /// Returns the sum of the largest |x| and the largest |y|.
     [[gnu::always_inline]] T width() const {
         return max(max(abs(at.x), abs(bt.x)), abs(ct.x)) + max(max(abs(at.y), abs(bt.y)), abs(ct.y));

@@ -7,8 +7,12 @@ namespace duet {
 namespace {
 
 std::uint32_t byte_at(std::string_view bytes, std::size_t i) { return static_cast<unsigned char>(bytes[i]); }
-std::uint32_t pair_at(std::string_view bytes, std::size_t i) { return byte_at(bytes, i) << 8 | byte_at(bytes, i + 1); }
-std::uint32_t word_at(std::string_view bytes, std::size_t i) { return pair_at(bytes, i) << 16 | pair_at(bytes, i + 2); }
+std::uint32_t big_endian_16(std::string_view bytes, std::size_t i) {
+    return byte_at(bytes, i) << 8 | byte_at(bytes, i + 1);
+}
+std::uint32_t big_endian_32(std::string_view bytes, std::size_t i) {
+    return big_endian_16(bytes, i) << 16 | big_endian_16(bytes, i + 2);
+}
 
 constexpr std::array<std::uint32_t, 256> kCrcTable = [] {
     std::array<std::uint32_t, 256> table{};
@@ -29,12 +33,12 @@ std::uint32_t crc32(std::string_view bytes) {
 // Throws an Error if `pixel_bytes` bytes of compressed pixels are too few for the image size in the header chunk.
 // `header` is that chunk's data (13 bytes). The compression ratio of deflate is at most 1032:1.
 void check_png_size(const ImageBytes& file, std::string_view header, std::size_t pixel_bytes) {
-    const long long width = word_at(header, 0), height = word_at(header, 4);
+    const long long width = big_endian_32(header, 0), height = big_endian_32(header, 4);
     check_image_size(file.name, width, height);
     constexpr std::array<double, 7> kChannels{1, 0, 3, 1, 2, 0, 4}; // by color type
     const double channels = byte_at(header, 9) < kChannels.size() ? kChannels[byte_at(header, 9)] : 0;
     const double bytes = static_cast<double>(width * height) * channels * byte_at(header, 8) / 8;
-    check_claim(file, width, height, bytes / 1032, static_cast<double>(pixel_bytes));
+    check_pixel_data_size(file, width, height, bytes / 1032, static_cast<double>(pixel_bytes));
 }
 
 // Throws an Error for a Huffman table of more than 256 codes, the capacity of stb's tables; the standard allows 255
@@ -52,12 +56,12 @@ void check_huffman_tables(const ImageBytes& file, std::size_t at, std::size_t en
 // Checks the image size in a frame header. `at` is the offset of the header's data, which starts with the bit depth,
 // the height and the width.
 void check_jpeg_size(const ImageBytes& file, std::size_t at) {
-    const long long height = pair_at(file.bytes, at + 1), width = pair_at(file.bytes, at + 3);
+    const long long height = big_endian_16(file.bytes, at + 1), width = big_endian_16(file.bytes, at + 3);
     check_image_size(file.name, width, height);
     // A block of 8 x 8 values takes at least one bit. If all channels are subsampled, it covers the area of at most 16
     // blocks.
-    check_claim(file, width, height, static_cast<double>(width * height) / (64 * 16 * 8),
-                static_cast<double>(file.bytes.size()));
+    check_pixel_data_size(file, width, height, static_cast<double>(width * height) / (64 * 16 * 8),
+                          static_cast<double>(file.bytes.size()));
 }
 
 bool is_frame(std::uint32_t marker) {
@@ -74,11 +78,11 @@ void check_png(const ImageBytes& file) {
     std::string_view type;
     for (std::size_t at = kSignature; type != "IEND";) {
         const std::size_t left = file.bytes.size() - at;
-        const std::size_t length = left < kFrame ? 0 : word_at(file.bytes, at);
+        const std::size_t length = left < kFrame ? 0 : big_endian_32(file.bytes, at);
         if (left < kFrame || length > left - kFrame)
             throw Error(message(file.name, ": truncated: the file ends before its last chunk (IEND)"));
         type = file.bytes.substr(at + 4, 4);
-        if (crc32(file.bytes.substr(at + 4, length + 4)) != word_at(file.bytes, at + 8 + length))
+        if (crc32(file.bytes.substr(at + 4, length + 4)) != big_endian_32(file.bytes, at + 8 + length))
             throw Error(message(file.name, ": corrupt: wrong checksum in the chunk at byte ", at));
         const bool first = at == kSignature;
         if (first != (type == "IHDR") || (first && length != 13))
@@ -93,14 +97,14 @@ void check_png(const ImageBytes& file) {
 // scan follow the scan's header; in these data, 0xff is followed by 0 or a restart marker (ITU-T T.81, §B.1.1).
 void check_jpeg(const ImageBytes& file) {
     constexpr std::uint32_t kTables = 0xc4, kFirstRestart = 0xd0, kLastRestart = 0xd7, kEnd = 0xd9;
-    bool framed = false;
+    bool has_frame = false;
     for (std::size_t at = file.bytes.find('\xff', 2); at != std::string_view::npos; at = file.bytes.find('\xff', at)) {
         at = file.bytes.find_first_not_of('\xff', at);
         if (at == std::string_view::npos) break;
         const std::uint32_t marker = byte_at(file.bytes, at++);
         if (marker == 0 || (marker >= kFirstRestart && marker <= kLastRestart)) continue;
-        if (marker == kEnd && framed) return;
-        const std::size_t left = file.bytes.size() - at, length = left < 2 ? 2 : pair_at(file.bytes, at);
+        if (marker == kEnd && has_frame) return;
+        const std::size_t left = file.bytes.size() - at, length = left < 2 ? 2 : big_endian_16(file.bytes, at);
         if (left < 2 || length > left) break;
         if (length < 2)
             throw Error(message(file.name, ": corrupt: a segment of ", length, " bytes, expected 2 or more"));
@@ -108,12 +112,12 @@ void check_jpeg(const ImageBytes& file) {
         if (is_frame(marker)) {
             if (length < 8) throw Error(message(file.name, ": corrupt: a frame header of ", length, " bytes"));
             check_jpeg_size(file, at + 2);
-            framed = true;
+            has_frame = true;
         }
         at += length;
     }
     throw Error(
-        message(file.name, ": truncated: the file ends before its ", framed ? "end marker (EOI)" : "frame (SOF)"));
+        message(file.name, ": truncated: the file ends before its ", has_frame ? "end marker (EOI)" : "frame (SOF)"));
 }
 
 } // namespace duet

@@ -49,7 +49,7 @@ private:
 };
 
 // Calls read() and converts the exceptions of OpenEXR to Errors.
-template <typename Read> auto reading(const ImageBytes& file, Read read) {
+template <typename Read> auto convert_errors(const ImageBytes& file, Read read) {
     try {
         return read();
     } catch (const Error&) {
@@ -61,14 +61,14 @@ template <typename Read> auto reading(const ImageBytes& file, Read read) {
 
 // Returns the number of threads with which OpenEXR processes an image of that many values. OpenEXR has its own thread
 // pool, which is started for the first large image. 0 means that OpenEXR uses the calling thread.
-int threads_for(double values) {
-#if defined(DUET_PLAIN_THREADS)
+int exr_threads(double values) {
+#if defined(DUET_STD_THREADS)
     // ThreadSanitizer does not see the locks of a library that is not instrumented (see common/system/parallel.cpp).
-    constexpr double kFewest = kInfinity;
+    constexpr double kMinParallelValues = kInfinity;
 #else
-    constexpr double kFewest = 500'000;
+    constexpr double kMinParallelValues = 500'000;
 #endif
-    if (values < kFewest || available_threads() == 1) return 0;
+    if (values < kMinParallelValues || available_threads() == 1) return 0;
     static const int threads = [] {
         Imf::setGlobalThreadCount(available_threads());
         return available_threads();
@@ -86,7 +86,7 @@ Window data_window(const Imf::Header& header) {
     return {box, 1LL + box.max.x - box.min.x, 1LL + box.max.y - box.min.y};
 }
 
-double bytes_a_pixel(const Imf::Header& header) {
+double bytes_per_pixel(const Imf::Header& header) {
     double bytes = 0;
     for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel)
         bytes += channel.channel().type == Imf::HALF ? 2 : 4;
@@ -95,7 +95,7 @@ double bytes_a_pixel(const Imf::Header& header) {
 
 // Returns an upper bound on the compression ratio. The ratio of deflate is at most 1032:1, and PXR24 first drops one
 // byte of four. PIZ and RLE compress less. DWA can reduce 64 values to one before deflate.
-double greatest_compression(Imf::Compression compression) {
+double max_compression_ratio(Imf::Compression compression) {
     return compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION ? 132096 : 1376;
 }
 
@@ -108,20 +108,20 @@ void check_header(const ImageBytes& file, const Imf::Header& header) {
         if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1)
             throw Error(
                 message(file.name, ": channel ", channel.name(), " is subsampled, expected a value for each pixel"));
-    constexpr double kMostBytes = 0x1p32, kMostTileSide = 4096, kMostRowsAtOnce = 256;
-    const double pixel = bytes_a_pixel(header);
+    constexpr double kMaxBytes = 0x1p32, kMaxTileSide = 4096, kMaxRowsPerChunk = 256;
+    const double pixel = bytes_per_pixel(header);
     const double bytes = pixel * static_cast<double>(window.width) * static_cast<double>(window.height);
-    check_claim(file, window.width, window.height, bytes / greatest_compression(header.compression()),
-                static_cast<double>(file.bytes.size()));
-    double at_once = pixel * static_cast<double>(window.width) * kMostRowsAtOnce;
+    check_pixel_data_size(file, window.width, window.height, bytes / max_compression_ratio(header.compression()),
+                          static_cast<double>(file.bytes.size()));
+    double chunk_bytes = pixel * static_cast<double>(window.width) * kMaxRowsPerChunk;
     if (header.hasTileDescription()) {
         const Imf::TileDescription& tile = header.tileDescription();
-        if (tile.xSize > kMostTileSide || tile.ySize > kMostTileSide)
+        if (tile.xSize > kMaxTileSide || tile.ySize > kMaxTileSide)
             throw Error(message(file.name, ": tiles of ", tile.xSize, " x ", tile.ySize, " pixels, expected at most ",
-                                kMostTileSide, " a side"));
-        at_once = std::max(at_once, pixel * tile.xSize * tile.ySize);
+                                kMaxTileSide, " a side"));
+        chunk_bytes = std::max(chunk_bytes, pixel * tile.xSize * tile.ySize);
     }
-    if (bytes > kMostBytes || at_once > kMostBytes)
+    if (bytes > kMaxBytes || chunk_bytes > kMaxBytes)
         throw Error(message(file.name, ": ", pixel, " bytes a pixel at ", window.width, " x ", window.height,
                             " pixels, expected at most 4 GiB in all"));
 }
@@ -149,14 +149,14 @@ Imf::Slice slice(Imf::PixelType type, const void* values, const Imath::Box2i& wi
 
 void read_pixels(const ImageBytes& file, const Imf::FrameBuffer& frame, const Window& window) {
     MemoryStream stream(file);
-    Imf::InputFile input(stream, threads_for(static_cast<double>(window.width * window.height)));
+    Imf::InputFile input(stream, exr_threads(static_cast<double>(window.width * window.height)));
     input.setFrameBuffer(frame);
     input.readPixels(window.box.min.y, window.box.max.y);
 }
 
 // Returns the names of the image channels that the file has: R, G and B, or Y, followed by A if present. Throws an
 // Error if neither set exists.
-std::vector<const char*> picture_channels(const ImageBytes& file, const Imf::ChannelList& channels) {
+std::vector<const char*> image_channels(const ImageBytes& file, const Imf::ChannelList& channels) {
     std::vector<const char*> names;
     const bool rgb = channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B");
     if (rgb)
@@ -175,29 +175,29 @@ std::vector<const char*> picture_channels(const ImageBytes& file, const Imf::Cha
 
 } // namespace
 
-PixelFile decode_exr(const ImageBytes& file) {
-    return reading(file, [&] {
+StoredImage decode_exr(const ImageBytes& file) {
+    return convert_errors(file, [&] {
         const Imf::Header header = read_header(file);
         const Window window = data_window(header);
-        const std::vector<const char*> names = picture_channels(file, header.channels());
-        PixelFile picture{static_cast<int>(window.width),
+        const std::vector<const char*> names = image_channels(file, header.channels());
+        StoredImage image{static_cast<int>(window.width),
                           static_cast<int>(window.height),
                           static_cast<int>(names.size()),
-                          PixelFile::Encoding::kLinear,
+                          StoredImage::Encoding::kLinear,
                           {}};
         const std::size_t stride = names.size() * sizeof(float);
-        picture.values.resize(static_cast<std::size_t>(window.width * window.height) * names.size());
+        image.values.resize(static_cast<std::size_t>(window.width * window.height) * names.size());
         Imf::FrameBuffer frame;
         for (std::size_t c = 0; c < names.size(); ++c)
-            frame.insert(names[c], Imf::Slice::Make(Imf::FLOAT, &picture.values[c], window.box, stride,
+            frame.insert(names[c], Imf::Slice::Make(Imf::FLOAT, &image.values[c], window.box, stride,
                                                     stride * static_cast<std::size_t>(window.width)));
         read_pixels(file, frame, window);
-        return picture;
+        return image;
     });
 }
 
 ExrFile decode_exr_channels(const ImageBytes& file) {
-    return reading(file, [&] {
+    return convert_errors(file, [&] {
         const Imf::Header header = read_header(file);
         const Window window = data_window(header);
         ExrFile result{static_cast<int>(window.width), static_cast<int>(window.height), {}, {}};
@@ -254,14 +254,14 @@ void write_exr(const fs::path& path, int width, int height, const std::vector<Ex
         if (!out) throw Error(message(path.string(), ": cannot be written"), 1);
         {
             Imf::StdOFStream stream(out, path.string().c_str());
-            Imf::OutputFile output(stream, header, threads_for(static_cast<double>(count * channels.size())));
+            Imf::OutputFile output(stream, header, exr_threads(static_cast<double>(count * channels.size())));
             output.setFrameBuffer(frame);
             output.writePixels(height);
         }
         out.close();
         if (!out) throw Error(message(path.string(), ": cannot be written"), 1);
     };
-    write_whole(path, [&](const fs::path& temporary) {
+    write_atomically(path, [&](const fs::path& temporary) {
         try {
             write(temporary);
         } catch (const Error&) {

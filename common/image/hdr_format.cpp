@@ -17,14 +17,14 @@ namespace {
 
 using Rgbe = std::array<std::uint8_t, 4>;
 
-constexpr std::size_t kShortestRunScanline = 8, kLongestRunScanline = 32767;
+constexpr std::size_t kMinRunWidth = 8, kMaxRunWidth = 32767;
 
 // Converts a color to RGBE. Fractions are rounded to the nearest multiple of 1/256, so the error is at most 1/256 of
 // the largest channel. Negative values and NaN become 0, and values that are too large become the largest value.
-Rgbe to_rgbe(Rgb colour) {
+Rgbe to_rgbe(Rgb color) {
     constexpr float kLargest = 0x1.fep126f; // (255/256)·2^127
     std::array<float, 3> c{};
-    for (std::size_t k = 0; k < 3; ++k) c[k] = colour[k] > 0 ? std::min(colour[k], kLargest) : 0.0f;
+    for (std::size_t k = 0; k < 3; ++k) c[k] = color[k] > 0 ? std::min(color[k], kLargest) : 0.0f;
     const float largest = std::max({c[0], c[1], c[2]});
     int exponent = 0;
     const float fraction = std::frexp(largest, &exponent);
@@ -46,22 +46,22 @@ class HdrReader {
 public:
     explicit HdrReader(const ImageBytes& file) : file_(file) {}
 
-    PixelFile read() {
+    StoredImage read() {
         read_header();
-        PixelFile picture = read_size();
-        const auto width = static_cast<std::size_t>(picture.width), height = static_cast<std::size_t>(picture.height);
-        check_claim(file_, picture.width, picture.height, least_bytes(width, height),
-                    static_cast<double>(file_.bytes.size() - at_));
-        picture.values.reserve(3 * width * height);
+        StoredImage image = read_size();
+        const auto width = static_cast<std::size_t>(image.width), height = static_cast<std::size_t>(image.height);
+        check_pixel_data_size(file_, image.width, image.height, min_bytes(width, height),
+                              static_cast<double>(file_.bytes.size() - at_));
+        image.values.reserve(3 * width * height);
         std::vector<Rgbe> scanline(width);
         for (std::size_t y = 0; y < height; ++y) {
-            if (is_run_coded(width))
-                read_run_coded(scanline);
+            if (is_run_length_encoded(width))
+                read_run_length_encoded(scanline);
             else
                 read_flat(scanline);
-            for (const Rgbe& pixel : scanline) append_values(pixel, picture.values);
+            for (const Rgbe& pixel : scanline) append_values(pixel, image.values);
         }
-        return picture;
+        return image;
     }
 
 private:
@@ -94,7 +94,7 @@ private:
         if (!is_rgbe) fail("no line FORMAT=32-bit_rle_rgbe in its header");
     }
 
-    PixelFile read_size() {
+    StoredImage read_size() {
         const std::string_view text = line();
         const char *at = text.data(), *end = at + text.size();
         const auto side = [&](std::string_view axis) {
@@ -108,26 +108,26 @@ private:
         };
         const int height = side("-Y "), width = side(" +X ");
         check_image_size(file_.name, width, height);
-        return {width, height, 3, PixelFile::Encoding::kLinear, {}};
+        return {width, height, 3, StoredImage::Encoding::kLinear, {}};
     }
 
     // Returns the smallest number of bytes that can store all scanlines. A run of up to 127 equal values takes two
     // bytes per channel. In flat scanlines, one repeat pixel can represent 255 and more pixels.
-    static double least_bytes(std::size_t width, std::size_t height) {
+    static double min_bytes(std::size_t width, std::size_t height) {
         const double run_coded = 4.0 + 8.0 * std::ceil(static_cast<double>(width) / 127.0);
         const double repeated = 4.0 + 4.0 * std::floor(static_cast<double>(width) / 65536.0);
         return static_cast<double>(height) * std::min(run_coded, repeated);
     }
 
-    bool is_run_coded(std::size_t width) const {
-        if (width < kShortestRunScanline || width > kLongestRunScanline || file_.bytes.size() - at_ < 4) return false;
+    bool is_run_length_encoded(std::size_t width) const {
+        if (width < kMinRunWidth || width > kMaxRunWidth || file_.bytes.size() - at_ < 4) return false;
         const auto at = [&](std::size_t i) { return static_cast<std::uint8_t>(file_.bytes[at_ + i]); };
         return at(0) == 2 && at(1) == 2 && at(2) < 128;
     }
 
     // Reads one channel after another. Each consists of runs of equal values (128 + count, value) and of runs of
     // different values (count, values …).
-    void read_run_coded(std::vector<Rgbe>& scanline) {
+    void read_run_length_encoded(std::vector<Rgbe>& scanline) {
         at_ += 2;
         const unsigned high = byte(), low = byte();
         if ((high << 8 | low) != scanline.size())
@@ -152,7 +152,7 @@ private:
         unsigned shift = 0;
         for (std::size_t x = 0; x < scanline.size();) {
             Rgbe pixel{};
-            for (std::uint8_t& part : pixel) part = byte();
+            for (std::uint8_t& component : pixel) component = byte();
             if (pixel[0] != 1 || pixel[1] != 1 || pixel[2] != 1) {
                 scanline[x++] = pixel;
                 shift = 0;
@@ -196,19 +196,19 @@ void append_runs(const std::vector<Rgbe>& scanline, std::size_t channel, std::st
 
 } // namespace
 
-PixelFile decode_hdr(const ImageBytes& file) { return HdrReader(file).read(); }
+StoredImage decode_hdr(const ImageBytes& file) { return HdrReader(file).read(); }
 
 std::string encode_hdr(const ImageRgb& image, const WriteOptions&) {
     std::string file =
         message("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y ", image.height(), " +X ", image.width(), '\n');
     const auto width = static_cast<std::size_t>(image.width());
-    const bool runs = width >= kShortestRunScanline && width <= kLongestRunScanline;
+    const bool runs = width >= kMinRunWidth && width <= kMaxRunWidth;
     std::vector<Rgbe> scanline(width);
     for (int y = 0; y < image.height(); ++y) {
         for (int x = 0; x < image.width(); ++x) scanline[static_cast<std::size_t>(x)] = to_rgbe(image(x, y));
         if (runs) {
-            for (const std::size_t part : {std::size_t{2}, std::size_t{2}, width >> 8, width & 255})
-                file += static_cast<char>(part);
+            for (const std::size_t component : {std::size_t{2}, std::size_t{2}, width >> 8, width & 255})
+                file += static_cast<char>(component);
             for (std::size_t channel = 0; channel < 4; ++channel) append_runs(scanline, channel, file);
         } else {
             for (const Rgbe& pixel : scanline) file.append(pixel.begin(), pixel.end());

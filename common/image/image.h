@@ -10,7 +10,7 @@
 namespace duet {
 
 /// A rendered image has at most this width and height, in pixels.
-inline constexpr int kMaxPictureSide = 16384;
+inline constexpr int kMaxRenderSide = 16384;
 
 /// An image has width × height pixels of any type. Pixel (0, 0) is at the upper left. The access operators do not
 /// check their arguments.
@@ -30,7 +30,7 @@ public:
     Pixel& operator()(int x, int y) { return pixels_[index(x, y)]; }
     const Pixel& operator[](std::size_t i) const { return pixels_[i]; }
     Pixel& operator[](std::size_t i) { return pixels_[i]; }
-    using Pixels = std::vector<Pixel, CacheAligned<Pixel>>;
+    using Pixels = std::vector<Pixel, CacheAlignedAllocator<Pixel>>;
     const Pixels& pixels() const { return pixels_; }
     Pixels& pixels() { return pixels_; }
     auto begin() const { return pixels_.begin(); }

@@ -18,7 +18,7 @@ namespace {
 
 struct Reader {
     std::string_view signature;
-    PixelFile (*decode)(const ImageBytes&);
+    StoredImage (*decode)(const ImageBytes&);
 };
 constexpr std::array kReaders{
     Reader{"\x89PNG\r\n\x1a\n"sv, decode_png},
@@ -31,38 +31,38 @@ constexpr std::array kReaders{
     Reader{"\x76\x2f\x31\x01"sv, decode_exr},
 };
 
-std::string encode_nothing(const ImageRgb&, const WriteOptions&) { return {}; }
+std::string encode_unsupported(const ImageRgb&, const WriteOptions&) { return {}; }
 
 struct Writer {
-    std::string_view ending;
+    std::string_view extension;
     std::string (*encode)(const ImageRgb&, const WriteOptions&);
 };
 // EXR has no encoder here, because OpenEXR writes files directly.
 constexpr std::array kWriters{
-    Writer{".png", encode_png}, Writer{".jpg", encode_jpeg},    Writer{".jpeg", encode_jpeg},
-    Writer{".tga", encode_tga}, Writer{".ppm", encode_ppm},     Writer{".pfm", encode_pfm},
-    Writer{".hdr", encode_hdr}, Writer{".exr", encode_nothing},
+    Writer{".png", encode_png}, Writer{".jpg", encode_jpeg},        Writer{".jpeg", encode_jpeg},
+    Writer{".tga", encode_tga}, Writer{".ppm", encode_ppm},         Writer{".pfm", encode_pfm},
+    Writer{".hdr", encode_hdr}, Writer{".exr", encode_unsupported},
 };
 
 const Writer& find_writer(const fs::path& path) {
-    const std::string ending = lower_case_ending(path);
+    const std::string extension = lower_case_extension(path);
     for (const Writer& writer : kWriters)
-        if (writer.ending == ending) return writer;
-    throw Error(message(path.string(), ": ", ending.empty() ? "no ending" : "unknown ending " + ending,
+        if (writer.extension == extension) return writer;
+    throw Error(message(path.string(), ": ", extension.empty() ? "no ending" : "unknown ending " + extension,
                         ", expected .png, .jpg, .jpeg, .tga, .ppm, .pfm, .hdr or .exr"));
 }
 
 // Decodes sRGB-encoded values. A table serves the 256 values k/255 of 8-bit files; in 16-bit files, k·257/65535 is the
 // same float. The transfer curve is evaluated for all other values.
-class Decoder {
+class SrgbDecoder {
 public:
-    Decoder() {
+    SrgbDecoder() {
         for (std::size_t k = 0; k < table_.size(); ++k) table_[k] = srgb_decode_8bit(static_cast<std::uint8_t>(k));
     }
     float operator()(float encoded) const {
         const float code = std::nearbyint(encoded * 255.0f);
-        const bool listed = code >= 0.0f && code <= 255.0f && code / 255.0f == encoded;
-        return listed ? table_[static_cast<std::size_t>(code)] : srgb_decode(encoded);
+        const bool in_table = code >= 0.0f && code <= 255.0f && code / 255.0f == encoded;
+        return in_table ? table_[static_cast<std::size_t>(code)] : srgb_decode(encoded);
     }
 
 private:
@@ -79,17 +79,17 @@ void check_image_size(const std::string& name, long long width, long long height
                 exit_code);
 }
 
-void check_claim(const ImageBytes& file, long long width, long long height, double needed, double available) {
+void check_pixel_data_size(const ImageBytes& file, long long width, long long height, double needed, double available) {
     if (needed <= available) return;
     throw Error(message(file.name, ": truncated: ", width, " x ", height, " pixels cannot be in its ",
                         file.bytes.size(), " bytes"));
 }
 
-PixelFile decode_image(const ImageBytes& file, const std::string& ending) {
+StoredImage decode_image(const ImageBytes& file, const std::string& extension) {
     if (file.bytes.empty()) throw Error(message(file.name, ": empty file, expected a picture"));
     for (const Reader& reader : kReaders)
         if (file.bytes.starts_with(reader.signature)) return reader.decode(file);
-    if (ending == ".tga") return decode_tga(file);
+    if (extension == ".tga") return decode_tga(file);
     throw Error(
         message(file.name, ": unknown format, expected a PNG, JPEG, TGA, PPM (P3, P6), PFM, HDR or EXR picture"));
 }
@@ -103,33 +103,33 @@ std::vector<ExrChannel> rgb_channels(const std::string& prefix, const ImageRgb& 
     return channels;
 }
 
-PixelFile read_pixel_file(const fs::path& path) {
+StoredImage read_stored_image(const fs::path& path) {
     const std::string bytes = read_file(path);
-    return decode_image({path.string(), bytes}, lower_case_ending(path));
+    return decode_image({path.string(), bytes}, lower_case_extension(path));
 }
 
-ImageRgb to_linear(const PixelFile& file) {
-    const Decoder decode;
+ImageRgb to_linear(const StoredImage& file) {
+    const SrgbDecoder decode;
     ImageRgb image(file.width, file.height);
     const auto channels = static_cast<std::size_t>(file.channels), width = static_cast<std::size_t>(file.width);
     DUET_CHECK_EQ(file.values.size(), image.size() * channels);
-    const bool grey = channels < 3, encoded = file.encoding == PixelFile::Encoding::kEncoded;
+    const bool gray = channels < 3, encoded = file.encoding == StoredImage::Encoding::kEncoded;
     parallel_for(static_cast<std::size_t>(file.height), 0, [&](std::size_t y) {
         for (std::size_t i = y * width; i < (y + 1) * width; ++i) {
             const float* value = &file.values[i * channels];
-            const Rgb stored = grey ? Rgb(value[0]) : Rgb(value[0], value[1], value[2]);
+            const Rgb stored = gray ? Rgb(value[0]) : Rgb(value[0], value[1], value[2]);
             image[i] = encoded ? Rgb(decode(stored.r), decode(stored.g), decode(stored.b)) : stored;
         }
     });
     return image;
 }
 
-ImageRgb read_image(const fs::path& path) { return to_linear(read_pixel_file(path)); }
+ImageRgb read_image(const fs::path& path) { return to_linear(read_stored_image(path)); }
 
 void write_image(const fs::path& path, const ImageRgb& image, const WriteOptions& options) {
     const Writer& writer = find_writer(path);
     check_image_size(path.string(), image.width(), image.height(), 1);
-    if (writer.encode == encode_nothing)
+    if (writer.encode == encode_unsupported)
         write_exr(path, image.width(), image.height(), rgb_channels("", image));
     else
         write_file(path, writer.encode(image, options));

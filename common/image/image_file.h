@@ -12,7 +12,7 @@ namespace duet {
 
 /// Holds the values of an image file as stored. Each pixel has `channels` (1 to 4) interleaved floats; rows are stored
 /// from the top.
-struct PixelFile {
+struct StoredImage {
     /// `kEncoded` values are sRGB-encoded: 8 or 16 bits, scaled to [0, 1] (PNG, JPEG, TGA, PPM). Their second of two
     /// channels or fourth of four is linear alpha. `kLinear` values are linear radiance of any size (PFM, HDR, EXR).
     enum class Encoding { kEncoded, kLinear };
@@ -31,12 +31,12 @@ inline constexpr long long kMaxImagePixels = 90'000'000;
 /// by its extension. Of an EXR file, the channels R, G, B (or Y) and A are read inside the data window, wherever that
 /// lies. Throws an Error that names the path, what was found and what was expected if the file is missing, truncated,
 /// malformed or over the limits.
-PixelFile read_pixel_file(const std::filesystem::path& path);
+StoredImage read_stored_image(const std::filesystem::path& path);
 
 /// Converts the values of a file to linear RGB. Encoded values are decoded by the sRGB curve, gray is copied to all
 /// three channels, and alpha is dropped.
-ImageRgb to_linear(const PixelFile& file);
-/// Returns to_linear(read_pixel_file(path)).
+ImageRgb to_linear(const StoredImage& file);
+/// Returns to_linear(read_stored_image(path)).
 ImageRgb read_image(const std::filesystem::path& path);
 
 struct WriteOptions {

@@ -14,16 +14,16 @@ namespace {
 
 // Color-blind readers can distinguish these line colors (after Okabe and Ito 2008, "Color Universal Design", without
 // their yellow, which is too light on a white page). Text has a darker color of the same hue.
-struct Ink {
+struct SeriesColor {
     const char *line, *text;
 };
-constexpr std::array<Ink, 7> kInks{{{"#0072B2", "#005A8E"},
-                                    {"#D55E00", "#A84A00"},
-                                    {"#009E73", "#007153"},
-                                    {"#CC79A7", "#994470"},
-                                    {"#000000", "#000000"},
-                                    {"#E69F00", "#855C00"},
-                                    {"#56B4E9", "#1B6C9C"}}};
+constexpr std::array<SeriesColor, 7> kSeriesColors{{{"#0072B2", "#005A8E"},
+                                                    {"#D55E00", "#A84A00"},
+                                                    {"#009E73", "#007153"},
+                                                    {"#CC79A7", "#994470"},
+                                                    {"#000000", "#000000"},
+                                                    {"#E69F00", "#855C00"},
+                                                    {"#56B4E9", "#1B6C9C"}}};
 constexpr double kFontSize = 13, kTitleSize = 15, kLineHeight = 17;
 
 // Estimates the width of a text in pixels. Letters and the fonts of viewers differ in width; the estimate is large
@@ -48,7 +48,7 @@ std::string escaped(const std::string& text) {
     return result;
 }
 
-std::string pixels(double value) { return brief_number(std::round(value * 10) / 10, 6); }
+std::string pixels(double value) { return format_significant(std::round(value * 10) / 10, 6); }
 
 void check_value(const std::string& name, const Series& series, std::size_t i, char axis, double value,
                  bool logarithmic) {
@@ -68,8 +68,8 @@ void check_plot(const std::string& name, const Plot& plot) {
         }
     }
     if (points == 0) throw Error(message(name, ": no series has a point, expected at least one"));
-    if (plot.series.size() > kInks.size())
-        throw Error(message(name, ": ", plot.series.size(), " series, expected at most ", kInks.size()));
+    if (plot.series.size() > kSeriesColors.size())
+        throw Error(message(name, ": ", plot.series.size(), " series, expected at most ", kSeriesColors.size()));
 }
 
 // Holds the position of the plot area and the axes, which map values to pixels.
@@ -110,7 +110,7 @@ Layout layout_of(const std::string& name, const Plot& plot) {
     if (layout.right - layout.left < 100 || layout.bottom - layout.top < 60)
         throw Error(message(name, ": ", plot.width, " x ", plot.height,
                             " pixels leave too little room beside the labels, ",
-                            "expected a larger picture or shorter names"));
+                            "expected a larger picture or shorter series_labels"));
     return layout;
 }
 
@@ -157,17 +157,17 @@ std::string lines(const Layout& layout, const Plot& plot) {
     std::string svg;
     for (std::size_t s = 0; s < plot.series.size(); ++s) {
         const Series& series = plot.series[s];
-        std::string places, xs, ys, dots;
+        std::string polyline_points, xs, ys, dots;
         for (const Vec2d& point : series.points) {
             const std::string x = pixels(layout.x_of(point.x)), y = pixels(layout.y_of(point.y));
-            places += x + "," + y + " ";
-            xs += brief_number(point.x, 7) + " ";
-            ys += brief_number(point.y, 7) + " ";
+            polyline_points += x + "," + y + " ";
+            xs += format_significant(point.x, 7) + " ";
+            ys += format_significant(point.y, 7) + " ";
             dots += message("<circle cx=\"", x, "\" cy=\"", y, "\" r=\"3\"/>\n");
         }
         svg += message("<g data-series=\"", escaped(series.name), "\" data-x=\"", xs, "\" data-y=\"", ys, "\" fill=\"",
-                       kInks[s].line, "\">\n<polyline points=\"", places, "\" fill=\"none\" stroke=\"", kInks[s].line,
-                       "\" stroke-width=\"2\" stroke-linejoin=\"round\"/>\n");
+                       kSeriesColors[s].line, "\">\n<polyline points=\"", polyline_points, "\" fill=\"none\" stroke=\"",
+                       kSeriesColors[s].line, "\" stroke-width=\"2\" stroke-linejoin=\"round\"/>\n");
         svg += (series.points.size() <= 24 ? dots : "") + "</g>\n"; // more dots would hide the line
     }
     return svg;
@@ -180,7 +180,7 @@ struct EndLabel {
 };
 
 // Moves labels apart vertically until they do not overlap. A label stays beside the end of its line where possible.
-void spread(std::vector<EndLabel>& labels, double bottom) {
+void separate_labels(std::vector<EndLabel>& labels, double bottom) {
     std::sort(labels.begin(), labels.end(), [](const EndLabel& a, const EndLabel& b) { return a.y < b.y; });
     for (std::size_t i = 1; i < labels.size(); ++i) labels[i].y = std::max(labels[i].y, labels[i - 1].y + kLineHeight);
     double lowest = bottom;
@@ -188,23 +188,23 @@ void spread(std::vector<EndLabel>& labels, double bottom) {
         label->y = std::min(label->y, lowest);
 }
 
-std::string names(const Layout& layout, const Plot& plot) {
+std::string series_labels(const Layout& layout, const Plot& plot) {
     std::vector<EndLabel> labels;
     for (std::size_t s = 0; s < plot.series.size(); ++s)
         if (const Series& series = plot.series[s]; !series.points.empty() && !series.name.empty()) {
             const Vec2d end{layout.x_of(series.points.back().x), layout.y_of(series.points.back().y)};
             labels.push_back({s, end, end.y});
         }
-    spread(labels, layout.bottom);
+    separate_labels(labels, layout.bottom);
     std::string svg;
     for (const EndLabel& label : labels) {
-        const Ink ink = kInks[label.series];
+        const SeriesColor color = kSeriesColors[label.series];
         const bool beside = std::abs(label.y - label.end.y) < 3 && label.end.x > layout.right - 3;
         if (!beside)
             svg += line_from(label.end, {layout.right + 14, label.y},
-                             message("stroke=\"", ink.line, "\" stroke-dasharray=\"2 3\""));
+                             message("stroke=\"", color.line, "\" stroke-dasharray=\"2 3\""));
         svg += text_at(layout.right + (beside ? 9 : 18), label.y + 4.5, plot.series[label.series].name,
-                       message("fill=\"", ink.text, "\""));
+                       message("fill=\"", color.text, "\""));
     }
     return svg;
 }
@@ -221,11 +221,11 @@ std::string plot_svg(const std::string& name, const Plot& plot) {
                    "\" font-family=\"Helvetica, Arial, 'DejaVu Sans', sans-serif\" font-size=\"", kFontSize,
                    "\" fill=\"#222\">\n<title>", escaped(plot.title.empty() ? name : plot.title),
                    "</title>\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n", titles(layout, plot),
-                   grid(layout), lines(layout, plot), names(layout, plot), "</svg>\n");
+                   grid(layout), lines(layout, plot), series_labels(layout, plot), "</svg>\n");
 }
 
 void write_plot(const std::filesystem::path& path, const Plot& plot) {
-    if (lower_case_ending(path) != ".svg")
+    if (lower_case_extension(path) != ".svg")
         throw Error(message(path.string(), ": a plot is an SVG file, expected a name that ends in .svg"));
     write_file(path, plot_svg(path.filename().string(), plot));
 }

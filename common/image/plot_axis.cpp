@@ -10,21 +10,21 @@ namespace duet {
 namespace {
 
 // Returns 1, 2 or 5 times a power of ten as the distance between ticks, so that `span` has about `count` steps.
-double step_of(double span, int count) {
+double tick_step(double span, int count) {
     const double rough = span / count, power = std::pow(10.0, std::floor(std::log10(rough)));
     const double digit = rough / power; // in [1, 10)
     return power * (digit < 1.5 ? 1 : digit < 3.5 ? 2 : digit < 7.5 ? 5 : 10);
 }
 
-Axis linear_axis(AxisRequest wanted) {
-    auto& [low, high, logarithmic, tight, whole, count] = wanted;
+Axis linear_axis(AxisRequest request) {
+    auto& [low, high, logarithmic, tight, whole, count] = request;
     if (!tight && low > 0 && low < 0.4 * high) low = 0; // readers compare heights above 0
     if (!tight && high < 0 && high > 0.4 * low) high = 0;
     if (!(low < high)) { // widen the range around a single value
         const double room = low == 0 ? 1 : std::abs(low) * 0.5;
         low -= room, high += room;
     }
-    const double step = std::max(step_of(high - low, std::clamp(count, 2, 10)), whole ? 1.0 : 0.0);
+    const double step = std::max(tick_step(high - low, std::clamp(count, 2, 10)), whole ? 1.0 : 0.0);
     // The tolerance 1e-9 treats a value as a tick if it equals the tick up to rounding.
     const double inward = tight ? -1e-9 : 1e-9;
     const auto first = static_cast<long long>(tight ? std::ceil(low / step + inward) : std::floor(low / step + inward));
@@ -33,7 +33,7 @@ Axis linear_axis(AxisRequest wanted) {
     Axis axis{low, high, false, {}};
     for (long long i = first; i <= last; ++i) {
         const double value = static_cast<double>(i) * step;
-        axis.ticks.push_back({value, brief_number(value, 6)});
+        axis.ticks.push_back({value, format_significant(value, 6)});
     }
     if (!tight) axis.low = axis.ticks.front().value, axis.high = axis.ticks.back().value;
     return axis;
@@ -53,15 +53,16 @@ Axis logarithmic_axis(double low, double high) {
     const int first = static_cast<int>(std::floor(std::log10(low) + 1e-9));
     const int last = static_cast<int>(std::ceil(std::log10(high) - 1e-9));
     const bool few = std::log10(high / low) < 2;
-    const int every = 1 + (last - first) / 8; // more than 8 labels would overlap
+    const int label_interval = 1 + (last - first) / 8; // more than 8 labels would overlap
     Axis axis{low, high, true, {}};
     for (int exponent = first; exponent <= last; ++exponent)
         for (int digit = 1; digit <= 9; ++digit) {
             const double value = digit * std::pow(10.0, exponent);
             const bool tight = value < low * (1 - 1e-9) || value > high * (1 + 1e-9);
             if (tight) continue;
-            const bool labeled = digit == 1 ? (exponent - first) % every == 0 : few && (digit == 2 || digit == 5);
-            const std::string label = few ? brief_number(value, 6) : power_label(exponent);
+            const bool labeled =
+                digit == 1 ? (exponent - first) % label_interval == 0 : few && (digit == 2 || digit == 5);
+            const std::string label = few ? format_significant(value, 6) : power_label(exponent);
             axis.ticks.push_back({value, labeled ? label : ""});
         }
     return axis;
@@ -86,7 +87,7 @@ Axis make_axis(const AxisRequest& request) {
     return logarithmic_axis(round_outward(request.low, false), round_outward(request.high, true));
 }
 
-std::string brief_number(double value, int digits) {
+std::string format_significant(double value, int digits) {
     std::array<char, 40> text{};
     const auto end =
         std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, digits).ptr;

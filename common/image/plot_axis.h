@@ -37,6 +37,6 @@ struct AxisRequest {
 Axis make_axis(const AxisRequest& request);
 
 /// Formats a number with up to `digits` significant digits, independently of the locale, for example "0.5" or "1e+06".
-std::string brief_number(double value, int digits);
+std::string format_significant(double value, int digits);
 
 } // namespace duet

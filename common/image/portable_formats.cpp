@@ -12,9 +12,9 @@ namespace {
 
 // Reads the words of a header and the numbers of a P3 file. A `#` starts a comment, which extends to the end of its
 // line.
-class Words {
+class TokenReader {
 public:
-    explicit Words(const ImageBytes& file) : file_(file) {}
+    explicit TokenReader(const ImageBytes& file) : file_(file) {}
 
     std::size_t position() const { return at_; }
 
@@ -75,9 +75,9 @@ unsigned byte_at(const ImageBytes& file, std::size_t i) { return static_cast<uns
     throw Error(message(file.name, ": a value of ", value, ", expected 0 to ", largest));
 }
 
-void read_ascii_values(const ImageBytes& file, Words& words, long long largest, std::vector<float>& values) {
+void read_ascii_values(const ImageBytes& file, TokenReader& tokens, long long largest, std::vector<float>& values) {
     for (float& value : values) {
-        const long long stored = words.integer("a pixel's value");
+        const long long stored = tokens.integer("a pixel's value");
         if (stored < 0 || stored > largest) value_too_large(file, stored, largest);
         value = static_cast<float>(stored) / static_cast<float>(largest);
     }
@@ -94,61 +94,62 @@ void read_binary_values(const ImageBytes& file, std::size_t at, long long larges
     }
 }
 
-std::size_t value_count(const PixelFile& picture) {
-    return static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height) *
-           static_cast<std::size_t>(picture.channels);
+std::size_t value_count(const StoredImage& image) {
+    return static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) *
+           static_cast<std::size_t>(image.channels);
 }
 
-PixelFile sized(const ImageBytes& file, Words& words, int channels, PixelFile::Encoding encoding) {
-    const long long width = words.integer("the width"), height = words.integer("the height");
+StoredImage read_size(const ImageBytes& file, TokenReader& tokens, int channels, StoredImage::Encoding encoding) {
+    const long long width = tokens.integer("the width"), height = tokens.integer("the height");
     check_image_size(file.name, width, height);
     return {static_cast<int>(width), static_cast<int>(height), channels, encoding, {}};
 }
 
 } // namespace
 
-PixelFile decode_ppm(const ImageBytes& file) {
-    Words words(file);
-    PixelFile picture = sized(file, words, 3, PixelFile::Encoding::kEncoded);
-    const long long largest = words.integer("the largest value");
+StoredImage decode_ppm(const ImageBytes& file) {
+    TokenReader tokens(file);
+    StoredImage image = read_size(file, tokens, 3, StoredImage::Encoding::kEncoded);
+    const long long largest = tokens.integer("the largest value");
     if (largest < 1 || largest > 65535)
         throw Error(message(file.name, ": a largest value of ", largest, ", expected 1 to 65535"));
-    const std::size_t first = words.end_of_header(), count = value_count(picture);
+    const std::size_t first = tokens.end_of_header(), count = value_count(image);
     const bool ascii = file.bytes[1] == '3';
     // Each number of a P3 file takes at least one digit and one blank, but the last number needs no blank.
     const std::size_t bytes = ascii ? 2 * count - 1 : largest > 255 ? 2 * count : count;
-    check_claim(file, picture.width, picture.height, static_cast<double>(bytes),
-                static_cast<double>(file.bytes.size() - first));
-    picture.values.resize(count);
+    check_pixel_data_size(file, image.width, image.height, static_cast<double>(bytes),
+                          static_cast<double>(file.bytes.size() - first));
+    image.values.resize(count);
     if (ascii)
-        read_ascii_values(file, words, largest, picture.values);
+        read_ascii_values(file, tokens, largest, image.values);
     else
-        read_binary_values(file, first, largest, picture.values);
-    return picture;
+        read_binary_values(file, first, largest, image.values);
+    return image;
 }
 
-PixelFile decode_pfm(const ImageBytes& file) {
-    Words words(file);
-    PixelFile picture = sized(file, words, file.bytes[1] == 'F' ? 3 : 1, PixelFile::Encoding::kLinear);
+StoredImage decode_pfm(const ImageBytes& file) {
+    TokenReader tokens(file);
+    StoredImage image = read_size(file, tokens, file.bytes[1] == 'F' ? 3 : 1, StoredImage::Encoding::kLinear);
     // The sign of the scale gives the byte order (negative: little endian). Its magnitude is the unit of the values.
-    const double scale = words.real("the scale");
+    const double scale = tokens.real("the scale");
     if (!std::isfinite(scale) || scale == 0)
         throw Error(message(file.name, ": a scale of ", scale, ", expected a number but 0"));
-    const std::size_t first = words.end_of_header(), count = value_count(picture);
-    check_claim(file, picture.width, picture.height, 4.0 * static_cast<double>(count),
-                static_cast<double>(file.bytes.size() - first));
-    picture.values.resize(count);
-    const bool little = scale < 0;
+    const std::size_t first = tokens.end_of_header(), count = value_count(image);
+    check_pixel_data_size(file, image.width, image.height, 4.0 * static_cast<double>(count),
+                          static_cast<double>(file.bytes.size() - first));
+    image.values.resize(count);
+    const bool little_endian = scale < 0;
     const auto unit = static_cast<float>(std::abs(scale));
-    const std::size_t row = count / static_cast<std::size_t>(picture.height);
+    const std::size_t row = count / static_cast<std::size_t>(image.height);
     for (std::size_t i = 0; i < count; ++i) {
         std::uint32_t bits = 0;
-        for (std::size_t k = 0; k < 4; ++k) bits = bits << 8 | byte_at(file, first + 4 * i + (little ? 3 - k : k));
+        for (std::size_t k = 0; k < 4; ++k)
+            bits = bits << 8 | byte_at(file, first + 4 * i + (little_endian ? 3 - k : k));
         const float value = std::bit_cast<float>(bits);
         // PFM stores rows from the bottom.
-        picture.values[count - (i / row + 1) * row + i % row] = unit == 1 ? value : unit * value;
+        image.values[count - (i / row + 1) * row + i % row] = unit == 1 ? value : unit * value;
     }
-    return picture;
+    return image;
 }
 
 std::string encode_ppm(const ImageRgb& image, const WriteOptions& options) {

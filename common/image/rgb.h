@@ -13,7 +13,7 @@ template <typename T> struct RgbT {
     T r{}, g{}, b{};
 
     constexpr RgbT() = default;
-    constexpr explicit RgbT(T grey) : r(grey), g(grey), b(grey) {}
+    constexpr explicit RgbT(T gray) : r(gray), g(gray), b(gray) {}
     constexpr RgbT(T r_, T g_, T b_) : r(r_), g(g_), b(b_) {}
     template <typename U>
     constexpr explicit RgbT(const RgbT<U>& c)

@@ -18,16 +18,16 @@ float round_up(double x) {
 } // namespace
 
 SrgbEncoder::SrgbEncoder() {
-    std::array<float, 256> change{}; // change[k] is the smallest float with code k + 1
-    for (std::size_t k = 0; k < 255; ++k) change[k] = round_up(srgb_decode((static_cast<double>(k) + 0.5) / 255));
-    change[255] = std::numeric_limits<float>::infinity();
+    std::array<float, 256> threshold{}; // threshold[k] is the smallest float with code k + 1
+    for (std::size_t k = 0; k < 255; ++k) threshold[k] = round_up(srgb_decode((static_cast<double>(k) + 0.5) / 255));
+    threshold[255] = std::numeric_limits<float>::infinity();
     std::uint32_t code = 0, bits = kSmallestBits;
     for (Interval& interval : intervals_) {
-        while (std::bit_cast<float>(bits) >= change[code]) ++code;
-        interval = {code, change[code]};
+        while (std::bit_cast<float>(bits) >= threshold[code]) ++code;
+        interval = {code, threshold[code]};
         bits += 1u << kShift;
         // The encoder relies on at most one code change in each interval.
-        DUET_CHECK(code >= 254 || change[code + 1] >= std::bit_cast<float>(bits));
+        DUET_CHECK(code >= 254 || threshold[code + 1] >= std::bit_cast<float>(bits));
     }
 }
 

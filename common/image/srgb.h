@@ -45,7 +45,7 @@ public:
         const float clamped = linear > kSmallest ? linear : kSmallest;
         const float x = clamped < kOneMinusEpsilon ? clamped : kOneMinusEpsilon;
         const Interval& interval = intervals_[(std::bit_cast<std::uint32_t>(x) - kSmallestBits) >> kShift];
-        return static_cast<std::uint8_t>(interval.code + (x >= interval.change ? 1u : 0u));
+        return static_cast<std::uint8_t>(interval.code + (x >= interval.threshold ? 1u : 0u));
     }
 
 private:
@@ -55,7 +55,7 @@ private:
 
     struct Interval {
         std::uint32_t code = 0; ///< code at the lower end of the interval
-        float change = 0;       ///< smallest float with the next code, inside the interval or above it
+        float threshold = 0;    ///< smallest float with the next code, inside the interval or above it
     };
     std::array<Interval, (std::size_t{13} << (23 - kShift))> intervals_{};
 };

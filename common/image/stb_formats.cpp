@@ -52,7 +52,7 @@ class Source {
 public:
     explicit Source(std::string_view bytes) : bytes_(bytes) {}
 
-    bool ran_dry() const { return ran_dry_; }
+    bool ended_early() const { return ended_early_; }
 
     static stbi_io_callbacks callbacks() {
         return {[](void* source, char* data, int size) { return static_cast<Source*>(source)->read(data, size); },
@@ -66,29 +66,29 @@ private:
     int read(char* data, int size) {
         const std::size_t wanted = static_cast<std::size_t>(std::max(size, 0)),
                           count = std::min(wanted, bytes_.size() - at_);
-        if (count < wanted && (wanted != kBufferSize || count == 0)) ran_dry_ = true;
+        if (count < wanted && (wanted != kBufferSize || count == 0)) ended_early_ = true;
         std::memcpy(data, bytes_.data() + at_, count);
         at_ += count;
         return static_cast<int>(count);
     }
     void skip(int count) {
         const std::size_t wanted = static_cast<std::size_t>(std::max(count, 0));
-        if (wanted > bytes_.size() - at_) ran_dry_ = true;
+        if (wanted > bytes_.size() - at_) ended_early_ = true;
         at_ += std::min(wanted, bytes_.size() - at_);
     }
     bool at_end() const { return at_ == bytes_.size(); }
 
     std::string_view bytes_;
     std::size_t at_ = 0;
-    bool ran_dry_ = false;
+    bool ended_early_ = false;
 };
 
 [[noreturn]] void stb_failed(const ImageBytes& file, const char* format, const Source& source) {
     const char* reason = stbi_failure_reason();
     throw Error(message(file.name, ": not a readable ", format, " picture: ",
-                        source.ran_dry()    ? "truncated"
-                        : reason != nullptr ? reason
-                                            : "unknown reason"));
+                        source.ended_early() ? "truncated"
+                        : reason != nullptr  ? reason
+                                             : "unknown reason"));
 }
 
 struct Size {
@@ -107,30 +107,31 @@ Size stb_size(const ImageBytes& file, const char* format) {
     return size;
 }
 
-template <typename Sample, typename Load> PixelFile decode_with(Load load, const ImageBytes& file, const char* format) {
-    PixelFile picture;
-    picture.encoding = PixelFile::Encoding::kEncoded;
+template <typename Sample, typename Load>
+StoredImage decode_with(Load load, const ImageBytes& file, const char* format) {
+    StoredImage image;
+    image.encoding = StoredImage::Encoding::kEncoded;
     Source source(file.bytes);
     const stbi_io_callbacks callbacks = Source::callbacks();
     const std::unique_ptr<Sample, decltype(&stbi_image_free)> samples(
-        load(&callbacks, &source, &picture.width, &picture.height, &picture.channels, 0), stbi_image_free);
-    if (!samples || source.ran_dry()) stb_failed(file, format, source);
-    const std::size_t count = static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height) *
-                              static_cast<std::size_t>(picture.channels);
-    picture.values.reserve(count);
+        load(&callbacks, &source, &image.width, &image.height, &image.channels, 0), stbi_image_free);
+    if (!samples || source.ended_early()) stb_failed(file, format, source);
+    const std::size_t count = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) *
+                              static_cast<std::size_t>(image.channels);
+    image.values.reserve(count);
     for (std::size_t i = 0; i < count; ++i)
-        picture.values.push_back(static_cast<float>(samples.get()[i]) /
-                                 static_cast<float>(std::numeric_limits<Sample>::max()));
-    return picture;
+        image.values.push_back(static_cast<float>(samples.get()[i]) /
+                               static_cast<float>(std::numeric_limits<Sample>::max()));
+    return image;
 }
 
 // Returns the smallest number of bytes that the pixels of a TGA can take. They are stored one by one or in runs of up
 // to 128 (Truevision TGA, Version 2.0, "Data Types").
-double least_tga_bytes(const ImageBytes& file, const Size& size) {
+double min_tga_bytes(const ImageBytes& file, const Size& size) {
     const double pixels = static_cast<double>(size.width) * size.height;
     const bool runs = (byte_at(file.bytes, 2) & 8) != 0;
-    const double bytes_a_pixel = (byte_at(file.bytes, 16) + 7) / 8;
-    return runs ? pixels / 128 * (1 + bytes_a_pixel) : pixels * bytes_a_pixel;
+    const double bytes_per_pixel = (byte_at(file.bytes, 16) + 7) / 8;
+    return runs ? pixels / 128 * (1 + bytes_per_pixel) : pixels * bytes_per_pixel;
 }
 
 // Encoding -----------------------------------------------------------------------------------------------------------
@@ -149,7 +150,7 @@ template <typename Write> std::string encode_with(Write write, const ImageRgb& i
 
 } // namespace
 
-PixelFile decode_png(const ImageBytes& file) {
+StoredImage decode_png(const ImageBytes& file) {
     check_png(file);
     stb_size(file, "PNG");
     // Byte 24 of the file is byte 8 of the header chunk's data: the bits per sample.
@@ -157,20 +158,20 @@ PixelFile decode_png(const ImageBytes& file) {
                                          : decode_with<stbi_uc>(stbi_load_from_callbacks, file, "PNG");
 }
 
-PixelFile decode_jpeg(const ImageBytes& file) {
+StoredImage decode_jpeg(const ImageBytes& file) {
     check_jpeg(file);
     stb_size(file, "JPEG");
     return decode_with<stbi_uc>(stbi_load_from_callbacks, file, "JPEG");
 }
 
-PixelFile decode_tga(const ImageBytes& file) {
+StoredImage decode_tga(const ImageBytes& file) {
     // A TGA has the color map type 0 or 1. Other files must be rejected here, because stb might read them as JPEG
     // without the checks of check_jpeg().
     if (file.bytes.size() < 18 || byte_at(file.bytes, 1) > 1)
         throw Error(message(file.name, ": not a readable TGA picture: no TGA header"));
     const Size size = stb_size(file, "TGA");
-    check_claim(file, size.width, size.height, least_tga_bytes(file, size),
-                static_cast<double>(file.bytes.size() - 18));
+    check_pixel_data_size(file, size.width, size.height, min_tga_bytes(file, size),
+                          static_cast<double>(file.bytes.size() - 18));
     return decode_with<stbi_uc>(stbi_load_from_callbacks, file, "TGA");
 }
 

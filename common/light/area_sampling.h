@@ -15,10 +15,10 @@ using SolidAngleSample = SolidAngleSampleT<double>;
 /// Returns whether a density is positive and finite as a float.
 template <typename T> MaskOf<T> is_usable_pdf(T pdf) { return (pdf > T(1e-45)) & (pdf < T(1e38)); }
 
-/// An AreaSeen describes a flat shape as seen from a point p. area_vector is its normal with the shape's area as
+/// An AreaSampling describes a flat shape as seen from a point p. area_vector is its normal with the shape's area as
 /// length, and to_plane is a point of its plane relative to p. T is double, or a batch of doubles for several points
 /// p.
-template <typename T> struct AreaSeen {
+template <typename T> struct AreaSampling {
     Vec3T<T> area_vector, to_plane;
 
     /// Returns whether the light is so near that it has to be sampled by solid angle, because the density of area
@@ -49,14 +49,16 @@ template <typename T> struct AreaSeen {
 };
 
 /// A QuadSeen is a quad (corner + a·u + b·v) as seen from a point p.
-template <typename T> struct QuadSeen : AreaSeen<T> {
+template <typename T> struct QuadSeen : AreaSampling<T> {
     Vec3T<T> u, v;
 
     QuadSeen(Vec3T<T> corner, Vec3T<T> u_, Vec3T<T> v_, Vec3T<T> p)
-        : AreaSeen<T>{cross(u_, v_), corner - p}, u(u_), v(v_) {}
-    auto near() const { return AreaSeen<T>::near(this->to_plane + (u + v) * T(0.5)); }
+        : AreaSampling<T>{cross(u_, v_), corner - p}, u(u_), v(v_) {}
+    auto near() const { return AreaSampling<T>::near(this->to_plane + (u + v) * T(0.5)); }
     /// Returns the sample at the position a of the quad, for uniform area sampling.
-    SolidAngleSampleT<T> sample(Vec2T<T> a) const { return AreaSeen<T>::sample(this->to_plane + u * a.x + v * a.y); }
+    SolidAngleSampleT<T> sample(Vec2T<T> a) const {
+        return AreaSampling<T>::sample(this->to_plane + u * a.x + v * a.y);
+    }
 };
 
 } // namespace duet

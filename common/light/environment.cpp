@@ -27,7 +27,7 @@ bool black(const SkyEnvironment& e) { return is_black(e.down) && is_black(e.up);
 float wrap(double u) { return std::min(static_cast<float>(u - std::floor(u)), kOneMinusEpsilon); }
 
 /// Returns the image's texture coordinates for direction w, in [0, 1)².
-Vec2 picture_uv(const ImageEnvironment& e, Vec3 w) {
+Vec2 image_uv(const ImageEnvironment& e, Vec3 w) {
     const Vec2 uv = latlong_uv(w);
     return {wrap(static_cast<double>(uv.x) + static_cast<double>(e.rotation) / (2 * kPiDouble)),
             clamp(uv.y, 0.0f, kOneMinusEpsilon)};
@@ -51,7 +51,7 @@ std::size_t band_index(float v, int rows) {
 Rgb look_up(const ImageEnvironment& e, Vec3 w) {
     if (e.image.empty()) return {};
     const int width = e.image.width(), rows = e.image.height();
-    const Vec2 uv = picture_uv(e, w);
+    const Vec2 uv = image_uv(e, w);
     const float x = uv.x * static_cast<float>(width) - 0.5f, y = (1 - uv.y) * static_cast<float>(rows) - 0.5f;
     const float left = std::floor(x), top = std::floor(y);
     const auto pixel = [&](int column, int row) {
@@ -62,7 +62,7 @@ Rgb look_up(const ImageEnvironment& e, Vec3 w) {
     const Rgb lower = lerp(pixel(i, j + 1), pixel(i + 1, j + 1), x - left);
     return lerp(upper, lower, y - top) * e.scale;
 }
-bool black(const ImageEnvironment& e) { return e.scale == 0 || e.dark; }
+bool black(const ImageEnvironment& e) { return e.scale == 0 || e.all_black; }
 float cell_density(const ImageEnvironment& e, float pdf_uv, float v) {
     const int rows = e.image.height();
     const double extent = band(band_index(v, rows), static_cast<std::size_t>(rows)).extent;
@@ -70,7 +70,7 @@ float cell_density(const ImageEnvironment& e, float pdf_uv, float v) {
 }
 float density(const ImageEnvironment& e, Vec3 w) {
     if (black(e) || e.excess == 0) return 0;
-    const Vec2 uv = picture_uv(e, w);
+    const Vec2 uv = image_uv(e, w);
     return cell_density(e, e.distribution.pdf(uv), uv.y);
 }
 std::optional<EnvironmentSample> draw(const ImageEnvironment& e, Vec2 u) {
@@ -80,9 +80,9 @@ std::optional<EnvironmentSample> draw(const ImageEnvironment& e, Vec2 u) {
     const std::size_t k = band_index(s.uv.y, e.image.height());
     const Band row = band(k, rows);
     const double within = static_cast<double>(s.uv.y) * static_cast<double>(rows) - static_cast<double>(k);
-    const double y = std::clamp(row.low + within * row.extent, -1.0, 1.0), ring = std::sqrt((1 - y) * (1 + y));
+    const double y = std::clamp(row.low + within * row.extent, -1.0, 1.0), ring_radius = std::sqrt((1 - y) * (1 + y));
     const double longitude = (static_cast<double>(s.uv.x) - 0.5) * 2 * kPiDouble - static_cast<double>(e.rotation);
-    const Vec3 wi(Vec3d(ring * std::sin(longitude), y, -ring * std::cos(longitude)));
+    const Vec3 wi(Vec3d(ring_radius * std::sin(longitude), y, -ring_radius * std::cos(longitude)));
     const float pdf = cell_density(e, s.pdf, s.uv.y);
     if (!(pdf > 0) || !std::isfinite(pdf)) return std::nullopt;
     return EnvironmentSample{wi, look_up(e, wi), pdf};
@@ -112,10 +112,10 @@ std::vector<double> cell_weights(const ImageRgb& image) {
 }
 
 /// An image is only sampled where the fraction of its light above the mean exceeds this.
-constexpr double kUneven = 0.25;
+constexpr double kMinExcessFraction = 0.25;
 
 /// Builds the distribution of the luminance above the mean, where there is enough of it to justify a shadow ray.
-void distribute_excess(ImageEnvironment& e) {
+void build_excess_distribution(ImageEnvironment& e) {
     std::vector<double> weights = cell_weights(e.image);
     const int width = e.image.width();
     const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(e.image.height());
@@ -130,7 +130,7 @@ void distribute_excess(ImageEnvironment& e) {
             excess += weight / cells;
         }
     }
-    if (!(excess > kUneven * mean)) return;
+    if (!(excess > kMinExcessFraction * mean)) return;
     e.excess = static_cast<float>(excess);
     e.distribution = Distribution2D(weights, width, e.image.height());
 }
@@ -147,11 +147,11 @@ ImageEnvironment make_image_environment(ImageRgb image, float scale, float rotat
         c = {max(c.r, 0.0f), max(c.g, 0.0f), max(c.b, 0.0f)};
     }
     ImageEnvironment e;
-    e.dark = std::all_of(image.pixels().begin(), image.pixels().end(), [](Rgb c) { return is_black(c); });
+    e.all_black = std::all_of(image.pixels().begin(), image.pixels().end(), [](Rgb c) { return is_black(c); });
     e.image = std::move(image);
     e.scale = scale;
     e.rotation = rotation;
-    distribute_excess(e);
+    build_excess_distribution(e);
     return e;
 }
 
@@ -159,16 +159,16 @@ Rgb radiance(const Environment& environment, Vec3 w) {
     return std::visit([&](const auto& e) { return look_up(e, w); }, environment);
 }
 std::optional<EnvironmentSample> sample(const Environment& environment, Vec2 u) {
-    const auto* picture = std::get_if<ImageEnvironment>(&environment);
-    return picture != nullptr ? draw(*picture, u) : std::nullopt;
+    const auto* map = std::get_if<ImageEnvironment>(&environment);
+    return map != nullptr ? draw(*map, u) : std::nullopt;
 }
 float pdf(const Environment& environment, Vec3 w) {
-    const auto* picture = std::get_if<ImageEnvironment>(&environment);
-    return picture != nullptr ? density(*picture, w) : 0.0f;
+    const auto* map = std::get_if<ImageEnvironment>(&environment);
+    return map != nullptr ? density(*map, w) : 0.0f;
 }
 float sampled_irradiance(const Environment& environment) {
-    const auto* picture = std::get_if<ImageEnvironment>(&environment);
-    return picture != nullptr && !black(*picture) ? kPi * picture->scale * picture->excess : 0.0f;
+    const auto* map = std::get_if<ImageEnvironment>(&environment);
+    return map != nullptr && !black(*map) ? kPi * map->scale * map->excess : 0.0f;
 }
 bool is_black(const Environment& environment) {
     return std::visit([](const auto& e) { return black(e); }, environment);
@@ -188,15 +188,15 @@ std::optional<Rgb> irradiance_closed_form(const Environment& environment, Vec3 n
 Rgb mean_radiance(const Environment& environment) {
     if (const auto* constant = std::get_if<ConstantEnvironment>(&environment)) return constant->radiance;
     if (const auto* sky = std::get_if<SkyEnvironment>(&environment)) return (sky->down + sky->up) * 0.5f;
-    const auto& picture = std::get<ImageEnvironment>(environment);
+    const auto& map = std::get<ImageEnvironment>(environment);
     Rgbd sum;
-    const auto rows = static_cast<std::size_t>(picture.image.height());
-    for (int y = 0; y < picture.image.height(); ++y) {
+    const auto rows = static_cast<std::size_t>(map.image.height());
+    for (int y = 0; y < map.image.height(); ++y) {
         const double extent = band(rows - 1 - static_cast<std::size_t>(y), rows).extent;
-        for (int x = 0; x < picture.image.width(); ++x) sum += Rgbd(picture.image(x, y)) * extent;
+        for (int x = 0; x < map.image.width(); ++x) sum += Rgbd(map.image(x, y)) * extent;
     }
-    const double cells = 2 * static_cast<double>(max(picture.image.width(), 1)); // the bands' extents add up to 2
-    return Rgb(sum * (static_cast<double>(picture.scale) / cells));
+    const double cells = 2 * static_cast<double>(max(map.image.width(), 1)); // the bands' extents add up to 2
+    return Rgb(sum * (static_cast<double>(map.scale) / cells));
 }
 
 } // namespace duet

@@ -30,7 +30,7 @@ struct ImageEnvironment {
     float scale = 1;    ///< factor of all pixels
     float rotation = 0; ///< radians about +y, counter-clockwise seen from above
     // make_image_environment computes the fields below.
-    bool dark = true;            ///< whether all pixels are black
+    bool all_black = true;       ///< whether all pixels are black
     float excess = 0;            ///< mean over directions of the luminance above the mean; 0: too little to sample
     Distribution2D distribution; ///< distribution of that luminance over (u, v); empty where it is not sampled
 };

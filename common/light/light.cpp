@@ -13,14 +13,14 @@ using Triangle = SurfaceLight::Triangle;
 
 /// Returns the sample of a light at a single position: intensity over squared distance. It is computed in double, so
 /// that neither intermediate overflows.
-std::optional<LightSample> from_position(Vec3 position, Rgb intensity, Vec3 p) {
+std::optional<LightSample> sample_position(Vec3 position, Rgb intensity, Vec3 p) {
     const Vec3d to_light = Vec3d(position) - Vec3d(p);
     const double d2 = length_squared(to_light);
     if (!(d2 > 0)) return std::nullopt;
     const double d = std::sqrt(d2);
-    const Rgb arriving(Rgbd(intensity) / d2);
-    if (!is_finite(arriving)) return std::nullopt;
-    return LightSample{Vec3(to_light / d), static_cast<float>(d), arriving, 1, true};
+    const Rgb incident(Rgbd(intensity) / d2);
+    if (!is_finite(incident)) return std::nullopt;
+    return LightSample{Vec3(to_light / d), static_cast<float>(d), incident, 1, true};
 }
 
 /// Returns the fraction of the axis's intensity at an angle of this cosine to the axis, in [0, 1].
@@ -32,11 +32,11 @@ float spot_falloff(const SpotLight& light, float cosine) {
 }
 
 std::optional<LightSample> draw(const PointLight& light, Vec3 p, Vec2) {
-    return from_position(light.position, light.intensity, p);
+    return sample_position(light.position, light.intensity, p);
 }
 
 std::optional<LightSample> draw(const SpotLight& light, Vec3 p, Vec2) {
-    std::optional<LightSample> s = from_position(light.position, light.intensity, p);
+    std::optional<LightSample> s = sample_position(light.position, light.intensity, p);
     if (!s) return std::nullopt;
     const float falloff = spot_falloff(light, -dot(s->wi, light.direction));
     if (!(falloff > 0)) return std::nullopt;

@@ -11,7 +11,7 @@ namespace duet {
 namespace {
 
 constexpr std::size_t kBins = 12;
-constexpr int kDepthOfHalving = 32; ///< from this depth on lists are halved, so that no path exceeds 64 levels
+constexpr int kMedianSplitDepth = 32; ///< from this depth on lists are halved, so that no path exceeds 64 levels
 
 /// Returns the measure of the directions into which lights with normals in a cone emit (Conty Estevez and Kulla 2018,
 /// eq. 1, for emission up to 90° from the normal).
@@ -28,13 +28,11 @@ float cost(const LightBounds& bounds) {
 }
 
 /// Rescales u from the subinterval [from, from + size) to [0, 1).
-float stretched(float u, float from, float size) {
-    return clamp((u - from) / size, 0.0f, kOneMinusEpsilon);
-}
+float remap_sample(float u, float from, float size) { return clamp((u - from) / size, 0.0f, kOneMinusEpsilon); }
 
 } // namespace
 
-LightTree::LightTree(const std::vector<Light>& lights) : places_(lights.size()) {
+LightTree::LightTree(const std::vector<Light>& lights) : paths_(lights.size()) {
     for (std::size_t i = 0; i < lights.size(); ++i) {
         if (std::holds_alternative<SunLight>(lights[i])) continue;
         const LightBounds bounds = light_bounds(lights[i]);
@@ -44,7 +42,7 @@ LightTree::LightTree(const std::vector<Light>& lights) : places_(lights.size()) 
 }
 
 // Builds the node of lights [first, last) with its whole subtree, and returns its index.
-std::uint32_t LightTree::build(std::uint32_t first, std::uint32_t last, std::uint64_t turns, int depth) {
+std::uint32_t LightTree::build(std::uint32_t first, std::uint32_t last, std::uint64_t bit_trail, int depth) {
     const auto index = static_cast<std::uint32_t>(nodes_.size());
     nodes_.emplace_back();
     LightBounds bounds;
@@ -53,12 +51,12 @@ std::uint32_t LightTree::build(std::uint32_t first, std::uint32_t last, std::uin
     if (last - first <= kLeafLights) {
         nodes_[index].first = first;
         nodes_[index].count = last - first;
-        for (std::uint32_t i = first; i < last; ++i) places_[lights_[i].index] = {turns, i};
+        for (std::uint32_t i = first; i < last; ++i) paths_[lights_[i].index] = {bit_trail, i};
         return index;
     }
     const std::uint32_t middle = split(first, last, bounds, depth);
-    build(first, middle, turns, depth + 1);
-    nodes_[index].first = build(middle, last, turns | std::uint64_t{1} << depth, depth + 1);
+    build(first, middle, bit_trail, depth + 1);
+    nodes_[index].first = build(middle, last, bit_trail | std::uint64_t{1} << depth, depth + 1);
     return index;
 }
 
@@ -67,7 +65,7 @@ std::uint32_t LightTree::split(std::uint32_t first, std::uint32_t last, const Li
     const auto begin = lights_.begin() + first, end = lights_.begin() + last;
     Box3 centers;
     for (auto light = begin; light != end; ++light) centers.extend(light->bounds.box.center());
-    const auto bin_of = [&](const Leaf& light, std::size_t axis) {
+    const auto bin_of = [&](const LeafLight& light, std::size_t axis) {
         const float extent = centers.diagonal()[axis];
         const float part = (light.bounds.box.center()[axis] - centers.low[axis]) / extent;
         return std::min(static_cast<std::size_t>(part * static_cast<float>(kBins)), kBins - 1);
@@ -77,7 +75,7 @@ std::uint32_t LightTree::split(std::uint32_t first, std::uint32_t last, const Li
         std::size_t axis = 0, bin = 0;
     } best;
     const Vec3 extent = bounds.box.diagonal();
-    for (std::size_t axis = 0; axis < 3 && depth < kDepthOfHalving; ++axis) {
+    for (std::size_t axis = 0; axis < 3 && depth < kMedianSplitDepth; ++axis) {
         if (!(centers.diagonal()[axis] > 0)) continue;
         std::array<LightBounds, kBins> bins, right;
         for (auto light = begin; light != end; ++light) bins[bin_of(*light, axis)].extend(light->bounds);
@@ -96,14 +94,14 @@ std::uint32_t LightTree::split(std::uint32_t first, std::uint32_t last, const Li
     if (!std::isfinite(best.cost)) { // all centers coincide, or the depth limit is reached
         const std::size_t axis = longest_axis(centers.diagonal());
         const auto middle = begin + (end - begin) / 2;
-        std::nth_element(begin, middle, end, [&](const Leaf& a, const Leaf& b) {
+        std::nth_element(begin, middle, end, [&](const LeafLight& a, const LeafLight& b) {
             const float ca = a.bounds.box.center()[axis], cb = b.bounds.box.center()[axis];
             return ca != cb ? ca < cb : a.index < b.index;
         });
         return static_cast<std::uint32_t>(middle - lights_.begin());
     }
     const auto middle =
-        std::stable_partition(begin, end, [&](const Leaf& light) { return bin_of(light, best.axis) <= best.bin; });
+        std::stable_partition(begin, end, [&](const LeafLight& light) { return bin_of(light, best.axis) <= best.bin; });
     return static_cast<std::uint32_t>(middle - lights_.begin());
 }
 
@@ -113,25 +111,25 @@ float LightTree::irradiance(const LightReceiver& receiver) const {
 
 // Returns the probability of an inner node's first child, or a negative value where neither child can illuminate the
 // receiver.
-float LightTree::first_share(const Node& node, const LightReceiver& receiver) const {
+float LightTree::first_child_probability(const Node& node, const LightReceiver& receiver) const {
     const float a = irradiance_estimate((&node)[1].bounds, receiver);
     const float b = irradiance_estimate(nodes_[node.first].bounds, receiver);
     return a + b > 0 ? a / (a + b) : -1.0f;
 }
 
-std::optional<LightChoice> LightTree::sample(const LightReceiver& receiver, float u) const {
+std::optional<SampledLight> LightTree::sample(const LightReceiver& receiver, float u) const {
     if (empty()) return std::nullopt;
     const Node* node = &nodes_[0];
     float probability = 1;
     while (node->count == 0) {
-        const float share = first_share(*node, receiver);
-        if (share < 0) return std::nullopt;
-        const bool first = u < share;
-        probability *= first ? share : 1 - share;
-        u = first ? stretched(u, 0, share) : stretched(u, share, 1 - share);
+        const float p_first = first_child_probability(*node, receiver);
+        if (p_first < 0) return std::nullopt;
+        const bool first = u < p_first;
+        probability *= first ? p_first : 1 - p_first;
+        u = first ? remap_sample(u, 0, p_first) : remap_sample(u, p_first, 1 - p_first);
         node = first ? node + 1 : &nodes_[node->first];
     }
-    if (node->count == 1) return LightChoice{lights_[node->first].index, probability, u};
+    if (node->count == 1) return SampledLight{lights_[node->first].index, probability, u};
     std::array<float, kLeafLights> weights;
     float sum = 0;
     for (std::uint32_t i = 0; i < node->count; ++i)
@@ -146,28 +144,28 @@ std::optional<LightChoice> LightTree::sample(const LightReceiver& receiver, floa
         left -= weights[i];
     }
     const float weight = weights[last];
-    return LightChoice{lights_[node->first + last].index, probability * (weight / sum), stretched(left, 0, weight)};
+    return SampledLight{lights_[node->first + last].index, probability * (weight / sum), remap_sample(left, 0, weight)};
 }
 
 float LightTree::probability(const LightReceiver& receiver, std::size_t index) const {
-    if (index >= places_.size() || places_[index].leaf_light == kNowhere) return 0;
-    const Place& place = places_[index];
+    if (index >= paths_.size() || paths_[index].leaf_light == kNoLeaf) return 0;
+    const TreePath& path = paths_[index];
     const Node* node = &nodes_[0];
     float probability = 1;
-    for (std::uint64_t turns = place.turns; node->count == 0; turns >>= 1) {
-        const float share = first_share(*node, receiver);
-        if (share < 0) return 0;
-        probability *= turns & 1 ? 1 - share : share;
-        node = turns & 1 ? &nodes_[node->first] : node + 1;
+    for (std::uint64_t bit_trail = path.bit_trail; node->count == 0; bit_trail >>= 1) {
+        const float p_first = first_child_probability(*node, receiver);
+        if (p_first < 0) return 0;
+        probability *= bit_trail & 1 ? 1 - p_first : p_first;
+        node = bit_trail & 1 ? &nodes_[node->first] : node + 1;
     }
     if (node->count == 1) return probability;
-    float sum = 0, own = 0;
+    float sum = 0, light_weight = 0;
     for (std::uint32_t i = node->first; i < node->first + node->count; ++i) {
         const float weight = irradiance_estimate(lights_[i].bounds, receiver);
         sum += weight;
-        if (i == place.leaf_light) own = weight;
+        if (i == path.leaf_light) light_weight = weight;
     }
-    return sum > 0 ? probability * (own / sum) : 0.0f;
+    return sum > 0 ? probability * (light_weight / sum) : 0.0f;
 }
 
 } // namespace duet

@@ -8,7 +8,7 @@
 
 namespace duet {
 
-struct LightChoice {
+struct SampledLight {
     std::size_t index; ///< index into the list of lights
     float probability; ///< probability of this choice, > 0
     float remapped;    ///< random number for reuse, uniform in [0, 1)
@@ -30,12 +30,12 @@ public:
     /// Returns an estimate of the irradiance from all lights together, W/m².
     float irradiance(const LightReceiver& receiver) const;
     /// Chooses a light. u is in [0, 1). The result is empty where no light can illuminate the receiver.
-    std::optional<LightChoice> sample(const LightReceiver& receiver, float u) const;
+    std::optional<SampledLight> sample(const LightReceiver& receiver, float u) const;
     /// Returns the probability with which sample chooses a light. It is 0 for a light that is not in the tree.
     float probability(const LightReceiver& receiver, std::size_t index) const;
 
 private:
-    struct Leaf {
+    struct LeafLight {
         LightBounds bounds;
         std::size_t index; ///< index into the list of lights
     };
@@ -46,21 +46,21 @@ private:
         std::uint32_t first = 0;
         std::uint32_t count = 0; ///< number of lights in a leaf; 0: an inner node
     };
-    /// A Place is the path from the root to a light. Bit i of `turns` is set where level i takes the second child.
-    /// leaf_light is the light's index in lights_.
-    struct Place {
-        std::uint64_t turns = 0;
-        std::uint32_t leaf_light = kNowhere;
+    /// A TreePath is the path from the root to a light. Bit i of `bit_trail` is set where level i takes the second
+    /// child. leaf_light is the light's index in lights_.
+    struct TreePath {
+        std::uint64_t bit_trail = 0;
+        std::uint32_t leaf_light = kNoLeaf;
     };
-    static constexpr std::uint32_t kNowhere = 0xffffffffu;
+    static constexpr std::uint32_t kNoLeaf = 0xffffffffu;
 
-    std::uint32_t build(std::uint32_t first, std::uint32_t last, std::uint64_t turns, int depth);
+    std::uint32_t build(std::uint32_t first, std::uint32_t last, std::uint64_t bit_trail, int depth);
     std::uint32_t split(std::uint32_t first, std::uint32_t last, const LightBounds& bounds, int depth);
-    float first_share(const Node& node, const LightReceiver& receiver) const;
+    float first_child_probability(const Node& node, const LightReceiver& receiver) const;
 
     std::vector<Node> nodes_;
-    std::vector<Leaf> lights_;  ///< all lights, in the order of leaves
-    std::vector<Place> places_; ///< path to each light, indexed as the list of lights
+    std::vector<LeafLight> lights_; ///< all lights, in the order of leaves
+    std::vector<TreePath> paths_;   ///< path to each light, indexed as the list of lights
 };
 
 } // namespace duet

@@ -9,7 +9,7 @@
 namespace duet {
 
 /// Each overload returns a flat shape as seen from p.
-AreaSeen<double> area_seen(const SurfaceLight::Triangle& triangle, Vec3d p);
+AreaSampling<double> area_seen(const SurfaceLight::Triangle& triangle, Vec3d p);
 QuadSeen<double> area_seen(const Quad& quad, Vec3d p);
 
 /// Returns whether the quad's sides are at right angles, up to rounding. Near parallelograms of other angles are

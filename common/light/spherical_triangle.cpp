@@ -26,8 +26,8 @@ Vec3d SphericalTriangle::sample(double solid_angle, Vec2d u) const {
 
     // Move c along the edge ac to the point c', where the triangle a b c' has the fraction u.x of the solid angle
     // (Arvo 1995, eq. 3 and 4).
-    const double part = u.x * solid_angle - alpha;
-    const double s = std::sin(part), t = std::cos(part);
+    const double sub_angle = u.x * solid_angle - alpha;
+    const double s = std::sin(sub_angle), t = std::cos(sub_angle);
     const double p = t - cos_alpha, q = s + sin_alpha * cos_c;
     const double denominator = (q * s + p * t) * sin_alpha;
     const double cos_b =

@@ -68,15 +68,16 @@ template <typename BsdfType> BsdfSample sample_of(const BsdfType& bsdf, Vec3 wo,
 /// sees. Near a silhouette an interpolated normal may face away from a viewer who sees the surface, and the material
 /// would then show its other side as a dark rim. Such a wo keeps its azimuth, but its |cos θ| becomes 1e-4. `side` is
 /// the sign of the cosine between the geometric normal and the direction to the viewer.
-template <typename T> Vec3T<T> lifted_above_horizon(Vec3T<T> wo, T side) {
-    constexpr float kLowest = 1e-4f;
-    const auto seen = wo.z * side >= T(kLowest);
+template <typename T> Vec3T<T> clamp_to_visible_side(Vec3T<T> wo, T side) {
+    constexpr float kMinCosine = 1e-4f;
+    const auto is_visible = wo.z * side >= T(kMinCosine);
     if constexpr (Arithmetic<T>)
-        if (seen) return wo; // almost every call returns here
-    const T zero(0.0f), flat = sqrt(wo.x * wo.x + wo.y * wo.y), scale = T(std::sqrt(1 - kLowest * kLowest)) / flat;
-    const Vec3T<T> along = select(flat == zero, Vec3T<T>(zero, zero, side),
-                                  Vec3T<T>(wo.x * scale, wo.y * scale, T(kLowest) * side));
-    return select(seen, wo, along);
+        if (is_visible) return wo; // almost every call returns here
+    const T zero(0.0f), tangential = sqrt(wo.x * wo.x + wo.y * wo.y),
+                        scale = T(std::sqrt(1 - kMinCosine * kMinCosine)) / tangential;
+    const Vec3T<T> clamped = select(tangential == zero, Vec3T<T>(zero, zero, side),
+                                    Vec3T<T>(wo.x * scale, wo.y * scale, T(kMinCosine) * side));
+    return select(is_visible, wo, clamped);
 }
 
 } // namespace duet

@@ -14,10 +14,10 @@ namespace duet {
 /// matches that reflectance exactly at normal incidence, and as closely as possible at all other angles.
 struct Conductor {
     Rgb n, k;    ///< complex index n + ik; n = 0: no conductor
-    Rgb normal;  ///< reflectance at normal incidence, in [0, 1]
-    Rgb average; ///< mean reflectance over the hemisphere: 2∫ F(μ) μ dμ
+    Rgb f0;      ///< reflectance at normal incidence, in [0, 1]
+    Rgb average_fresnel; ///< mean reflectance over the hemisphere: 2∫ F(μ) μ dμ
 
-    bool exists() const { return n.r > 0; }
+    bool valid() const { return n.r > 0; }
 };
 
 /// Returns the names of all known metals in alphabetical order: "aluminium", "chromium" and so on.

@@ -15,7 +15,7 @@ ThinDielectricBsdf Dielectric::thin_at(const TextureSet& textures, const Surface
 }
 
 RoughDielectricBsdf Dielectric::rough_at(const TextureSet& textures, const SurfacePoint& point) const {
-    return {ior, evaluate_reflectance(textures, tint, point), sqr(evaluate_unit(textures, roughness, point))};
+    return {ior, evaluate_reflectance(textures, tint, point), sqr(evaluate_clamped(textures, roughness, point))};
 }
 
 } // namespace duet

@@ -45,7 +45,7 @@ extern template struct DielectricBsdfT<float>; // in dielectric.cpp
 
 /// Returns whether a boundary of this relative index bends light so little that its microfacets do not matter. They
 /// would be computed from the difference of two nearly equal directions, so such boundaries are treated as smooth.
-inline bool refracts_alike(float eta) { return std::abs(eta - 1) <= 1e-3f; }
+inline bool is_index_matched(float eta) { return std::abs(eta - 1) <= 1e-3f; }
 
 struct Dielectric {
     float ior = 1.5f; ///< index of refraction inside over outside, in [1, 4]
@@ -60,7 +60,7 @@ struct Dielectric {
     static constexpr float kSmoothAlpha = 1e-4f;
 
     bool smooth() const { return roughness.constant() && sqr(roughness.value) < kSmoothAlpha; }
-    bool has_inside() const { return !thin && (!is_black(absorption) || priority > 0); }
+    bool has_interior_medium() const { return !thin && (!is_black(absorption) || priority > 0); }
     DielectricBsdf at(const TextureSet& textures, const SurfacePoint& point) const;
     ThinDielectricBsdf thin_at(const TextureSet& textures, const SurfacePoint& point) const;
     RoughDielectricBsdf rough_at(const TextureSet& textures, const SurfacePoint& point) const;

@@ -9,7 +9,7 @@ DiffuseBsdf Diffuse::at(const TextureSet& textures, const SurfacePoint& point) c
 }
 
 RoughDiffuseBsdf Diffuse::rough_at(const TextureSet& textures, const SurfacePoint& point) const {
-    return {evaluate_reflectance(textures, albedo, point), evaluate_unit(textures, roughness, point)};
+    return {evaluate_reflectance(textures, albedo, point), evaluate_clamped(textures, roughness, point)};
 }
 
 } // namespace duet

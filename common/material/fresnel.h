@@ -43,12 +43,12 @@ template <typename T> T fresnel_conductor(T cos_i, T n, T k) {
     return min(T(0.5f) * (perpendicular + parallel), T(1));
 }
 
-/// Returns Schlick's approximation for metals, from the reflectance `normal` at normal incidence (Schlick 1994,
-/// eq. 24). The result is 1 at grazing incidence and never below `normal`.
-template <typename T> RgbT<T> fresnel_schlick(RgbT<T> normal, T cos_i) {
+/// Returns Schlick's approximation for metals, from the reflectance `f0` at normal incidence (Schlick 1994,
+/// eq. 24). The result is 1 at grazing incidence and never below `f0`.
+template <typename T> RgbT<T> fresnel_schlick(RgbT<T> f0, T cos_i) {
     const T x = T(1) - clamp(cos_i, T(0), T(1));
     const T x2 = x * x;
-    return normal + (RgbT<T>(T(1)) - normal) * (x2 * x2 * x);
+    return f0 + (RgbT<T>(T(1)) - f0) * (x2 * x2 * x);
 }
 
 } // namespace duet

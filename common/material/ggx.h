@@ -63,11 +63,11 @@ template <typename T> T ggx_reflection_pdf(Vec3T<T> wo, Vec3T<T> h, T alpha) {
     return ggx_d(h, alpha) / (T(2) * (wo.z + ggx_projected(wo, alpha)));
 }
 
-/// Returns the density of wi for a mixture of two lobes. With probability `several` wi is cosine-distributed, which
-/// samples the light of multiple reflections (ggx_multiple in ggx_albedo.h). Otherwise wi results from one reflection
-/// at h.
-template <typename T> T ggx_reflections_pdf(Vec3T<T> wo, Vec3T<T> wi, Vec3T<T> h, T alpha, T several) {
-    return lerp(ggx_reflection_pdf(wo, h, alpha), cosine_hemisphere_pdf(wi.z), several);
+/// Returns the density of wi for a mixture of two lobes. With probability `p_multiple` wi is cosine-distributed, which
+/// samples the light of multiple reflections (ggx_multiple_scattering in ggx_albedo.h). Otherwise wi results from one
+/// reflection at h.
+template <typename T> T ggx_reflections_pdf(Vec3T<T> wo, Vec3T<T> wi, Vec3T<T> h, T alpha, T p_multiple) {
+    return lerp(ggx_reflection_pdf(wo, h, alpha), cosine_hemisphere_pdf(wi.z), p_multiple);
 }
 
 /// Draws a visible microfacet normal, of density G₁(wo) max(0, wo·h) D(h) / cos θₒ. After stretching to the

@@ -4,7 +4,7 @@
 #include "common/material/ggx_albedo_table.h"
 #include "common/sampling/hash.h"
 #include "common/sampling/sobol.h"
-#include "common/system/source_table.h"
+#include "common/system/table_generator.h"
 
 #include <memory>
 
@@ -15,12 +15,12 @@ namespace {
 constexpr int kSamples = 1024;
 
 struct Entry {
-    double lost = 0, share = 0;
+    double energy_loss = 0, schlick_weight = 0;
 };
 /// Integrates the single-scattering albedo over wi, by samples of visible normals. Their weight is G₂/G₁.
 Entry integrate(float alpha, float cosine) {
     const Vec3 wo(std::sqrt((1 - cosine) * (1 + cosine)), 0, cosine);
-    double energy = 0, offset = 0, lost = 0;
+    double energy = 0, offset = 0, energy_loss = 0;
     for (int i = 0; i < kSamples; ++i) {
         const Vec2 u((static_cast<float>(i) + 0.5f) / kSamples,
                      unit_float(reverse_bits(static_cast<std::uint32_t>(i))) + 0x1p-25f);
@@ -28,47 +28,48 @@ Entry integrate(float alpha, float cosine) {
         const double weight = wi.z > 0 ? static_cast<double>(ggx_g2_over_g1(wo, wi, alpha)) : 0;
         const double x = 1 - static_cast<double>(dot(wo, h));
         energy += weight;
-        lost += 1 - weight;
+        energy_loss += 1 - weight;
         offset += weight * x * x * x * x * x;
     }
-    return {lost / kSamples, energy > 0 ? offset / energy : 0};
+    return {energy_loss / kSamples, energy > 0 ? offset / energy : 0};
 }
 
 /// Computes the hemispherical means 2∫ … μ dμ from the tables themselves, so that the multiple-scattering lobe
 /// returns exactly the energy that lookups report as lost.
 void add_means(GgxAlbedoTables& tables, std::size_t row, float alpha) {
     constexpr int kSteps = 2048;
-    double lost = 0, share = 0;
+    double energy_loss = 0, schlick_weight = 0;
     for (int i = 0; i < kSteps; ++i) {
         const float x = (static_cast<float>(i) + 0.5f) / kSteps, cosine = x * x; // denser at grazing angles
         const double step = 4.0 * static_cast<double>(x * cosine) / kSteps;
-        const float gone = tables.lost_at(alpha, cosine);
-        lost += step * static_cast<double>(gone);
-        share += step * static_cast<double>((1 - gone) * tables.share_at(alpha, cosine));
+        const float loss = tables.energy_loss_at(alpha, cosine);
+        energy_loss += step * static_cast<double>(loss);
+        schlick_weight += step * static_cast<double>((1 - loss) * tables.schlick_weight_at(alpha, cosine));
     }
-    tables.mean_lost[row] = static_cast<float>(lost);
-    tables.mean_share[row] = static_cast<float>(share);
+    tables.mean_energy_loss[row] = static_cast<float>(energy_loss);
+    tables.mean_schlick_weight[row] = static_cast<float>(schlick_weight);
 }
 
 void write(std::ostream& out, const GgxAlbedoTables::Table& table) {
     out << "{{\n";
-    for (const auto& row : table) write_numbers(out, row);
+    for (const auto& row : table) write_floats(out, row);
     out << "}},\n";
 }
 
 std::unique_ptr<GgxAlbedoTables> compute_tables() {
     auto tables = std::make_unique<GgxAlbedoTables>();
-    constexpr std::size_t kSide = GgxAlbedoTables::kSide;
-    for (std::size_t row = 0; row < kSide; ++row) {
+    constexpr std::size_t kSize = GgxAlbedoTables::kSize;
+    for (std::size_t row = 0; row < kSize; ++row) {
         const float alpha = sqr(GgxAlbedoTables::roughness_of(static_cast<int>(row)));
-        for (std::size_t column = 0; column < kSide; ++column) {
-            const float x = static_cast<float>(column) / (kSide - 1);
-            tables->lost[row][column] =
-                static_cast<float>(integrate(alpha, GgxAlbedoTables::cosine_of_steepness(alpha, x)).lost);
-            tables->share[row][column] = static_cast<float>(integrate(alpha, std::max(x * x, 1e-7f)).share);
+        for (std::size_t column = 0; column < kSize; ++column) {
+            const float x = static_cast<float>(column) / (kSize - 1);
+            tables->energy_loss[row][column] =
+                static_cast<float>(integrate(alpha, GgxAlbedoTables::cosine_of_steepness(alpha, x)).energy_loss);
+            tables->schlick_weight[row][column] =
+                static_cast<float>(integrate(alpha, std::max(x * x, 1e-7f)).schlick_weight);
         }
     }
-    for (std::size_t row = 0; row < kSide; ++row)
+    for (std::size_t row = 0; row < kSize; ++row)
         add_means(*tables, row, sqr(GgxAlbedoTables::roughness_of(static_cast<int>(row))));
     return tables;
 }
@@ -76,14 +77,14 @@ std::unique_ptr<GgxAlbedoTables> compute_tables() {
 } // namespace
 
 int main(int count, char** arguments) {
-    return write_source(count, arguments, "make_ggx_albedo", [](std::ostream& out) {
+    return generate_table(count, arguments, "make_ggx_albedo", [](std::ostream& out) {
         const auto tables = compute_tables();
         out << "#include \"common/material/ggx_albedo_table.h\"\n\nnamespace duet {\n\nextern const GgxAlbedoTables "
                "kGgxAlbedoTables;\nconst GgxAlbedoTables kGgxAlbedoTables{\n";
-        write(out, tables->lost);
-        write(out, tables->share);
-        write_numbers(out, tables->mean_lost);
-        write_numbers(out, tables->mean_share);
+        write(out, tables->energy_loss);
+        write(out, tables->schlick_weight);
+        write_floats(out, tables->mean_energy_loss);
+        write_floats(out, tables->mean_schlick_weight);
         out << "};\n\n} // namespace duet\n";
     });
 }

@@ -10,9 +10,9 @@ namespace duet {
 /// A GlossyLayer is a lobe of GGX microfacets with Schlick's Fresnel term and multiple-scattering compensation, as in
 /// MetalBsdf.
 struct GlossyLayer {
-    Rgb normal;     ///< reflectance at normal incidence
+    Rgb f0;         ///< reflectance at normal incidence
     float alpha;    ///< GGX width, at least LayeredBsdf::kSmoothest
-    Rgb multiple;   ///< factor of the multiple-scattering lobe (ggx_multiple)
+    Rgb multiple_scattering; ///< factor of the multiple-scattering lobe (ggx_multiple_scattering)
 };
 
 /// A LayeredBsdf is a stack of layers. The base is a diffuse surface under a dielectric, mixed with a metal of the
@@ -37,7 +37,7 @@ struct LayeredBsdf {
     float coat_alpha, coat_multiple;
 
     /// This is the reflectance at normal incidence of a coat with index of refraction 1.5.
-    static constexpr float kCoatNormal = 0.04f;
+    static constexpr float kCoatF0 = 0.04f;
 
     struct Description {
         Rgb color;            ///< albedo of the diffuse surface, and the metal's reflectance at normal incidence

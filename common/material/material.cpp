@@ -16,7 +16,7 @@ Bsdf bsdf_at(const Material& material, const TextureSet& textures, const Surface
         }
         Bsdf operator()(const Dielectric& m) const {
             if (m.thin) return m.thin_at(textures, point);
-            if (m.smooth() || refracts_alike(m.ior)) return m.at(textures, point);
+            if (m.smooth() || is_index_matched(m.ior)) return m.at(textures, point);
             const RoughDielectricBsdf rough = m.rough_at(textures, point);
             if (rough.alpha < Dielectric::kSmoothAlpha) return DielectricBsdf{rough.eta, rough.tint};
             return rough;

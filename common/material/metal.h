@@ -11,9 +11,9 @@
 namespace duet {
 
 /// A MetalBsdf reflects by GGX microfacets with Smith's height-correlated masking, sampled by visible normals (Walter
-/// et al. 2007; Heitz 2014, 2018). Multiple scattering between microfacets is compensated (ggx_multiple), so that a
-/// rough metal that absorbs nothing reflects all light. The Fresnel term is exact for a named conductor, and else
-/// Schlick's from the reflectance at normal incidence. Where alpha is below kSmoothAlpha, the metal is a perfect
+/// et al. 2007; Heitz 2014, 2018). Multiple scattering between microfacets is compensated (ggx_multiple_scattering), so
+/// that a rough metal that absorbs nothing reflects all light. The Fresnel term is exact for a named conductor, and
+/// else Schlick's from the reflectance at normal incidence. Where alpha is below kSmoothAlpha, the metal is a perfect
 /// mirror.
 template <typename T> struct MetalBsdfT {
     static constexpr bool kTransmissive = false;
@@ -22,18 +22,18 @@ template <typename T> struct MetalBsdfT {
     RgbT<T> reflectance; ///< reflectance at normal incidence
     T alpha;             ///< GGX width: roughness²
     RgbT<T> n, k;        ///< complex index of a named conductor, or 0
-    RgbT<T> multiple;    ///< factor of the multiple-scattering lobe: see ggx_multiple
+    RgbT<T> multiple_scattering; ///< factor of the multiple-scattering lobe: see ggx_multiple_scattering
 
     MetalBsdfT(Rgb reflectance, float alpha);
     MetalBsdfT(const Conductor& conductor, float alpha);
     MetalBsdfT(RgbT<T> reflectance_, T alpha_, RgbT<T> n_, RgbT<T> k_, RgbT<T> multiple_)
-        : reflectance(reflectance_), alpha(alpha_), n(n_), k(k_), multiple(multiple_) {}
+        : reflectance(reflectance_), alpha(alpha_), n(n_), k(k_), multiple_scattering(multiple_) {}
 
     bool smooth() const { return all(alpha < T(kSmoothAlpha)); }
     RgbT<T> fresnel(T cosine) const;
     /// Returns the directional albedo: the fraction of uniform incident light that is reflected to a viewer at that
     /// angle. A rough named conductor uses Schlick's term here.
-    RgbT<T> albedo(T cosine) const;
+    RgbT<T> directional_albedo(T cosine) const;
     RgbT<T> eval(Vec3T<T> wo, Vec3T<T> wi, TransportMode mode) const;
     /// Draws wi. `lobe` in [0, 1) chooses between one reflection and several.
     OptionalBsdfSample<T> sample(Vec3T<T> wo, T lobe, Vec2T<T> u, TransportMode mode) const;
@@ -41,8 +41,8 @@ template <typename T> struct MetalBsdfT {
 
 private:
     /// Returns the fraction of light that single scattering misses, or 0 without the multiple-scattering lobe.
-    T lost(T cosine) const;
-    // These are eval and pdf for wo and wi above the surface, with their microfacet and lost(wo.z).
+    T energy_loss(T cosine) const;
+    // These are eval and pdf for wo and wi above the surface, with their microfacet and energy_loss(wo.z).
     RgbT<T> eval_above(Vec3T<T> wo, Vec3T<T> wi, const MicrofacetT<T>& h, T lost_at_wo) const;
     T pdf_above(Vec3T<T> wo, Vec3T<T> wi, const MicrofacetT<T>& h, T lost_at_wo) const;
 };
@@ -59,17 +59,17 @@ template <typename T> RgbT<T> MetalBsdfT<T>::fresnel(T cosine) const {
 template <typename T> RgbT<T> MetalBsdfT<T>::eval(Vec3T<T> wo, Vec3T<T> wi, TransportMode) const {
     const MaskOf<T> reflected = same_hemisphere(wo, wi);
     if (smooth() || none_of(reflected)) return RgbT<T>(T(0));
-    wo = upwards(wo);
-    wi = upwards(wi);
-    return select(reflected, eval_above(wo, wi, microfacet(wo, wi), lost(wo.z)), RgbT<T>(T(0)));
+    wo = to_upper_hemisphere(wo);
+    wi = to_upper_hemisphere(wi);
+    return select(reflected, eval_above(wo, wi, microfacet(wo, wi), energy_loss(wo.z)), RgbT<T>(T(0)));
 }
 
 template <typename T> T MetalBsdfT<T>::pdf(Vec3T<T> wo, Vec3T<T> wi, TransportMode) const {
     const MaskOf<T> reflected = same_hemisphere(wo, wi);
     if (smooth() || none_of(reflected)) return T(0);
-    wo = upwards(wo);
-    wi = upwards(wi);
-    return select(reflected, pdf_above(wo, wi, microfacet(wo, wi), lost(wo.z)), T(0));
+    wo = to_upper_hemisphere(wo);
+    wi = to_upper_hemisphere(wi);
+    return select(reflected, pdf_above(wo, wi, microfacet(wo, wi), energy_loss(wo.z)), T(0));
 }
 
 template <typename T>
@@ -77,8 +77,8 @@ OptionalBsdfSample<T> MetalBsdfT<T>::sample(Vec3T<T> wo, T lobe, Vec2T<T> u, Tra
     const MaskOf<T> visible = wo.z != T(0);
     if (smooth()) return sample_where(visible, BsdfSampleT<T>{mirrored(wo), fresnel(abs_cos_theta(wo)), T(1), true});
 
-    const Vec3T<T> above = upwards(wo);
-    const T lost_at_wo = lost(above.z);
+    const Vec3T<T> above = to_upper_hemisphere(wo);
+    const T lost_at_wo = energy_loss(above.z);
     const MaskOf<T> several = lobe >= T(1) - lost_at_wo;
     Vec3T<T> wi = normalize(reflect(above, ggx_sample_visible_normal(above, alpha, u)));
     if (any(several)) wi = select(several, cosine_hemisphere(u), wi);
@@ -92,14 +92,15 @@ OptionalBsdfSample<T> MetalBsdfT<T>::sample(Vec3T<T> wo, T lobe, Vec2T<T> u, Tra
     return sample_where(valid, BsdfSampleT<T>{wi, weight, density});
 }
 
-template <typename T> T MetalBsdfT<T>::lost(T cosine) const {
-    const MaskOf<T> single = is_black(multiple);
-    return all(single) ? T(0) : select(single, T(0), ggx_lost(alpha, cosine));
+template <typename T> T MetalBsdfT<T>::energy_loss(T cosine) const {
+    const MaskOf<T> single = is_black(multiple_scattering);
+    return all(single) ? T(0) : select(single, T(0), ggx_energy_loss(alpha, cosine));
 }
 
 template <typename T>
 RgbT<T> MetalBsdfT<T>::eval_above(Vec3T<T> wo, Vec3T<T> wi, const MicrofacetT<T>& h, T lost_at_wo) const {
-    return fresnel(h.cosine) * ggx_reflection(wo, wi, h.normal, alpha) + multiple * (lost_at_wo * lost(wi.z));
+    return fresnel(h.cosine) * ggx_reflection(wo, wi, h.normal, alpha) +
+           multiple_scattering * (lost_at_wo * energy_loss(wi.z));
 }
 
 template <typename T>

@@ -8,7 +8,7 @@ namespace duet {
 
 /// Mirrors w to the upper hemisphere. Both sides of an opaque surface scatter alike, so the formulas only treat
 /// z ≥ 0.
-template <typename T> Vec3T<T> upwards(Vec3T<T> w) { return {w.x, w.y, abs(w.z)}; }
+template <typename T> Vec3T<T> to_upper_hemisphere(Vec3T<T> w) { return {w.x, w.y, abs(w.z)}; }
 
 /// MicrofacetT is the microfacet that reflects wo into wi. Both directions lie strictly above the surface, so their
 /// sum has z > 0.

@@ -31,7 +31,7 @@ struct Coated {
 
     LayeredBsdf at(const TextureSet& textures, const SurfacePoint& point) const;
     /// Returns the fraction of diffuse light from below that the coat reflects back down.
-    float back() const;
+    float internal_reflectance() const;
 };
 
 } // namespace duet

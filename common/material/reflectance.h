@@ -13,7 +13,7 @@ inline Rgb evaluate_reflectance(const TextureSet& textures, const RgbSlot& slot,
 }
 
 /// Returns a slot's scalar value at a point, clamped to [0, 1].
-inline float evaluate_unit(const TextureSet& textures, const ScalarSlot& slot, const SurfacePoint& point) {
+inline float evaluate_clamped(const TextureSet& textures, const ScalarSlot& slot, const SurfacePoint& point) {
     return clamp(evaluate(textures, slot, point), 0.0f, 1.0f);
 }
 

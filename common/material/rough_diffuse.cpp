@@ -31,27 +31,28 @@ Rgb surviving(Rgb albedo, float mean) {
 
 /// Returns the probability of drawing from the uniform distribution, which bounds the weight of retroreflection at
 /// grazing angles.
-float uniform_part(float cosine, float roughness) { return roughness * (0.1f + 0.3f * (1 - cosine)); }
+float uniform_probability(float cosine, float roughness) { return roughness * (0.1f + 0.3f * (1 - cosine)); }
 
 } // namespace
 
 Rgb RoughDiffuseBsdf::eval(Vec3 wo, Vec3 wi, TransportMode) const {
     if (!same_hemisphere(wo, wi)) return Rgb();
-    wo = upwards(wo);
-    wi = upwards(wi);
+    wo = to_upper_hemisphere(wo);
+    wi = to_upper_hemisphere(wi);
     const float s = wo.x * wi.x + wo.y * wi.y, a = 1 / (1 + (0.5f - 2 * kInvPi / 3) * roughness);
-    const float backwards = s > 0 ? s / max(wo.z, wi.z) : s;
-    const float mean = mean_single_albedo(roughness), lost_mean = 1 - mean;
-    const float lost = max(1 - single_albedo(wo.z, roughness), 0.0f) * max(1 - single_albedo(wi.z, roughness), 0.0f);
-    const Rgb single = albedo * max(a * (1 + roughness * backwards), 0.0f);
-    if (!(lost_mean > 0)) return single * kInvPi;
-    return (single + surviving(albedo, mean) * (lost / lost_mean)) * kInvPi;
+    const float s_over_t = s > 0 ? s / max(wo.z, wi.z) : s;
+    const float mean = mean_single_albedo(roughness), mean_energy_loss = 1 - mean;
+    const float energy_loss =
+        max(1 - single_albedo(wo.z, roughness), 0.0f) * max(1 - single_albedo(wi.z, roughness), 0.0f);
+    const Rgb single = albedo * max(a * (1 + roughness * s_over_t), 0.0f);
+    if (!(mean_energy_loss > 0)) return single * kInvPi;
+    return (single + surviving(albedo, mean) * (energy_loss / mean_energy_loss)) * kInvPi;
 }
 
 std::optional<BsdfSample> RoughDiffuseBsdf::sample(Vec3 wo, float lobe, Vec2 u, TransportMode mode) const {
     if (wo.z == 0) return std::nullopt;
-    const bool uniform = lobe < uniform_part(abs_cos_theta(wo), roughness);
-    Vec3 wi = uniform ? upwards(uniform_sphere(u)) : cosine_hemisphere(u);
+    const bool uniform = lobe < uniform_probability(abs_cos_theta(wo), roughness);
+    Vec3 wi = uniform ? to_upper_hemisphere(uniform_sphere(u)) : cosine_hemisphere(u);
     if (!(wi.z > 0)) return std::nullopt;
     if (wo.z < 0) wi.z = -wi.z;
     return sample_of(*this, wo, wi, mode);
@@ -59,10 +60,11 @@ std::optional<BsdfSample> RoughDiffuseBsdf::sample(Vec3 wo, float lobe, Vec2 u, 
 
 float RoughDiffuseBsdf::pdf(Vec3 wo, Vec3 wi, TransportMode) const {
     if (!same_hemisphere(wo, wi)) return 0;
-    return lerp(cosine_hemisphere_pdf(abs_cos_theta(wi)), 0.5f * kInvPi, uniform_part(abs_cos_theta(wo), roughness));
+    return lerp(cosine_hemisphere_pdf(abs_cos_theta(wi)), 0.5f * kInvPi,
+                uniform_probability(abs_cos_theta(wo), roughness));
 }
 
-Rgb RoughDiffuseBsdf::reflected(float cosine) const {
+Rgb RoughDiffuseBsdf::directional_albedo(float cosine) const {
     const float single = single_albedo(cosine, roughness);
     return albedo * single + surviving(albedo, mean_single_albedo(roughness)) * (1 - single);
 }

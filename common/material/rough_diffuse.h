@@ -21,7 +21,7 @@ struct RoughDiffuseBsdf {
     float pdf(Vec3 wo, Vec3 wi, TransportMode mode) const;
     /// Returns the exact directional albedo, in [0, 1]: the fraction of uniform incident light that is reflected to a
     /// viewer at this angle.
-    Rgb reflected(float cosine) const;
+    Rgb directional_albedo(float cosine) const;
 };
 
 } // namespace duet

@@ -11,7 +11,7 @@ namespace duet {
 ///
 /// The thin side is that of the smaller index. There the rest is divided in the proportion R : T. Transmitted light
 /// is therefore multiplied by gain(w) = 1/(R + T), where w is the direction on the thin side, be it wo or wi. The
-/// reflected part of the rest, (1 − R − T) R/(R + T), is `lost` and returns by a lobe.
+/// reflected part of the rest, (1 − R − T) R/(R + T), is `energy_loss` and returns by a lobe.
 ///
 /// The energy that light from the dense side still lacks returns by a lobe inside the dense medium: little light
 /// leaves from there, and reciprocity allows no larger gain. The lobes follow Kulla and Conty 2017, "Revisiting
@@ -31,20 +31,20 @@ public:
     /// [0, 1].
     float gain(float cosine) const;
 
-    /// A Lobe is the reflection lobe lost(wo) lost(wi) / (π mean_lost) on one side. There is no lobe where it
-    /// returns less than 0.03 % in the mean: sampling it would add more noise than energy.
+    /// A Lobe is the reflection lobe energy_loss(wo) energy_loss(wi) / (π mean_energy_loss) on one side. There is no
+    /// lobe where it returns less than 0.03 % in the mean: sampling it would add more noise than energy.
     struct Lobe {
         const RoughGlassTables::Surface* table = nullptr; ///< null: no lobe
-        float mean_lost = 0;
+        float mean_energy_loss = 0;
     };
     Lobe lobe(bool dense) const;
-    float lost(const Lobe& lobe, float cosine) const;
+    float energy_loss(const Lobe& lobe, float cosine) const;
 
 private:
     float look_up(const RoughGlassTables::Surface& surface, float cosine) const;
 
     float alpha_;
-    RoughGlassTables::Place index_, row_;
+    RoughGlassTables::TableIndex index_, row_;
 };
 
 } // namespace duet

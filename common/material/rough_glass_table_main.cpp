@@ -6,7 +6,7 @@
 #include "common/material/rough_glass_table.h"
 #include "common/sampling/hash.h"
 #include "common/sampling/sobol.h"
-#include "common/system/source_table.h"
+#include "common/system/table_generator.h"
 
 #include <memory>
 
@@ -26,8 +26,8 @@ struct Boundary {
     template <typename Add> void scatter(bool dense, float cosine, const Add& add) const {
         const Vec3 wo(std::sqrt((1 - cosine) * (1 + cosine)), 0, cosine);
         const float relative = dense ? 1 / index : index;
-        const auto part = [&](Vec3 wi, float share) {
-            return static_cast<double>(share * ggx_g2_over_g1(wo, wi, alpha)) / kSamples;
+        const auto weight = [&](Vec3 wi, float fraction) {
+            return static_cast<double>(fraction * ggx_g2_over_g1(wo, wi, alpha)) / kSamples;
         };
         for (int i = 0; i < kSamples; ++i) {
             const Vec2 u((static_cast<float>(i) + 0.5f) / kSamples,
@@ -35,38 +35,38 @@ struct Boundary {
             const Vec3 h = ggx_sample_visible_normal(wo, alpha, u);
             const float cos_o = dot(wo, h), fresnel = fresnel_dielectric(max(cos_o, 0.0f), relative);
             const Vec3 mirrored = reflect(wo, h);
-            if (mirrored.z > 0) add(true, mirrored.z, part(mirrored, fresnel));
+            if (mirrored.z > 0) add(true, mirrored.z, weight(mirrored, fresnel));
             if (!(cos_o > 0 && fresnel < 1)) continue;
             const Vec3 through = refract(wo, h, cos_o, relative);
-            if (through.z < 0) add(false, -through.z, part({through.x, through.y, -through.z}, 1 - fresnel));
+            if (through.z < 0) add(false, -through.z, weight({through.x, through.y, -through.z}, 1 - fresnel));
         }
     }
 };
 
 struct Curves {
-    Tables::Curve &gain, &lost_thin, &lost_dense;
+    Tables::Curve &gain, &energy_loss_thin, &energy_loss_dense;
 };
 
 void compute(const Boundary& boundary, Curves curves) {
     for (std::size_t i = 0; i < Tables::kAngles; ++i) {
         double reflected = 0, all = 0;
         boundary.scatter(false, Tables::cosine_of(static_cast<int>(i), boundary.alpha),
-                         [&](bool back, float, double part) {
-                             all += part;
-                             if (back) reflected += part;
+                         [&](bool back, float, double weight) {
+                             all += weight;
+                             if (back) reflected += weight;
                          });
         curves.gain[i] = static_cast<float>(1 / all);
-        curves.lost_thin[i] = static_cast<float>(std::max(1 - all, 0.0) * reflected / all);
+        curves.energy_loss_thin[i] = static_cast<float>(std::max(1 - all, 0.0) * reflected / all);
     }
     for (std::size_t i = 0; i < Tables::kAngles; ++i) {
         double all = 0;
         boundary.scatter(true, Tables::cosine_of(static_cast<int>(i), boundary.alpha),
-                         [&](bool back, float cosine, double part) {
-                             all += part * (back ? 1.0
-                                                 : static_cast<double>(Tables::look_up(
-                                                       curves.gain, Tables::place_of_cosine(cosine, boundary.alpha))));
+                         [&](bool back, float cosine, double weight) {
+                             all += weight * (back ? 1.0
+                                                   : static_cast<double>(Tables::look_up(
+                                                         curves.gain, Tables::cosine_index(cosine, boundary.alpha))));
                          });
-        curves.lost_dense[i] = static_cast<float>(std::max(1 - all, 0.0));
+        curves.energy_loss_dense[i] = static_cast<float>(std::max(1 - all, 0.0));
     }
 }
 
@@ -78,7 +78,7 @@ float mean_of(const Tables::Curve& curve, float alpha) {
     for (int i = 0; i < kSteps; ++i) {
         const float x = (static_cast<float>(i) + 0.5f) / kSteps, cosine = x * x; // denser at grazing angles
         sum += 4.0 * static_cast<double>(x * cosine) / kSteps *
-               static_cast<double>(Tables::look_up(curve, Tables::place_of_cosine(cosine, alpha)));
+               static_cast<double>(Tables::look_up(curve, Tables::cosine_index(cosine, alpha)));
     }
     return static_cast<float>(sum);
 }
@@ -88,23 +88,23 @@ std::unique_ptr<Tables> compute_tables() {
     for (std::size_t i = 0; i < Tables::kIndices; ++i)
         for (std::size_t a = 0; a < Tables::kAlphas; ++a) {
             const Boundary boundary{Tables::index_of(static_cast<int>(i)), Tables::alpha_of(static_cast<int>(a))};
-            compute(boundary, {tables->gain[i][a], tables->lost_thin[i][a], tables->lost_dense[i][a]});
-            tables->mean_lost_thin[i][a] = mean_of(tables->lost_thin[i][a], boundary.alpha);
-            tables->mean_lost_dense[i][a] = mean_of(tables->lost_dense[i][a], boundary.alpha);
+            compute(boundary, {tables->gain[i][a], tables->energy_loss_thin[i][a], tables->energy_loss_dense[i][a]});
+            tables->mean_energy_loss_thin[i][a] = mean_of(tables->energy_loss_thin[i][a], boundary.alpha);
+            tables->mean_energy_loss_dense[i][a] = mean_of(tables->energy_loss_dense[i][a], boundary.alpha);
         }
     return tables;
 }
 
 void write(std::ostream& out, const Tables::Means& rows) {
     out << "{{\n";
-    for (const auto& row : rows) write_numbers(out, row);
+    for (const auto& row : rows) write_floats(out, row);
     out << "}},\n";
 }
 void write(std::ostream& out, const Tables::Surface& surface) {
     out << "{{\n";
     for (const auto& rows : surface) {
         out << "{{\n";
-        for (const Tables::Curve& curve : rows) write_numbers(out, curve);
+        for (const Tables::Curve& curve : rows) write_floats(out, curve);
         out << "}},\n";
     }
     out << "}},\n";
@@ -113,15 +113,15 @@ void write(std::ostream& out, const Tables::Surface& surface) {
 } // namespace
 
 int main(int count, char** arguments) {
-    return write_source(count, arguments, "make_rough_glass", [](std::ostream& out) {
+    return generate_table(count, arguments, "make_rough_glass", [](std::ostream& out) {
         const auto tables = compute_tables();
         out << "#include \"common/material/rough_glass_table.h\"\n\nnamespace duet {\n\nextern const RoughGlassTables "
                "kRoughGlassTables;\nconst RoughGlassTables kRoughGlassTables{\n";
         write(out, tables->gain);
-        write(out, tables->lost_thin);
-        write(out, tables->lost_dense);
-        write(out, tables->mean_lost_thin);
-        write(out, tables->mean_lost_dense);
+        write(out, tables->energy_loss_thin);
+        write(out, tables->energy_loss_dense);
+        write(out, tables->mean_energy_loss_thin);
+        write(out, tables->mean_energy_loss_dense);
         out << "};\n\n} // namespace duet\n";
     });
 }

@@ -31,9 +31,9 @@ Vec3 mapped_normal(const TextureSet& textures, const SurfaceMaps& maps, const Su
 Vec2 half_step(const TextureSet& textures, const Texture& texture, const SurfacePoint& point) {
     Vec2 step{1e-4f, 1e-4f};
     if (const auto* image = std::get_if<ImageTexture>(&texture)) {
-        const ImageRgb& picture = textures.images[image->image];
-        step = {0.5f / (abs(image->scale.x) * static_cast<float>(picture.width())),
-                0.5f / (abs(image->scale.y) * static_cast<float>(picture.height()))};
+        const ImageRgb& texels = textures.images[image->image];
+        step = {0.5f / (abs(image->scale.x) * static_cast<float>(texels.width())),
+                0.5f / (abs(image->scale.y) * static_cast<float>(texels.height()))};
     }
     const float du = (abs(point.duv_dx.x) + abs(point.duv_dy.x)) / 2,
                 dv = (abs(point.duv_dx.y) + abs(point.duv_dy.y)) / 2;
@@ -47,10 +47,10 @@ Vec3 bumped_normal(const TextureSet& textures, const SurfaceMaps& maps, const Su
     if (det == 0) return point.ns;
     const Texture& texture = texture_at(textures, maps.bump);
     const auto height = [&](float du, float dv) {
-        SurfacePoint beside = point;
-        beside.uv = {point.uv.x + du, point.uv.y + dv};
-        beside.p_object = point.p_object; // solid textures do not vary with uv, so they give no bump
-        return static_cast<double>(evaluate_texture(textures, texture, beside).r * maps.bump_scale);
+        SurfacePoint shifted = point;
+        shifted.uv = {point.uv.x + du, point.uv.y + dv};
+        shifted.p_object = point.p_object; // solid textures do not vary with uv, so they give no bump
+        return static_cast<double>(evaluate_texture(textures, texture, shifted).r * maps.bump_scale);
     };
     const Vec2 step = half_step(textures, texture, point);
     const double dh_du = (height(step.x, 0) - height(-step.x, 0)) / (2 * static_cast<double>(step.x));
@@ -59,35 +59,35 @@ Vec3 bumped_normal(const TextureSet& textures, const SurfaceMaps& maps, const Su
     return Vec3(normalize(n - gradient));
 }
 
-/// Bends ns just enough that the mirrored direction to the viewer lies above the plane with normal `horizon`. Near a
-/// silhouette that plane may face away from the viewer. The direction to the viewer is then projected onto the plane
-/// (as in lifted_above_horizon), because the half vector of two directions below the plane also lies below it.
-Vec3 kept_consistent(Vec3 ns, Vec3 horizon, Vec3 to_viewer) {
-    const float facing = dot(to_viewer, horizon);
-    if (facing < 0) to_viewer = normalize(to_viewer - horizon * facing);
+/// Bends ns just enough that the mirrored direction to the viewer lies above the plane with normal `terminator_normal`.
+/// Near a silhouette that plane may face away from the viewer. The direction to the viewer is then projected onto the
+/// plane (as in clamp_to_visible_side), because the half vector of two directions below the plane also lies below it.
+Vec3 ensure_valid_reflection(Vec3 ns, Vec3 terminator_normal, Vec3 to_viewer) {
+    const float facing = dot(to_viewer, terminator_normal);
+    if (facing < 0) to_viewer = normalize(to_viewer - terminator_normal * facing);
     const Vec3 mirrored = reflect(to_viewer, ns);
-    const float above = dot(mirrored, horizon);
-    constexpr float kLowest = 0.01f;
-    if (above >= kLowest) return ns;
-    return normalize(to_viewer + normalize(mirrored + horizon * (kLowest - above)));
+    const float above = dot(mirrored, terminator_normal);
+    constexpr float kMinCosine = 0.01f;
+    if (above >= kMinCosine) return ns;
+    return normalize(to_viewer + normalize(mirrored + terminator_normal * (kMinCosine - above)));
 }
 
 } // namespace
 
-void bend_normal(const TextureSet& textures, const SurfaceMaps& maps, Vec3 direction, SurfacePoint& point) {
-    if (!maps.bends_normals()) return;
+void apply_normal_maps(const TextureSet& textures, const SurfaceMaps& maps, Vec3 direction, SurfacePoint& point) {
+    if (!maps.perturbs_normal()) return;
     if (maps.bump >= 0) point.ns = bumped_normal(textures, maps, point);
     if (maps.normal >= 0) point.ns = mapped_normal(textures, maps, point);
-    if (!is_finite(point.ns)) point.ns = point.horizon;
+    if (!is_finite(point.ns)) point.ns = point.terminator_normal;
     const float side = dot(point.ng, direction) > 0 ? -1.0f : 1.0f;
-    point.ns = kept_consistent(point.ns * side, point.horizon * side, -normalize(direction)) * side;
+    point.ns = ensure_valid_reflection(point.ns * side, point.terminator_normal * side, -normalize(direction)) * side;
     if (dot(point.ns, point.ng) < 0) point.ns = normalize(point.ns - point.ng * (1.001f * dot(point.ns, point.ng)));
 }
 
 float opacity(const TextureSet& textures, const SurfaceMaps& maps, const SurfacePoint& point) {
-    SurfacePoint sharp = point;
-    sharp.duv_dx = sharp.duv_dy = Vec2();
-    const float value = evaluate_unit(textures, maps.opacity, sharp);
+    SurfacePoint unfiltered = point;
+    unfiltered.duv_dx = unfiltered.duv_dy = Vec2();
+    const float value = evaluate_clamped(textures, maps.opacity, unfiltered);
     if (maps.cutoff > 0) return value >= maps.cutoff ? 1.0f : 0.0f;
     return value;
 }

@@ -18,8 +18,8 @@ struct SurfaceMaps {
     ScalarSlot opacity;       ///< 1: opaque; 0: a hole; in between the fraction of light that the surface stops
     float cutoff = 0;         ///< alpha-test threshold: opaque where opacity is at least this, else a hole; 0: no test
 
-    bool bends_normals() const { return normal >= 0 || bump >= 0; }
-    bool cuts_out() const { return !opacity.constant() || opacity.value < 1; }
+    bool perturbs_normal() const { return normal >= 0 || bump >= 0; }
+    bool has_transparency() const { return !opacity.constant() || opacity.value < 1; }
 };
 
 /// Calls visit(texture) for each reference to a texture, an index or −1.
@@ -37,7 +37,7 @@ void for_each_texture(AnyMaps& maps, const Visit& visit) {
 /// that of each triangle, while MikkTSpace averages over vertices). The result is bent where necessary, so that the
 /// mirror direction stays above the surface (Keller et al. 2017, "The Iray Light Transport Simulation and Rendering
 /// System", §A.3). A map has no effect where the uv parametrization is degenerate.
-void bend_normal(const TextureSet& textures, const SurfaceMaps& maps, Vec3 direction, SurfacePoint& point);
+void apply_normal_maps(const TextureSet& textures, const SurfaceMaps& maps, Vec3 direction, SurfacePoint& point);
 
 /// Returns the opacity in [0, 1], or 0 or 1 with a cutoff. It is never filtered by the sample's footprint, so that
 /// both pipelines, which trace the same rays through a pixel, agree on where the holes are.

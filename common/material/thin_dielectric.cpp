@@ -4,10 +4,10 @@
 
 namespace duet {
 
-ThinDielectricBsdf::Parts ThinDielectricBsdf::parts(float cosine) const {
+ThinDielectricBsdf::Fractions ThinDielectricBsdf::fractions(float cosine) const {
     const float f = fresnel_dielectric(cosine, eta), cos_t = safe_sqrt(cos2_refracted(cosine, eta));
     const float through = 1 - f;
-    Parts result;
+    Fractions result;
     for (std::size_t c = 0; c < 3; ++c) {
         const float t = tint[c] < 1 ? std::pow(tint[c], 1 / max(cos_t, 1e-4f)) : 1.0f;
         // The denominator is (1 − F t)(1 + F t), with 1 − F t written as (1 − F) + F (1 − t), which does not
@@ -21,7 +21,7 @@ ThinDielectricBsdf::Parts ThinDielectricBsdf::parts(float cosine) const {
 
 std::optional<BsdfSample> ThinDielectricBsdf::sample(Vec3 wo, float lobe, Vec2, TransportMode) const {
     if (wo.z == 0) return std::nullopt;
-    const Parts p = parts(abs_cos_theta(wo));
+    const Fractions p = fractions(abs_cos_theta(wo));
     const float r = average(p.reflected), t = average(p.transmitted);
     if (!(r + t > 0)) return std::nullopt; // a black tint, and the index of the surroundings
     const float reflected = r / (r + t);

@@ -14,13 +14,13 @@ struct ThinDielectricBsdf {
     float eta; ///< index of refraction of the sheet over that of its surroundings
     Rgb tint;  ///< transmittance of one perpendicular pass through the sheet
 
-    struct Parts {
+    struct Fractions {
         Rgb reflected, transmitted;
     };
     /// Returns the reflected and transmitted fractions at an angle of incidence whose cosine is in (0, 1]. With F at
     /// each boundary and t for each pass through the sheet (slanted passes are longer), the sheet reflects
     /// F + (1 − F)² F t²/(1 − F² t²) and transmits (1 − F)² t/(1 − F² t²).
-    Parts parts(float cosine) const;
+    Fractions fractions(float cosine) const;
 
     Rgb eval(Vec3, Vec3, TransportMode) const { return Rgb(); }
     float pdf(Vec3, Vec3, TransportMode) const { return 0; }

@@ -15,7 +15,7 @@ namespace duet {
 /// Returns a validator for finite numbers for which accepts() is true. `expected` describes those numbers in the
 /// message.
 template <typename Accepts>
-CLI::Validator number_check(const char* name, const char* expected, const Accepts& accepts) {
+CLI::Validator number_validator(const char* name, const char* expected, const Accepts& accepts) {
     return {[=](std::string& text) -> std::string {
                 char* end = nullptr;
                 const double value = std::strtod(text.c_str(), &end);
@@ -26,18 +26,18 @@ CLI::Validator number_check(const char* name, const char* expected, const Accept
 }
 
 inline CLI::Validator positive_number() {
-    return number_check("POSITIVE", "a finite number above 0", [](double x) { return x > 0; });
+    return number_validator("POSITIVE", "a finite number above 0", [](double x) { return x > 0; });
 }
 inline CLI::Validator nonnegative_number() {
-    return number_check("NONNEGATIVE", "a finite number of at least 0", [](double x) { return x >= 0; });
+    return number_validator("NONNEGATIVE", "a finite number of at least 0", [](double x) { return x >= 0; });
 }
 /// Returns a validator for finite numbers from `low` to `high`. `expected` describes the range in the message.
-inline CLI::Validator number_within(double low, double high, const char* expected) {
-    return number_check("", expected, [=](double x) { return x >= low && x <= high; });
+inline CLI::Validator number_in_range(double low, double high, const char* expected) {
+    return number_validator("", expected, [=](double x) { return x >= low && x <= high; });
 }
 /// Returns a validator for whole numbers from 0 to 2^64 − 1. It accepts decimal digits only, and refuses text that
 /// a conversion to unsigned would skip, wrap or truncate.
-inline CLI::Validator whole_number() {
+inline CLI::Validator unsigned_integer() {
     return {[](std::string& text) -> std::string {
                 std::uint64_t value = 0;
                 const char *const begin = text.data(), *const end = begin + text.size();

@@ -76,9 +76,9 @@ void ProgressBar::update(double fraction) {
     const int filled = static_cast<int>(done * kWidth);
     std::string bar(static_cast<std::size_t>(filled), '#');
     bar.resize(kWidth, '.');
-    const std::string left = done > 0.01 ? readable_seconds(elapsed * (1 - done) / done) + " left" : "";
+    const std::string left = done > 0.01 ? format_duration(elapsed * (1 - done) / done) + " left" : "";
     std::fprintf(stderr, "\r%s [%s] %3.0f %%  %s, %s\033[K", label_.c_str(), bar.c_str(), 100 * done,
-                 readable_seconds(elapsed).c_str(), left.c_str());
+                 format_duration(elapsed).c_str(), left.c_str());
     std::fflush(stderr);
 }
 
@@ -87,7 +87,7 @@ void ProgressBar::finish() {
     last_drawn_ = -1;
 }
 
-std::string readable_seconds(double seconds) {
+std::string format_duration(double seconds) {
     char text[64];
     const long whole = std::lround(seconds);
     if (seconds < 0.9995)

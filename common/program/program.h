@@ -50,6 +50,6 @@ private:
 };
 
 /// Formats a duration, for example "850 ms", "12.3 s", "4 min 05 s" or "2 h 07 min".
-std::string readable_seconds(double seconds);
+std::string format_duration(double seconds);
 
 } // namespace duet

@@ -32,7 +32,7 @@ void add_common_options(CLI::App& app, Options& options, const std::string& spp_
     app.add_option("--size", options.size, "Picture size WIDTHxHEIGHT (default: the scene's)");
     app.add_option("--spp", options.spp, spp_help)->check(CLI::Range(1, 1 << 24));
     app.add_option("--threads", options.threads, "Threads (default: all)")->check(CLI::Range(1, 1024));
-    app.add_option("--seed", options.seed, "Seed of all random numbers (default 0)")->check(whole_number());
+    app.add_option("--seed", options.seed, "Seed of all random numbers (default 0)")->check(unsigned_integer());
     app.add_option("--stats", options.stats, "Write statistics as JSON to this file (-: standard output)");
     app.add_option("--aov", options.aovs,
                    "Auxiliary pictures, a list of depth,normal,albedo,hit,variance,samples: channels of an "
@@ -73,7 +73,7 @@ void check_output(const Options& options) {
 }
 
 // Returns a hint at the command that logs the first invalid sample, or nothing where there is none.
-std::string first_invalid(const RenderStatistics& s) {
+std::string invalid_sample_hint(const RenderStatistics& s) {
     if (!s.first_invalid) return {};
     return message("; the same command with --pixel ", s.first_invalid->x, ',', s.first_invalid->y, ',',
                    s.first_invalid->sample, " tells of the first");
@@ -83,22 +83,22 @@ void print_summary(const RenderContext& context, const Rendering& rendering, con
     const RenderStatistics& s = rendering.statistics;
     std::cerr << output << ": " << context.width << " x " << context.height << ", " << s.samples_per_pixel
               << (s.samples_per_pixel == 1 ? " sample" : " samples") << " a pixel in "
-              << readable_seconds(context.render_seconds) << (s.interrupted ? " (interrupted)" : "") << '\n';
+              << format_duration(context.render_seconds) << (s.interrupted ? " (interrupted)" : "") << '\n';
     if (s.invalid_samples > 0)
         std::cerr << "warning: " << s.invalid_samples << " samples were NaN, infinite or negative, and left out"
-                  << first_invalid(s) << '\n';
+                  << invalid_sample_hint(s) << '\n';
 }
 
 int render_all(const RenderProgram& program, const Options& options) {
-    const bool prints = program.prints_text && program.prints_text();
-    if (!prints) check_output(options);
+    const bool text_only = program.wants_text_output && program.wants_text_output();
+    if (!text_only) check_output(options);
     if (program.check) program.check({options.output, options.orbit});
     RenderSettings settings;
     settings.threads = options.threads;
     settings.seed = options.seed;
     settings.aovs = parse_aovs(options.aovs);
-    PictureSize size{0, 0};
-    if (!options.size.empty()) size = parse_picture_size(options.size);
+    ImageSize size{0, 0};
+    if (!options.size.empty()) size = parse_image_size(options.size);
 
     RenderContext context;
     context.program = program.name;
@@ -111,8 +111,8 @@ int render_all(const RenderProgram& program, const Options& options) {
     context.width = size.width > 0 ? size.width : scene.width;
     context.height = size.height > 0 ? size.height : scene.height;
     const std::optional<int> spp = options.spp > 0 ? std::optional(options.spp) : std::nullopt;
-    if (prints) {
-        std::cout << program.text(scene, View{scene.camera, context.width, context.height}, settings, spp);
+    if (text_only) {
+        std::cout << program.text_output(scene, View{scene.camera, context.width, context.height}, settings, spp);
         return kExitOk;
     }
     const RenderFunction render = program.prepare(scene, settings, spp);
@@ -169,20 +169,20 @@ ParsedCommandLine parse_command_line(CLI::App& app, int argc, char** argv) {
     }
 }
 
-PictureSize parse_picture_size(std::string_view text) {
-    PictureSize size{};
+ImageSize parse_image_size(std::string_view text) {
+    ImageSize size{};
     const char* const end = text.data() + text.size();
     const auto width = std::from_chars(text.data(), end, size.width);
-    const auto good = [&] {
+    const auto valid = [&] {
         if (width.ec != std::errc() || width.ptr == end || *width.ptr != 'x') return false;
         const auto height = std::from_chars(width.ptr + 1, end, size.height);
-        return height.ec == std::errc() && height.ptr == end && size.width >= 1 && size.width <= kMaxPictureSide &&
-               size.height >= 1 && size.height <= kMaxPictureSide &&
+        return height.ec == std::errc() && height.ptr == end && size.width >= 1 && size.width <= kMaxRenderSide &&
+               size.height >= 1 && size.height <= kMaxRenderSide &&
                static_cast<long long>(size.width) * size.height <= kMaxImagePixels;
     };
-    if (!good())
+    if (!valid())
         throw Error(message("--size: found ", text, ", expected WIDTHxHEIGHT such as 640x480, each from 1 to ",
-                            kMaxPictureSide, ", and at most ", kMaxImagePixels, " pixels"));
+                            kMaxRenderSide, ", and at most ", kMaxImagePixels, " pixels"));
     return size;
 }
 

@@ -33,10 +33,10 @@ struct RenderProgram {
     std::string spp_help; ///< what --spp means here, and its default
     /// Adds the pipeline's own options.
     std::function<void(CLI::App&)> add_options;
-    /// Where prints_text returns true, the program prints text() of the view instead of rendering it. Both may be
-    /// empty.
-    std::function<bool()> prints_text;
-    std::function<std::string(const Scene&, const View&, const RenderSettings&, std::optional<int> spp)> text;
+    /// Where wants_text_output returns true, the program prints text_output() of the view instead of rendering it. Both
+    /// may be empty.
+    std::function<bool()> wants_text_output;
+    std::function<std::string(const Scene&, const View&, const RenderSettings&, std::optional<int> spp)> text_output;
     /// Throws Error for unusable options of the pipeline, before anything is loaded. It may be empty.
     std::function<void(const OutputOptions&)> check;
     /// Prepares the scene for rendering. `settings` are the common options, and `spp` is empty where --spp was not
@@ -55,12 +55,12 @@ struct ParsedCommandLine {
 };
 ParsedCommandLine parse_command_line(CLI::App& app, int argc, char** argv);
 
-/// Parses an image size such as "640x480". Throws Error unless each side is in [1, kMaxPictureSide] and the product
+/// Parses an image size such as "640x480". Throws Error unless each side is in [1, kMaxRenderSide] and the product
 /// is at most kMaxImagePixels.
-struct PictureSize {
+struct ImageSize {
     int width, height;
 };
-PictureSize parse_picture_size(std::string_view text);
+ImageSize parse_image_size(std::string_view text);
 
 /// Parses a list of AOVs, a subset of "depth,normal,albedo,hit,variance,samples". Throws Error for another name.
 AovSet parse_aovs(std::string_view list);

@@ -10,7 +10,7 @@ namespace duet {
 
 nlohmann::json statistics_json(const RenderContext& context, const RenderStatistics& statistics) {
     nlohmann::json skipped = nlohmann::json::object();
-    for (const Skipped& s : statistics.skipped) {
+    for (const SkippedWork& s : statistics.skipped) {
         if (s.count >= 0)
             skipped[s.what] = s.count;
         else
@@ -26,7 +26,7 @@ nlohmann::json statistics_json(const RenderContext& context, const RenderStatist
     if (const auto& first = statistics.first_invalid)
         first_invalid = {{"x", first->x}, {"y", first->y}, {"sample", first->sample}};
     nlohmann::json bvh; // null where there is none
-    if (const HierarchyStatistics& h = statistics.bvh; !h.quality.empty())
+    if (const BvhStatistics& h = statistics.bvh; !h.quality.empty())
         bvh = {{"quality", h.quality}, {"nodes", h.nodes}, {"references", h.references}};
     return {
         {"program", context.program},

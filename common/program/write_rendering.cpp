@@ -55,7 +55,7 @@ std::vector<Layer> auxiliary_layers(const Rendering& r) {
 void write_rendering(const std::filesystem::path& path, const Rendering& rendering, bool ascii_ppm) {
     const int width = rendering.radiance.width(), height = rendering.radiance.height();
     std::vector<Layer> layers = auxiliary_layers(rendering);
-    if (lower_case_ending(path) == ".exr" && !layers.empty()) {
+    if (lower_case_extension(path) == ".exr" && !layers.empty()) {
         Channels all = rgb_channels("", rendering.radiance);
         for (Layer& layer : layers) std::move(layer.channels.begin(), layer.channels.end(), std::back_inserter(all));
         write_exr(path, width, height, all);
@@ -63,8 +63,8 @@ void write_rendering(const std::filesystem::path& path, const Rendering& renderi
     }
     write_image(path, rendering.radiance, {.ascii_ppm = ascii_ppm});
     for (const Layer& layer : layers) {
-        std::filesystem::path beside = path;
-        write_exr(beside.replace_extension("." + layer.name + ".exr"), width, height, layer.channels);
+        std::filesystem::path aov_path = path;
+        write_exr(aov_path.replace_extension("." + layer.name + ".exr"), width, height, layer.channels);
     }
 }
 

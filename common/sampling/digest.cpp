@@ -18,7 +18,7 @@ std::uint64_t hash_bytes(std::uint64_t state, std::string_view bytes) {
     return state;
 }
 
-std::string hexadecimal(std::uint64_t value) {
+std::string to_hex(std::uint64_t value) {
     char text[17];
     std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(value));
     return text;

@@ -12,6 +12,6 @@ namespace duet {
 std::uint64_t hash_bytes(std::uint64_t state, std::string_view bytes);
 
 /// Formats a number as 16 lowercase hexadecimal digits.
-std::string hexadecimal(std::uint64_t value);
+std::string to_hex(std::uint64_t value);
 
 } // namespace duet

@@ -44,11 +44,11 @@ Distribution1D::Distribution1D(const std::vector<double>& values) {
 Distribution1D::Sample Distribution1D::sample(float u) const {
     // The first entry above u is the upper end of the interval. An interval of probability 0 is never selected, because
     // its two ends are equal.
-    const double number = std::clamp(u, 0.0f, kOneMinusEpsilon);
-    const auto above = std::upper_bound(cdf_.begin(), cdf_.end(), number);
+    const double clamped_u = std::clamp(u, 0.0f, kOneMinusEpsilon);
+    const auto above = std::upper_bound(cdf_.begin(), cdf_.end(), clamped_u);
     const auto i = static_cast<std::size_t>(above - cdf_.begin()) - 1;
     const double width = cdf_[i + 1] - cdf_[i];
-    const double fraction = (number - cdf_[i]) / width;
+    const double fraction = (clamped_u - cdf_[i]) / width;
     const double count = static_cast<double>(size());
     const float remapped = std::min(static_cast<float>(fraction), kOneMinusEpsilon);
     return {within_interval((static_cast<double>(i) + fraction) / count, i, size()), static_cast<float>(width * count),

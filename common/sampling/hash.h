@@ -24,20 +24,20 @@ template <typename U> constexpr U mix_bits_32(U x) {
 }
 
 /// The increment of SplitMix64's state is 2^64 divided by the golden ratio.
-inline constexpr std::uint64_t kGoldenStep = 0x9e3779b97f4a7c15u;
-/// The increment of 32-bit streams is the upper half of kGoldenStep.
-inline constexpr std::uint32_t kGoldenStep32 = 0x9e3779b9u;
+inline constexpr std::uint64_t kGoldenGamma = 0x9e3779b97f4a7c15u;
+/// The increment of 32-bit streams is the upper half of kGoldenGamma.
+inline constexpr std::uint32_t kGoldenGamma32 = 0x9e3779b9u;
 
 /// Returns number i of the SplitMix64 stream that starts at `state`, which must already be well mixed. The cost is one
 /// call of mix_bits, which suits inner loops.
 constexpr std::uint64_t stream_number(std::uint64_t state, std::uint64_t i) {
-    return mix_bits(state + (i + 1) * kGoldenStep);
+    return mix_bits(state + (i + 1) * kGoldenGamma);
 }
 
 /// Returns a hash of a state and one more number, which need not be mixed. Calls can be chained, for example
 /// hash_combine(hash_combine(seed, x), y).
 constexpr std::uint64_t hash_combine(std::uint64_t state, std::uint64_t value) {
-    return mix_bits((state + kGoldenStep) ^ mix_bits(value + 0xd1b54a32d192ed03u));
+    return mix_bits((state + kGoldenGamma) ^ mix_bits(value + 0xd1b54a32d192ed03u));
 }
 
 constexpr std::uint32_t high_bits(std::uint64_t x) { return static_cast<std::uint32_t>(x >> 32); }
@@ -60,7 +60,7 @@ constexpr std::uint32_t permute(std::uint32_t i, std::uint32_t n, std::uint64_t 
     do {
         std::uint64_t round_key = key;
         for (int round = 0; round < 4; ++round) {
-            round_key = mix_bits(round_key + kGoldenStep);
+            round_key = mix_bits(round_key + kGoldenGamma);
             i = (i * (low_bits(round_key) | 1u)) & mask;
             i ^= i >> half;
             i = (i + high_bits(round_key)) & mask;

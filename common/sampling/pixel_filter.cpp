@@ -14,9 +14,10 @@ namespace {
 double blackman_harris_below(double x, double r) {
     constexpr double a0 = 0.35875, a1 = 0.48829, a2 = 0.14128, a3 = 0.01168;
     // The window is a0 − a1 cos 2πt + a2 cos 4πt − a3 cos 6πt.
-    const double t = (x + r) / (2 * r), turn = 2 * kPiDouble;
-    const double waves = -a1 * std::sin(turn * t) + a2 / 2 * std::sin(2 * turn * t) - a3 / 3 * std::sin(3 * turn * t);
-    return t + waves / (turn * a0);
+    const double t = (x + r) / (2 * r), two_pi = 2 * kPiDouble;
+    const double cosine_integral =
+        -a1 * std::sin(two_pi * t) + a2 / 2 * std::sin(2 * two_pi * t) - a3 / 3 * std::sin(3 * two_pi * t);
+    return t + cosine_integral / (two_pi * a0);
 }
 
 std::vector<double> blackman_harris_quantiles() {
@@ -24,11 +25,11 @@ std::vector<double> blackman_harris_quantiles() {
     constexpr std::size_t kSteps = 1024;
     std::vector<double> quantiles(kSteps + 1);
     for (std::size_t i = 0; i <= kSteps; ++i) {
-        const double wanted = static_cast<double>(i) / kSteps;
+        const double target = static_cast<double>(i) / kSteps;
         double low = -kRadius, high = kRadius; // 60 bisections give the full precision of double
         for (int step = 0; step < 60; ++step) {
             const double middle = (low + high) / 2;
-            (blackman_harris_below(middle, kRadius) < wanted ? low : high) = middle;
+            (blackman_harris_below(middle, kRadius) < target ? low : high) = middle;
         }
         quantiles[i] = (low + high) / 2;
     }
@@ -54,9 +55,9 @@ PixelFilter::PixelFilter(FilterKind kind) {
 }
 
 double PixelFilter::sample_axis(double u) const {
-    const double place = u * static_cast<double>(quantiles_.size() - 1);
-    const auto i = std::min(static_cast<std::size_t>(place), quantiles_.size() - 2);
-    return lerp(quantiles_[i], quantiles_[i + 1], place - static_cast<double>(i));
+    const double position = u * static_cast<double>(quantiles_.size() - 1);
+    const auto i = std::min(static_cast<std::size_t>(position), quantiles_.size() - 2);
+    return lerp(quantiles_[i], quantiles_[i + 1], position - static_cast<double>(i));
 }
 
 } // namespace duet

@@ -32,11 +32,11 @@ float stratum(std::uint32_t numerator, double fraction, std::uint32_t denominato
 
 /// Returns the seed for the shuffling of a dimension from the 64 bits of the pixel's hash. The seed is well mixed.
 template <typename U> U dimension_seed(U pixel_low, U pixel_high, U dimension) {
-    return mix_bits_32(mix_bits_32(dimension * U(kGoldenStep32) + pixel_low) ^ pixel_high);
+    return mix_bits_32(mix_bits_32(dimension * U(kGoldenGamma32) + pixel_low) ^ pixel_high);
 }
 /// Returns the seed for the scrambling of the first (0) or second (1) coordinate of a pair of dimensions.
 template <typename U> U scramble_seed(U seed, U coordinate) {
-    return mix_bits_32(seed + (coordinate + U(1u)) * U(kGoldenStep32));
+    return mix_bits_32(seed + (coordinate + U(1u)) * U(kGoldenGamma32));
 }
 /// Returns the index of the Sobol point that a sample uses for a pair of dimensions. Its digits are reversed (see
 /// sobol.h).
@@ -59,11 +59,11 @@ Vec2 sobol_2d(std::uint32_t reversed_index, std::uint32_t seed) {
     return {unit_float(digits.x), unit_float(digits.y)};
 }
 
-template <std::size_t kLanes> using WholeBatch = xsimd::make_sized_batch_t<std::uint32_t, kLanes>;
+template <std::size_t kLanes> using UintBatch = xsimd::make_sized_batch_t<std::uint32_t, kLanes>;
 
 /// Computes a block of four Sobol pairs from dimension `first` on, one coordinate in each lane.
 Sampler::Block sobol_block(std::uint32_t reversed_index, std::uint64_t pixel, std::uint32_t first) {
-    using Batch = WholeBatch<kSimdLanes>;
+    using Batch = UintBatch<kSimdLanes>;
     alignas(Batch) constexpr std::array<std::uint32_t, Sampler::kBlock> kPairs{0, 0, 2, 2, 4, 4, 6, 6},
         kCoordinates{0, 1, 0, 1, 0, 1, 0, 1};
     alignas(Batch) std::array<std::uint32_t, Sampler::kBlock> bits;
@@ -75,9 +75,9 @@ Sampler::Block sobol_block(std::uint32_t reversed_index, std::uint64_t pixel, st
         const Batch digits = xsimd::select(coordinate == Batch(0u), point, sobol_second(point));
         reverse_bits(owen_scramble(digits, scramble_seed(seed, coordinate))).store_aligned(&bits[lane]);
     }
-    Sampler::Block numbers;
-    for (std::size_t i = 0; i < Sampler::kBlock; ++i) numbers[i] = unit_float(bits[i]);
-    return numbers;
+    Sampler::Block samples;
+    for (std::size_t i = 0; i < Sampler::kBlock; ++i) samples[i] = unit_float(bits[i]);
+    return samples;
 }
 
 /// Moves the lower 16 bits to the even bit positions.
@@ -120,7 +120,7 @@ SamplerKind sampler_kind(std::string_view name) {
     throw Error(message("unknown sampler '", name, "': expected sobol, blue-noise, stratified, independent or center"));
 }
 
-bool depends_on_count(SamplerKind kind) {
+bool needs_sample_count(SamplerKind kind) {
     return kind == SamplerKind::kStratified || kind == SamplerKind::kBlueNoise;
 }
 
@@ -131,7 +131,7 @@ std::string_view sampler_name(SamplerKind kind) {
 }
 
 Sampler::Sampler(SamplerKind kind, std::uint64_t seed, int samples_per_pixel, std::uint32_t replicates)
-    : kind_(kind), seed_(mix_bits(seed + kGoldenStep)),
+    : kind_(kind), seed_(mix_bits(seed + kGoldenGamma)),
       samples_per_replicate_((static_cast<std::uint32_t>(std::max(samples_per_pixel, 1)) + replicates - 1) /
                              replicates),
       replicates_(replicates) {
@@ -195,42 +195,42 @@ Vec2 Sampler::get_2d() {
 }
 
 Sampler::Block Sampler::get_block() {
-    std::array<float, kBlock> numbers;
+    std::array<float, kBlock> samples;
     if (is_sobol()) {
-        numbers = sobol_block(reversed_index_, pixel_hash_, dimension_);
+        samples = sobol_block(reversed_index_, pixel_hash_, dimension_);
         dimension_ += kBlock;
-        return numbers;
+        return samples;
     }
     for (std::size_t i = 0; i < kBlock; i += 2) {
         const Vec2 pair = get_2d();
-        numbers[i] = pair.x;
-        numbers[i + 1] = pair.y;
+        samples[i] = pair.x;
+        samples[i + 1] = pair.y;
     }
-    return numbers;
+    return samples;
 }
 
-// Implements both overloads of pairs(). at(k) returns the k-th of `size` samplers.
+// Implements both overloads of get_2d_batch(). at(k) returns the k-th of `size` samplers.
 template <typename At>
-void Sampler::pairs_of(const At& at, std::size_t size, std::span<const std::uint32_t> dimensions,
-                       std::span<Vec2> numbers) {
-    DUET_CHECK_EQ(numbers.size(), size * dimensions.size());
-    if (numbers.empty()) return;
+void Sampler::get_2d_batch_of(const At& at, std::size_t size, std::span<const std::uint32_t> dimensions,
+                              std::span<Vec2> samples) {
+    DUET_CHECK_EQ(samples.size(), size * dimensions.size());
+    if (samples.empty()) return;
     if (!at(0).is_sobol()) {
         for (std::size_t d = 0; d < dimensions.size(); ++d)
             for (std::size_t k = 0; k < size; ++k) {
                 Sampler sampler = at(k);
                 sampler.set_dimension(dimensions[d]);
-                numbers[d * size + k] = sampler.get_2d();
+                samples[d * size + k] = sampler.get_2d();
             }
         return;
     }
     constexpr std::size_t kLanes = kMaxSimdLanes;
-    using Batch = WholeBatch<kLanes>;
+    using Batch = UintBatch<kLanes>;
     for (std::size_t done = 0; done < size; done += kLanes) {
-        const std::size_t some = std::min(size - done, kLanes);
+        const std::size_t batch = std::min(size - done, kLanes);
         alignas(Batch) std::array<std::uint32_t, kLanes> index, low, high, x, y;
         for (std::size_t i = 0; i < kLanes; ++i) { // excess lanes repeat the first one
-            const Sampler& s = at(done + (i < some ? i : 0));
+            const Sampler& s = at(done + (i < batch ? i : 0));
             index[i] = s.reversed_index_, low[i] = low_bits(s.pixel_hash_), high[i] = high_bits(s.pixel_hash_);
         }
         const auto load = [](const auto& lanes) { return Batch::load_aligned(lanes.data()); };
@@ -239,42 +239,44 @@ void Sampler::pairs_of(const At& at, std::size_t size, std::span<const std::uint
             const Vec2T<Batch> digits = sobol_2d_digits(indices, dimension_seed(lows, highs, Batch(dimensions[d])));
             digits.x.store_aligned(x.data());
             digits.y.store_aligned(y.data());
-            Vec2* to = &numbers[d * size + done];
-            for (std::size_t i = 0; i < some; ++i) to[i] = {unit_float(x[i]), unit_float(y[i])};
+            Vec2* to = &samples[d * size + done];
+            for (std::size_t i = 0; i < batch; ++i) to[i] = {unit_float(x[i]), unit_float(y[i])};
         }
     }
 }
 
-void Sampler::pairs(std::span<const Sampler> samplers, std::span<const std::uint32_t> dimensions,
-                    std::span<Vec2> numbers) {
-    pairs_of([&](std::size_t k) -> const Sampler& { return samplers[k]; }, samplers.size(), dimensions, numbers);
+void Sampler::get_2d_batch(std::span<const Sampler> samplers, std::span<const std::uint32_t> dimensions,
+                           std::span<Vec2> samples) {
+    get_2d_batch_of([&](std::size_t k) -> const Sampler& { return samplers[k]; }, samplers.size(), dimensions, samples);
 }
 
-void Sampler::pairs(std::span<const Sampler> samplers, std::span<const std::uint32_t> which,
-                    std::span<const std::uint32_t> dimensions, std::span<Vec2> numbers) {
-    pairs_of([&](std::size_t k) -> const Sampler& { return samplers[which[k]]; }, which.size(), dimensions, numbers);
+void Sampler::get_2d_batch(std::span<const Sampler> samplers, std::span<const std::uint32_t> subset,
+                           std::span<const std::uint32_t> dimensions, std::span<Vec2> samples) {
+    get_2d_batch_of([&](std::size_t k) -> const Sampler& { return samplers[subset[k]]; }, subset.size(), dimensions,
+                    samples);
 }
 
-CameraNumbers Sampler::camera_numbers(CameraNeeds needs) const {
-    CameraNumbers numbers;
-    camera_numbers({this, 1}, needs, {&numbers, 1});
-    return numbers;
+CameraRaySample Sampler::camera_ray_samples(CameraNeeds needs) const {
+    CameraRaySample samples;
+    camera_ray_samples({this, 1}, needs, {&samples, 1});
+    return samples;
 }
 
-void Sampler::camera_numbers(std::span<const Sampler> samplers, CameraNeeds needs, std::span<CameraNumbers> numbers) {
-    std::fill(numbers.begin(), numbers.end(), CameraNumbers());
+void Sampler::camera_ray_samples(std::span<const Sampler> samplers, CameraNeeds needs,
+                                 std::span<CameraRaySample> samples) {
+    std::fill(samples.begin(), samples.end(), CameraRaySample());
     if (samplers.empty() || samplers[0].kind_ == SamplerKind::kCenter) return;
-    constexpr std::size_t kSome = 64;
-    std::array<Vec2, kSome> drawn;
-    for (std::size_t done = 0; done < samplers.size(); done += kSome) {
-        const auto some = samplers.subspan(done, std::min(kSome, samplers.size() - done));
+    constexpr std::size_t kBatchSize = 64;
+    std::array<Vec2, kBatchSize> drawn;
+    for (std::size_t done = 0; done < samplers.size(); done += kBatchSize) {
+        const auto batch = samplers.subspan(done, std::min(kBatchSize, samplers.size() - done));
         const auto draw = [&](std::uint32_t dimension, const auto& set) {
-            pairs(some, {&dimension, 1}, std::span(drawn).first(some.size()));
-            for (std::size_t i = 0; i < some.size(); ++i) set(numbers[done + i], drawn[i]);
+            get_2d_batch(batch, {&dimension, 1}, std::span(drawn).first(batch.size()));
+            for (std::size_t i = 0; i < batch.size(); ++i) set(samples[done + i], drawn[i]);
         };
-        draw(0, [](CameraNumbers& u, Vec2 pair) { u.pixel = pair; });
-        if (needs.lens) draw(2, [](CameraNumbers& u, Vec2 pair) { u.lens = pair; });
-        if (needs.time) draw(4, [](CameraNumbers& u, Vec2 pair) { u.time = pair.x; });
+        draw(0, [](CameraRaySample& u, Vec2 pair) { u.pixel = pair; });
+        if (needs.lens) draw(2, [](CameraRaySample& u, Vec2 pair) { u.lens = pair; });
+        if (needs.time) draw(4, [](CameraRaySample& u, Vec2 pair) { u.time = pair.x; });
     }
 }
 

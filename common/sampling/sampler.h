@@ -25,10 +25,10 @@ SamplerKind sampler_kind(std::string_view name);
 /// Returns the name that sampler_kind() accepts for a sampler.
 std::string_view sampler_name(SamplerKind kind);
 /// Returns whether the samples depend on the number of samples per pixel.
-bool depends_on_count(SamplerKind kind);
+bool needs_sample_count(SamplerKind kind);
 
 /// Holds the random samples in [0, 1) of one camera ray.
-struct CameraNumbers {
+struct CameraRaySample {
     Vec2 pixel{0.5f, 0.5f}, lens{0.5f, 0.5f};
     float time = 0;
 };
@@ -67,21 +67,22 @@ public:
     /// little more than one call.
     Block get_block();
     /// Computes the results of get_2d() for many samplers of the same kind at the given dimensions with SIMD. With n
-    /// samplers, numbers[d * n + k] is the pair of sampler k at dimensions[d]. The samplers do not advance.
-    static void pairs(std::span<const Sampler> samplers, std::span<const std::uint32_t> dimensions,
-                      std::span<Vec2> numbers);
-    /// Computes the same for a subset of the samplers: sampler k is samplers[which[k]], and n is which.size().
-    static void pairs(std::span<const Sampler> samplers, std::span<const std::uint32_t> which,
-                      std::span<const std::uint32_t> dimensions, std::span<Vec2> numbers);
+    /// samplers, samples[d * n + k] is the pair of sampler k at dimensions[d]. The samplers do not advance.
+    static void get_2d_batch(std::span<const Sampler> samplers, std::span<const std::uint32_t> dimensions,
+                             std::span<Vec2> samples);
+    /// Computes the same for a subset of the samplers: sampler k is samplers[subset[k]], and n is subset.size().
+    static void get_2d_batch(std::span<const Sampler> samplers, std::span<const std::uint32_t> subset,
+                             std::span<const std::uint32_t> dimensions, std::span<Vec2> samples);
     /// Selects the camera samples that are needed in addition to the position in the pixel.
     struct CameraNeeds {
         bool lens = false, time = false;
     };
     /// Returns the camera samples, which are the first three pairs of dimensions. Samples that are not needed have the
-    /// defaults of CameraNumbers. kCenter returns only defaults. The sampler does not advance.
-    CameraNumbers camera_numbers(CameraNeeds needs) const;
+    /// defaults of CameraRaySample. kCenter returns only defaults. The sampler does not advance.
+    CameraRaySample camera_ray_samples(CameraNeeds needs) const;
     /// Computes the camera samples of many samplers of the same kind.
-    static void camera_numbers(std::span<const Sampler> samplers, CameraNeeds needs, std::span<CameraNumbers> numbers);
+    static void camera_ray_samples(std::span<const Sampler> samplers, CameraNeeds needs,
+                                   std::span<CameraRaySample> samples);
 
 private:
     bool is_sobol() const {
@@ -89,8 +90,8 @@ private:
     }
     void share_sequence(std::uint32_t pixel_x, std::uint32_t pixel_y);
     template <typename At>
-    static void pairs_of(const At& at, std::size_t size, std::span<const std::uint32_t> dimensions,
-                         std::span<Vec2> numbers);
+    static void get_2d_batch_of(const At& at, std::size_t size, std::span<const std::uint32_t> dimensions,
+                                std::span<Vec2> samples);
 
     SamplerKind kind_;
     std::uint64_t seed_;

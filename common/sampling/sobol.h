@@ -40,7 +40,7 @@ template <typename U> constexpr U sobol_second(U index) {
 /// Returns point `index` < n of the first n Sobol points, where n is a power of two up to 2^24. Each coordinate is
 /// moved to the center of its interval of width 1/n. All n points form a (0, 2)-net, and so does each aligned block of
 /// 2^k points.
-inline Vec2 net_point(std::uint32_t index, int n) {
+inline Vec2 sobol_net_point(std::uint32_t index, int n) {
     const auto digits = [n](std::uint32_t reversed) {
         return static_cast<float>(reverse_bits(reversed)) * 0x1p-32f + 0.5f / static_cast<float>(n);
     };

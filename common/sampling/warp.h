@@ -22,7 +22,7 @@ template <int n, typename T> constexpr T trigonometric_series(T x_squared) {
 
 /// Returns the cosine and the sine of an angle in [−π/4, π/4], with an error of a few roundings. The library
 /// functions support any angle, but cost several times as much.
-template <typename T> constexpr Vec2T<T> unit_circle_near(T angle) {
+template <typename T> constexpr Vec2T<T> cos_sin_near_zero(T angle) {
     const T squared = angle * angle;
     return {trigonometric_series<1>(squared), angle * trigonometric_series<2>(squared)};
 }
@@ -30,9 +30,9 @@ template <typename T> constexpr Vec2T<T> unit_circle_near(T angle) {
 /// Returns the point (cos 2πu, sin 2πu) for u in [0, 1].
 template <Arithmetic T> Vec2T<T> unit_circle(T u) {
     const int quarter = static_cast<int>(4 * u + T(0.5)); // the difference 4u − quarter is exact
-    const Vec2T<T> p = unit_circle_near((4 * u - static_cast<T>(quarter)) * static_cast<T>(kPiDouble / 2));
-    const Vec2T<T> turned = quarter & 1 ? Vec2T<T>(-p.y, p.x) : p;
-    return quarter & 2 ? Vec2T<T>(-turned.x, -turned.y) : turned;
+    const Vec2T<T> p = cos_sin_near_zero((4 * u - static_cast<T>(quarter)) * static_cast<T>(kPiDouble / 2));
+    const Vec2T<T> rotated = quarter & 1 ? Vec2T<T>(-p.y, p.x) : p;
+    return quarter & 2 ? Vec2T<T>(-rotated.x, -rotated.y) : rotated;
 }
 
 /// Maps the unit square uniformly to the unit disk (density 1/π). Squares around (½, ½) become circles around the
@@ -43,7 +43,7 @@ template <typename T> Vec2T<T> concentric_disk(Vec2T<T> u) {
     const auto wide = abs(a) > abs(b);
     const T r = select(wide, a, b), other = select(wide, b, a);
     const T slope = select(r == zero, zero, other / r);
-    const Vec2T<T> p = unit_circle_near(T(kPi / 4) * slope); // angle to the nearer axis
+    const Vec2T<T> p = cos_sin_near_zero(T(kPi / 4) * slope); // angle to the nearer axis
     const T along = r * p.x, across = r * p.y;
     return {select(wide, along, across), select(wide, across, along)};
 }

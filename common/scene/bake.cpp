@@ -16,14 +16,15 @@ std::optional<double> similarity_scale(const Mat4d& m) {
     const Vec3d x = column(0), y = column(1), z = column(2);
     const double scale = std::cbrt(abs(determinant3(m)));
     const double tolerance = 1e-6 * sqr(scale);
-    const auto off = [&](double value, double expected) { return !(abs(value - expected) <= tolerance); };
-    if (off(dot(x, x), sqr(scale)) || off(dot(y, y), sqr(scale)) || off(dot(z, z), sqr(scale))) return std::nullopt;
-    if (off(dot(x, y), 0) || off(dot(y, z), 0) || off(dot(z, x), 0)) return std::nullopt;
+    const auto differs = [&](double value, double expected) { return !(abs(value - expected) <= tolerance); };
+    if (differs(dot(x, x), sqr(scale)) || differs(dot(y, y), sqr(scale)) || differs(dot(z, z), sqr(scale)))
+        return std::nullopt;
+    if (differs(dot(x, y), 0) || differs(dot(y, z), 0) || differs(dot(z, x), 0)) return std::nullopt;
     return scale;
 }
 
 /// Returns whether the map has no rotation or mirroring, so that a sphere's texture coordinates are unchanged.
-bool keeps_directions(const Mat4& m) {
+bool is_uniform_scale(const Mat4& m) {
     return m[0][0] > 0 && m[0][0] == m[1][1] && m[1][1] == m[2][2] && m[0][1] == 0 && m[0][2] == 0 && m[1][0] == 0 &&
            m[1][2] == 0 && m[2][0] == 0 && m[2][1] == 0;
 }
@@ -35,7 +36,7 @@ struct TextureUse {
 
 TextureUse texture_use(const Scene& scene, const Object& object) {
     TextureUse use;
-    const auto note = [&](std::int32_t texture) {
+    const auto add_texture = [&](std::int32_t texture) {
         if (texture < 0) return;
         use.any = true;
         const Texture& t = scene.textures.textures[static_cast<std::size_t>(texture)];
@@ -43,15 +44,15 @@ TextureUse texture_use(const Scene& scene, const Object& object) {
         use.solid = use.solid || std::holds_alternative<NoiseTexture>(t) || (checker != nullptr && checker->solid);
     };
     for (const std::uint32_t index : object.materials) {
-        for_each_texture(scene.materials[index], note);
-        if (index < scene.maps.size()) for_each_texture(scene.maps[index], note);
+        for_each_texture(scene.materials[index], add_texture);
+        if (index < scene.maps.size()) for_each_texture(scene.maps[index], add_texture);
     }
     return use;
 }
 
 /// Returns whether corners that coincided before the transform still coincide. In mirrored quads the second and the
 /// fourth corner are exchanged.
-bool corners_still_meet(const std::vector<Quad>& before, const std::vector<Quad>& after, bool mirrored) {
+bool corners_still_coincide(const std::vector<Quad>& before, const std::vector<Quad>& after, bool mirrored) {
     std::vector<std::pair<std::array<float, 3>, std::array<float, 3>>> moved;
     for (std::size_t i = 0; i < before.size(); ++i) {
         const std::array<Vec3, 4> from = corners(before[i]), to = corners(after[i]);
@@ -70,14 +71,14 @@ bool bake(QuadList& list, const Mat4& m, bool textured) {
     if (determinant3(m) < 0 && textured) return false;
     std::vector<Quad> after;
     for (const Quad& quad : list.quads) after.push_back(transformed(quad, m));
-    if (list.quads.size() > 1 && !corners_still_meet(list.quads, after, determinant3(m) < 0)) return false;
+    if (list.quads.size() > 1 && !corners_still_coincide(list.quads, after, determinant3(m) < 0)) return false;
     list.quads = std::move(after);
     return true;
 }
 
 bool bake(Sphere& sphere, const Mat4& m, bool textured) {
     const std::optional<Sphere> moved = transformed(sphere, m);
-    if (!moved || (textured && !keeps_directions(m))) return false;
+    if (!moved || (textured && !is_uniform_scale(m))) return false;
     sphere = *moved;
     return true;
 }

@@ -1,6 +1,6 @@
 // This file computes the data that is derived from a scene's description, once for both pipelines.
 #include "common/scene/bake.h"
-#include "common/scene/lamp_texture.h"
+#include "common/scene/emitter_texture.h"
 #include "common/scene/scene.h"
 #include "common/system/error.h"
 
@@ -49,8 +49,8 @@ void find_bounds(Scene& scene) {
     scene.bounds = Box3();
     for (const Object& object : scene.objects) {
         const Box3 box = motion_bounds(scene, object);
-        const Vec3 reach = max(abs(box.low), abs(box.high));
-        if (!is_finite(reach) || max_component(reach) > kMaxCoordinate)
+        const Vec3 extent = max(abs(box.low), abs(box.high));
+        if (!is_finite(extent) || max_component(extent) > kMaxCoordinate)
             throw Error(message(scene.path.string(), ": the object ", object.name, " reaches beyond 1e18 metres"));
         scene.bounds.extend(box);
     }
@@ -73,7 +73,7 @@ std::optional<SurfaceLight> surface_light(const Shape& shape, const Mat4& to_wor
         area = cross(Vec3d(quad.u), Vec3d(quad.v));
         light.shape = quad;
     } else {
-        const Corners c = primitive_corners(shape, primitive);
+        const PrimitiveVertices c = primitive_vertices(shape, primitive);
         const auto [a, b, d] = transformed(std::array{c.p[0], c.p[1], c.p[2]}, to_world);
         area = cross(Vec3d(b) - Vec3d(a), Vec3d(d) - Vec3d(a));
         light.shape = SurfaceLight::Triangle{a, b, d};
@@ -92,12 +92,12 @@ void add_surface_lights(Scene& scene) {
             continue;
         const Shape& shape = scene.shapes[object.shape];
         for (std::uint32_t p = 0; p < primitive_count(shape); ++p) {
-            const Emissive* lamp = emitter(scene.materials[material_index(scene, o, p)]);
-            if (lamp == nullptr) continue;
+            const Emissive* emissive = emitter(scene.materials[material_index(scene, o, p)]);
+            if (emissive == nullptr) continue;
             std::optional<SurfaceLight> light = surface_light(shape, object.to_world, p);
             if (!light) continue;
-            light->two_sided = lamp->two_sided;
-            light->radiance = mean_radiance(scene, o, p, *lamp);
+            light->two_sided = emissive->two_sided;
+            light->radiance = mean_radiance(scene, o, p, *emissive);
             light->object = o;
             light->primitive = p;
             scene.lights.push_back(*light);
@@ -113,7 +113,7 @@ void check_power(const Scene& scene) {
                                               "irradiance times the scene's cross-section");
 }
 
-void note_texture(const Scene& scene, std::int32_t index, SceneNeeds& needs) {
+void add_texture_needs(const Scene& scene, std::int32_t index, SceneNeeds& needs) {
     if (index < 0) return;
     needs.textures = true;
     const auto* image = std::get_if<ImageTexture>(&scene.textures.textures[static_cast<std::size_t>(index)]);
@@ -122,30 +122,30 @@ void note_texture(const Scene& scene, std::int32_t index, SceneNeeds& needs) {
     needs.footprints = needs.footprints || uses_footprint(image->filter);
 }
 
-void note_material(const Scene& scene, const Material& material, SceneNeeds& needs) {
+void add_material_needs(const Scene& scene, const Material& material, SceneNeeds& needs) {
     if (const auto* metal = std::get_if<Metal>(&material)) {
         const bool smooth = sqr(metal->roughness.value) < MetalBsdf::kSmoothAlpha,
                    varies = !metal->roughness.constant();
         needs.specular = needs.specular || smooth || varies;
         needs.glossy = needs.glossy || !smooth;
     }
-    if (const Emissive* lamp = emitter(material); lamp != nullptr && lamp->radiance_texture >= 0)
-        needs.lamp_textures = true;
+    if (const Emissive* emissive = emitter(material); emissive != nullptr && emissive->radiance_texture >= 0)
+        needs.emitter_textures = true;
     if (const auto* glass = std::get_if<Dielectric>(&material)) {
         needs.transmission = true;
         needs.specular = needs.specular || glass->thin || glass->smooth() || !glass->roughness.constant();
         needs.glossy = needs.glossy || (!glass->thin && !glass->smooth());
-        needs.insides = needs.insides || glass->has_inside();
+        needs.media = needs.media || glass->has_interior_medium();
     }
     if (std::holds_alternative<Principled>(material) || std::holds_alternative<Coated>(material))
         needs.layers = needs.glossy = true;
-    for_each_texture(material, [&](std::int32_t texture) { note_texture(scene, texture, needs); });
+    for_each_texture(material, [&](std::int32_t texture) { add_texture_needs(scene, texture, needs); });
 }
 
-void note_maps(const Scene& scene, const SurfaceMaps& maps, SceneNeeds& needs) {
-    needs.normal_maps = needs.normal_maps || maps.bends_normals();
-    needs.alpha = needs.alpha || maps.cuts_out();
-    for_each_texture(maps, [&](std::int32_t texture) { note_texture(scene, texture, needs); });
+void add_map_needs(const Scene& scene, const SurfaceMaps& maps, SceneNeeds& needs) {
+    needs.normal_maps = needs.normal_maps || maps.perturbs_normal();
+    needs.alpha = needs.alpha || maps.has_transparency();
+    for_each_texture(maps, [&](std::int32_t texture) { add_texture_needs(scene, texture, needs); });
 }
 
 SceneNeeds find_needs(const Scene& scene) {
@@ -164,8 +164,8 @@ SceneNeeds find_needs(const Scene& scene) {
     }
     for (std::size_t i = 0; i < used.size(); ++i)
         if (used[i]) {
-            note_material(scene, scene.materials[i], needs);
-            note_maps(scene, scene.maps[i], needs);
+            add_material_needs(scene, scene.materials[i], needs);
+            add_map_needs(scene, scene.maps[i], needs);
         }
     needs.lens = scene.camera.aperture_radius > 0;
     needs.environment = !is_black(scene.environment);
@@ -179,7 +179,7 @@ SceneNeeds find_needs(const Scene& scene) {
 void finish_scene(Scene& scene) {
     scene.maps.resize(scene.materials.size());
     check_references(scene);
-    build_pyramids(scene.textures);
+    build_mipmaps(scene.textures);
     bake_single_objects(scene);
     find_bounds(scene);
     for (Shape& shape : scene.shapes)

@@ -1,5 +1,5 @@
 #include "common/image/image_file.h"
-#include "common/scene/bare_mesh.h"
+#include "common/scene/default_scene.h"
 #include "common/scene/json/json_reader.h"
 #include "common/scene/json/read_lights.h"
 #include "common/scene/json/read_materials.h"
@@ -21,8 +21,8 @@ constexpr std::size_t kMaxSceneBytes = std::size_t{1} << 26;
 
 void read_image_size(const JsonValue& image, Scene& scene) {
     image.check_keys(scene_keys("image"));
-    if (image.has("width")) scene.width = image.at("width").integer(1, kMaxPictureSide);
-    if (image.has("height")) scene.height = image.at("height").integer(1, kMaxPictureSide);
+    if (image.has("width")) scene.width = image.at("width").integer(1, kMaxRenderSide);
+    if (image.has("height")) scene.height = image.at("height").integer(1, kMaxRenderSide);
     const long long pixels = static_cast<long long>(scene.width) * scene.height;
     if (pixels > kMaxImagePixels) image.fail(message("found ", pixels, " pixels, expected at most ", kMaxImagePixels));
 }
@@ -53,10 +53,10 @@ Scene read_scene(const std::filesystem::path& path) {
 } // namespace
 
 Scene load_scene(const std::filesystem::path& path) {
-    const std::string extension = lower_case_ending(path);
+    const std::string extension = lower_case_extension(path);
     if (extension != ".json" && extension != ".obj")
         throw Error(message(path.string(), ": expected a scene file (.json) or a mesh (.obj)"));
-    Scene scene = extension == ".obj" ? scene_around_mesh(path) : read_scene(path);
+    Scene scene = extension == ".obj" ? default_scene_for_mesh(path) : read_scene(path);
     finish_scene(scene);
     return scene;
 }

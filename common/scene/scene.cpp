@@ -14,7 +14,7 @@ ObjectTransform object_transform(const Object& object, float time) {
 
 namespace {
 
-SurfacePoint plain_surface_point(const Scene& scene, const Ray& ray, const Hit& hit, SurfaceDetail detail) {
+SurfacePoint base_surface_point(const Scene& scene, const Ray& ray, const Hit& hit, SurfaceDetail detail) {
     const Object& object = scene.objects[hit.object];
     const Shape& shape = scene.shapes[object.shape];
     // The point is constructed in place, because a copy right after its members are written would wait for these
@@ -34,21 +34,21 @@ SurfacePoint plain_surface_point(const Scene& scene, const Ray& ray, const Hit& 
 
 SurfacePoint surface_point(const Scene& scene, const Ray& ray, const Hit& hit, const RayFootprint* footprint,
                            SurfaceDetail detail) {
-    SurfacePoint point = plain_surface_point(scene, ray, hit, detail);
+    SurfacePoint point = base_surface_point(scene, ray, hit, detail);
     if (scene.needs.footprints && footprint != nullptr) set_footprint(*footprint, ray.direction, point);
-    if (scene.needs.normal_maps) bend_normal(scene.textures, scene.maps[point.material], ray.direction, point);
+    if (scene.needs.normal_maps) apply_normal_maps(scene.textures, scene.maps[point.material], ray.direction, point);
     return point;
 }
 
 float opacity(const Scene& scene, const Ray& ray, const Hit& hit) {
     const SurfaceMaps& maps = scene.maps[material_index(scene, hit.object, hit.primitive)];
-    if (!maps.cuts_out()) return 1;
+    if (!maps.has_transparency()) return 1;
     if (maps.opacity.constant()) return opacity(scene.textures, maps, SurfacePoint{});
-    return opacity(scene.textures, maps, plain_surface_point(scene, ray, hit, SurfaceDetail::kAll));
+    return opacity(scene.textures, maps, base_surface_point(scene, ray, hit, SurfaceDetail::kAll));
 }
 
 SurfaceDetail surface_detail(const Scene& scene, std::uint32_t material) {
-    bool textured = scene.maps[material].bends_normals();
+    bool textured = scene.maps[material].perturbs_normal();
     for_each_texture(scene.materials[material], [&](std::int32_t texture) { textured = textured || texture >= 0; });
     return textured ? SurfaceDetail::kAll : SurfaceDetail::kWithoutUv;
 }
@@ -72,7 +72,7 @@ std::int64_t surface_light_index(const Scene& scene, std::uint32_t object, std::
     return surface.object == object && surface.primitive == primitive ? found - scene.lights.begin() : -1;
 }
 
-Corners primitive_corners(const Shape& shape, std::uint32_t primitive) {
+PrimitiveVertices primitive_vertices(const Shape& shape, std::uint32_t primitive) {
     if (const auto* mesh = std::get_if<Mesh>(&shape)) {
         const auto& [a, b, c] = mesh->triangles[primitive];
         return {{mesh->positions[a], mesh->positions[b], mesh->positions[c]}, 3};

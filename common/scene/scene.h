@@ -36,14 +36,14 @@ struct SceneNeeds {
     bool textures = false, image_textures = false;
     bool footprints = false;   ///< an image texture is filtered over the sample's footprint
     bool normal_maps = false;  ///< normal or bump maps
-    bool lamp_textures = false; ///< an emissive surface has a radiance texture
+    bool emitter_textures = false; ///< an emissive surface has a radiance texture
     bool alpha = false;        ///< alpha masks or alpha blending
     bool motion = false, lens = false;
     bool environment = false; ///< the environment is not black
     bool delta_lights = false, surface_lights = false;
     bool glossy = false;       ///< rough metal, frosted glass and layered materials
     bool layers = false;       ///< principled and coated materials
-    bool insides = false;      ///< glass that absorbs or has a priority
+    bool media = false;        ///< glass that absorbs or has a priority
     bool specular = false;     ///< mirrors and glass
     bool transmission = false; ///< glass
     bool meshes = false, quads = false, spheres = false;
@@ -88,7 +88,7 @@ ObjectTransform object_transform(const Object& object, float time);
 /// both spaces.
 inline Ray to_object_space(const Ray& ray, const Mat4& to_world, const Mat4& to_object) {
     Ray local = ray;
-    local.origin = transform_point_back(to_world, to_object, ray.origin);
+    local.origin = transform_point_inverse(to_world, to_object, ray.origin);
     local.direction = transform_vector(to_object, ray.direction);
     return local;
 }
@@ -107,13 +107,13 @@ SurfaceDetail surface_detail(const Scene& scene, std::uint32_t material);
 std::uint32_t material_index(const Scene& scene, std::uint32_t object, std::uint32_t primitive);
 /// Returns the index in Scene::lights of a primitive's SurfaceLight, or −1 where it emits nothing or moves.
 std::int64_t surface_light_index(const Scene& scene, std::uint32_t object, std::uint32_t primitive);
-/// Corners holds the corners of a triangle or quad in its object's space, 3 or 4 points in order (quad: corner, +u,
-/// +u+v, +v). For a baked object that is world space.
-struct Corners {
+/// PrimitiveVertices holds the vertices of a triangle or quad in its object's space, 3 or 4 points in order (quad:
+/// corner, +u, +u+v, +v). For a baked object that is world space.
+struct PrimitiveVertices {
     std::array<Vec3, 4> p;
     int count = 0;
 };
-Corners primitive_corners(const Shape& shape, std::uint32_t primitive);
+PrimitiveVertices primitive_vertices(const Shape& shape, std::uint32_t primitive);
 
 /// Loads a scene file (.json) or a bare mesh (.obj), for which it adds a camera, a ground, a sky and a sun. Throws
 /// Error for a file that cannot be used.

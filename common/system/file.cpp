@@ -10,11 +10,11 @@ namespace duet {
 
 namespace fs = std::filesystem;
 
-std::string lower_case_ending(const fs::path& path) {
-    std::string ending = path.extension().string();
-    for (char& c : ending)
+std::string lower_case_extension(const fs::path& path) {
+    std::string extension = path.extension().string();
+    for (char& c : extension)
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return ending;
+    return extension;
 }
 
 std::string read_file(const fs::path& path, std::size_t limit) {
@@ -36,7 +36,7 @@ std::string read_file(const fs::path& path, std::size_t limit) {
     return bytes;
 }
 
-void write_whole(const fs::path& path, const std::function<void(const fs::path&)>& write) {
+void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
     // Preserve the extension, because some writers choose the file format by it.
     fs::path temporary = path;
     temporary.replace_filename(message(".", path.stem().string(), ".", ::getpid(), path.extension().string()));
@@ -53,7 +53,7 @@ void write_whole(const fs::path& path, const std::function<void(const fs::path&)
 }
 
 void write_file(const fs::path& path, std::string_view bytes) {
-    write_whole(path, [&](const fs::path& temporary) {
+    write_atomically(path, [&](const fs::path& temporary) {
         std::ofstream out(temporary, std::ios::binary);
         out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
         out.close();

@@ -11,7 +11,7 @@ namespace duet {
 
 /// Returns the path's extension with its dot, for example ".png", or an empty string if it has none. The letters A to Z
 /// are converted to lower case, independently of the locale.
-std::string lower_case_ending(const std::filesystem::path& path);
+std::string lower_case_extension(const std::filesystem::path& path);
 
 /// Returns the contents of a regular file. Throws an Error that names the path if the file is missing, is not a regular
 /// file, is larger than `limit` bytes or cannot be read.
@@ -20,8 +20,9 @@ std::string read_file(const std::filesystem::path& path, std::size_t limit = std
 /// Calls write(temporary) with the path of a new file in the directory of `path`, then renames that file to `path`. The
 /// output is thus complete or absent, even if the program is killed. Throws an Error (exit code 1) if the rename fails,
 /// and rethrows exceptions of `write`; the temporary file is removed in both cases.
-void write_whole(const std::filesystem::path& path, const std::function<void(const std::filesystem::path&)>& write);
-/// Writes `bytes` to the file at `path` atomically, by write_whole(). Throws an Error (exit code 1) on failure.
+void write_atomically(const std::filesystem::path& path,
+                      const std::function<void(const std::filesystem::path&)>& write);
+/// Writes `bytes` to the file at `path` atomically, by write_atomically(). Throws an Error (exit code 1) on failure.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
 } // namespace duet

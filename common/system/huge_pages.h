@@ -33,9 +33,9 @@ template <typename T> struct HugePageAllocator {
 #endif
         return static_cast<T*>(memory);
     }
-    template <typename U> void construct(U* place) { ::new (static_cast<void*>(place)) U; }
-    template <typename U, typename... Args> void construct(U* place, Args&&... args) {
-        ::new (static_cast<void*>(place)) U(std::forward<Args>(args)...);
+    template <typename U> void construct(U* element) { ::new (static_cast<void*>(element)) U; }
+    template <typename U, typename... Args> void construct(U* element, Args&&... args) {
+        ::new (static_cast<void*>(element)) U(std::forward<Args>(args)...);
     }
     void deallocate(T* memory, std::size_t) { std::free(memory); }
 

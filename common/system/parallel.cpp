@@ -5,7 +5,7 @@
 
 // ThreadSanitizer does not see the synchronization inside an uninstrumented oneTBB and reports dozens of false races.
 // Suppressing these reports would hide real races, so the ThreadSanitizer build runs the same loops on std::thread.
-#if defined(DUET_PLAIN_THREADS)
+#if defined(DUET_STD_THREADS)
 #include <atomic>
 #include <exception>
 #include <mutex>
@@ -22,7 +22,7 @@
 
 namespace duet {
 
-#if defined(DUET_PLAIN_THREADS)
+#if defined(DUET_STD_THREADS)
 
 int available_threads() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 

@@ -1,4 +1,4 @@
-#include "common/texture/texture_kinds.h"
+#include "common/texture/evaluate_texture.h"
 
 #include <cmath>
 

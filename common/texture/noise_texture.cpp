@@ -1,5 +1,5 @@
+#include "common/texture/evaluate_texture.h"
 #include "common/texture/noise.h"
-#include "common/texture/texture_kinds.h"
 
 #include <cmath>
 

@@ -42,12 +42,12 @@ using Texture = std::variant<ImageTexture, CheckerTexture, NoiseTexture>;
 struct TextureSet {
     std::vector<Texture> textures;
     std::vector<ImageRgb> images;
-    /// These are the mip levels of each image, from smaller_versions(). They are empty where no texture filters the
+    /// These are the mip levels of each image, from make_mip_levels(). They are empty where no texture filters the
     /// image.
-    std::vector<std::vector<ImageRgb>> smaller{};
+    std::vector<std::vector<ImageRgb>> mip_levels{};
 };
-/// Builds TextureSet::smaller.
-void build_pyramids(TextureSet& set);
+/// Builds TextureSet::mip_levels.
+void build_mipmaps(TextureSet& set);
 
 /// An RgbSlot is a color, or a texture times a color.
 struct RgbSlot {

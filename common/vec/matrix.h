@@ -64,7 +64,7 @@ template <typename T> constexpr Vec3T<T> transform_vector(const Mat4T<T>& m, Vec
 /// its terms are as large as the distance from the world's origin, and in float its error reaches centimeters at 100
 /// km.
 template <typename T>
-constexpr Vec3T<T> transform_point_back(const Mat4T<T>& m, const Mat4T<T>& inverse, Vec3T<T> p) {
+constexpr Vec3T<T> transform_point_inverse(const Mat4T<T>& m, const Mat4T<T>& inverse, Vec3T<T> p) {
     return transform_vector(inverse, p - Vec3T<T>(m[0][3], m[1][3], m[2][3]));
 }
 /// Applies an affine map, given by its inverse, to a normal and returns (M⁻¹)ᵀ n. The result is not normalized.

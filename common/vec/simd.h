@@ -66,7 +66,8 @@ inline void store_floats(DoubleBatch batch, float* to) {
 /// Returns a·b + c, rounded once where the target CPU has fused multiply-add. The intrinsics are needed because
 /// version 8 of xsimd does not use this instruction for 16 or 4 lanes.
 template <typename Arch>
-xsimd::batch<float, Arch> fused(xsimd::batch<float, Arch> a, xsimd::batch<float, Arch> b, xsimd::batch<float, Arch> c) {
+xsimd::batch<float, Arch> multiply_add(xsimd::batch<float, Arch> a, xsimd::batch<float, Arch> b,
+                                       xsimd::batch<float, Arch> c) {
 #if XSIMD_WITH_AVX512F
     if constexpr (sizeof(a) == 64) return _mm512_fmadd_ps(a, b, c);
 #endif
@@ -78,15 +79,15 @@ xsimd::batch<float, Arch> fused(xsimd::batch<float, Arch> a, xsimd::batch<float,
 
 /// Returns c − a·b, rounded once where the target CPU has fused multiply-add.
 template <typename Arch>
-xsimd::batch<float, Arch> fused_minus(xsimd::batch<float, Arch> a, xsimd::batch<float, Arch> b,
-                                      xsimd::batch<float, Arch> c) {
+xsimd::batch<float, Arch> negated_multiply_add(xsimd::batch<float, Arch> a, xsimd::batch<float, Arch> b,
+                                               xsimd::batch<float, Arch> c) {
 #if XSIMD_WITH_AVX512F
     if constexpr (sizeof(a) == 64) return _mm512_fnmadd_ps(a, b, c);
 #endif
-    return fused(-a, b, c);
+    return multiply_add(-a, b, c);
 }
 
-inline DoubleBatch fused(DoubleBatch a, DoubleBatch b, DoubleBatch c) {
+inline DoubleBatch multiply_add(DoubleBatch a, DoubleBatch b, DoubleBatch c) {
 #if XSIMD_WITH_AVX512F
     return _mm512_fmadd_pd(a, b, c);
 #else
@@ -94,7 +95,7 @@ inline DoubleBatch fused(DoubleBatch a, DoubleBatch b, DoubleBatch c) {
 #endif
 }
 /// Returns a·b + c for single floats, rounded once where the target CPU has fused multiply-add.
-inline float fused(float a, float b, float c) {
+inline float multiply_add(float a, float b, float c) {
 #if defined(__FMA__)
     return std::fma(a, b, c);
 #else
@@ -246,7 +247,7 @@ template <std::size_t N, typename Row> void store_columns(const std::array<Float
 
 /// Returns the smallest lane of each of the four batches: lane k of the result belongs to batch k. This costs less than
 /// four calls of lowest(). The result is unspecified for a batch that contains NaN.
-template <typename Batch> FloatBatch<4> lowest_of_each(const std::array<Batch, 4>& batches) {
+template <typename Batch> FloatBatch<4> reduce_min_of_each(const std::array<Batch, 4>& batches) {
     const auto [a, b, c, d] = detail::transpose_fours(batches);
     const Batch fours = xsimd::min(xsimd::min(a, b), xsimd::min(c, d));
     FloatBatch<4> result = detail::four<0>(fours);
@@ -257,13 +258,13 @@ template <typename Batch> FloatBatch<4> lowest_of_each(const std::array<Batch, 4
 }
 
 /// Returns the smallest lane. The result is unspecified if a lane is NaN.
-template <typename Arch> float lowest(xsimd::batch<float, Arch> lanes) {
+template <typename Arch> float reduce_min(xsimd::batch<float, Arch> lanes) {
 #if XSIMD_WITH_AVX512F
     if constexpr (sizeof(lanes) == 64) return _mm512_reduce_min_ps(lanes);
 #endif
 #if XSIMD_WITH_AVX
     if constexpr (sizeof(lanes) == 32)
-        return lowest(FloatBatch<4>(_mm_min_ps(_mm256_castps256_ps128(lanes), _mm256_extractf128_ps(lanes, 1))));
+        return reduce_min(FloatBatch<4>(_mm_min_ps(_mm256_castps256_ps128(lanes), _mm256_extractf128_ps(lanes, 1))));
 #endif
     if constexpr (sizeof(lanes) == 16) {
         const __m128 two = _mm_min_ps(lanes, _mm_movehl_ps(lanes, lanes));
@@ -271,6 +272,6 @@ template <typename Arch> float lowest(xsimd::batch<float, Arch> lanes) {
     }
 }
 /// Returns the largest lane. The result is unspecified if a lane is NaN.
-template <typename Arch> float highest(xsimd::batch<float, Arch> lanes) { return -lowest(-lanes); }
+template <typename Arch> float reduce_max(xsimd::batch<float, Arch> lanes) { return -reduce_min(-lanes); }
 
 } // namespace duet

@@ -86,7 +86,7 @@ template <typename T> constexpr Vec3T<T> min(Vec3T<T> a, Vec3T<T> b) {
     return {min(a.x, b.x), min(a.y, b.y), min(a.z, b.z)};
 }
 /// Broadcasts a vector of scalars to all lanes of a batch.
-template <typename T, Arithmetic S> constexpr Vec3T<T> spread(Vec3T<S> v) { return {T(v.x), T(v.y), T(v.z)}; }
+template <typename T, Arithmetic S> constexpr Vec3T<T> broadcast(Vec3T<S> v) { return {T(v.x), T(v.y), T(v.z)}; }
 template <typename T> constexpr Vec3T<T> max(Vec3T<T> a, Vec3T<T> b) {
     return {max(a.x, b.x), max(a.y, b.y), max(a.z, b.z)};
 }

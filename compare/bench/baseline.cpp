@@ -53,7 +53,7 @@ BaselineRow compare_row(const std::string& scene, const Measurement& now, const 
     return row;
 }
 
-void judge(BaselineComparison& comparison) {
+void find_changes(BaselineComparison& comparison) {
     const double alpha = shared_significance(BaselineComparison::kSignificance, 4 * comparison.rows.size());
     const double slack = 1 / (1 + comparison.drift);
     const auto share = [](double s) { return s > 0 && s < 1 ? s : 1.0; };
@@ -70,7 +70,7 @@ void judge(BaselineComparison& comparison) {
 }
 
 /// Runs the body, which reads JSON of unknown content, and converts JSON exceptions to Error.
-void reading(const std::function<void()>& body) {
+void with_json_errors(const std::function<void()>& body) {
     try {
         body();
     } catch (const json::exception& error) {
@@ -101,8 +101,8 @@ bool BaselineComparison::flagged() const {
     return std::any_of(rows.begin(), rows.end(), [](const BaselineRow& r) { return r.less_accurate || r.slower; });
 }
 
-void check_baseline(const json& earlier, const BenchCircumstances& now) {
-    reading([&] {
+void check_baseline(const json& earlier, const BenchConditions& now) {
+    with_json_errors([&] {
         earlier.at("scenes");
         const auto same = [&](const char* key, int mine) {
             const int theirs = earlier.at(key).get<int>();
@@ -118,11 +118,11 @@ void check_baseline(const json& earlier, const BenchCircumstances& now) {
 BaselineComparison compare_with_baseline(const std::vector<SceneResult>& results, const json& earlier, double drift) {
     BaselineComparison comparison;
     comparison.drift = drift;
-    reading([&] { compare_all(results, earlier, comparison); });
+    with_json_errors([&] { compare_all(results, earlier, comparison); });
     if (comparison.rows.empty())
         throw Error("--baseline: no row of this run is in it: other scene files, sizes, techniques, samplers or "
                     "samples a pixel");
-    judge(comparison);
+    find_changes(comparison);
     return comparison;
 }
 

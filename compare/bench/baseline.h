@@ -32,13 +32,13 @@ struct BaselineComparison {
 
 /// Settings that must be equal for rows to be comparable, besides scene, files, size, technique, sampler and
 /// sample count.
-struct BenchCircumstances {
+struct BenchConditions {
     int depth = 0, threads = 0;
     int reference_spp = 0; ///< matters because a measured error includes the reference's own
 };
 
 /// Throws Error if `earlier` is not a report of the bench or was made with other settings. Call it before a long run.
-void check_baseline(const nlohmann::json& earlier, const BenchCircumstances& now);
+void check_baseline(const nlohmann::json& earlier, const BenchConditions& now);
 
 /// Compares by Student's t-test on logarithms (equality_p_value), with the significance divided among all
 /// tests. A time difference is a finding only if it significantly exceeds a factor of 1 + drift, because a

@@ -25,7 +25,7 @@ using nlohmann::json;
 
 /// Checks options before the long renders.
 void check(const BenchOptions& options) {
-    check_choice(options.choice);
+    check_renderer_choice(options.choice);
     if (!options.peer.empty() && options.peer != "cycles")
         throw Error(message("--peer: found ", options.peer, ", expected cycles"));
     if (!options.folder.empty()) make_folder(options.folder);
@@ -39,7 +39,7 @@ json read_baseline(const fs::path& path) {
 }
 
 /// Returns the requested size, or one of the scene's aspect ratio for which a trial takes seconds instead of minutes.
-View view_of(const Scene& scene, PictureSize size) {
+View view_of(const Scene& scene, ImageSize size) {
     if (size.width > 0) return {scene.camera, size.width, size.height};
     const double scale = std::min(1.0, 256 / std::sqrt(static_cast<double>(scene.width) * scene.height));
     const auto side = [&](int pixels) { return std::max(1, static_cast<int>(std::lround(pixels * scale))); };
@@ -80,13 +80,13 @@ private:
         return {options_.references, spp, options_.choice.depth, options_.choice.threads};
     }
 
-    KeptReference reference(const std::string& estimator, int spp) const {
+    CachedReference reference(const std::string& estimator, int spp) const {
         ProgressBar bar(label("reference by ") + estimator, options_.quiet);
         Control control{&interrupt_.flag(), [&](double fraction) { bar.update(fraction); }};
         return reference_by(estimator, scene_, view_, reference_settings(spp), control);
     }
 
-    void check_against(KeptReference other, std::vector<std::string> approximations) {
+    void check_against(CachedReference other, std::vector<std::string> approximations) {
         if (interrupt_.raised()) return;
         const BiasCheck check = check_bias(result_.reference.reference, other.reference);
         result_.checks.push_back({std::move(other), check, std::move(approximations)});
@@ -94,30 +94,30 @@ private:
 
     void find_references() {
         result_.reference = reference("path", options_.reference_spp);
-        result_.no_naive = unfit_for_naive(scene_);
+        result_.no_naive = naive_limitation(scene_);
         if (!interrupt_.raised() && result_.no_naive.empty()) check_against(reference("naive", options_.check_spp), {});
         if (!interrupt_.raised() && peer_) check_against(peer_reference(), peer_->notes());
     }
 
-    KeptReference peer_reference() const {
+    CachedReference peer_reference() const {
         ProgressBar bar(label("reference by Cycles"), options_.quiet);
         Control control{&interrupt_.flag(), [&](double fraction) { bar.update(fraction); }};
         Control silent{&interrupt_.flag(), {}};
-        const auto render = [&](int spp, std::uint64_t seed) { return peer_->unbiased_picture(spp, seed, silent); };
+        const auto render = [&](int spp, std::uint64_t seed) { return peer_->unbiased_image(spp, seed, silent); };
         return reference_by_seeds({"cycles", kCyclesExportVersion, peer_->program(silent)}, scene_, view_,
                                   reference_settings(options_.check_spp), render, control);
     }
 
     void measure_all() {
-        std::vector<Contender> contenders = our_contenders(scene_, view_, options_.choice);
+        std::vector<BenchRenderer> renderers = duet_renderers(scene_, view_, options_.choice);
         if (peer_)
-            for (Contender& c : cycles_contenders(peer_, options_.choice.spps)) contenders.push_back(std::move(c));
+            for (BenchRenderer& c : cycles_renderers(peer_, options_.choice.spps)) renderers.push_back(std::move(c));
         ProgressBar bar(label("measuring"), options_.quiet);
         Control control{&interrupt_.flag(), [&](double fraction) { bar.update(fraction); }};
-        result_.rows = measure(contenders, result_.reference.reference, counted_, options_.measure, control);
-        count_best_only(result_.rows, options_.peer);
+        result_.rows = measure(renderers, result_.reference.reference, counted_, options_.measure, control);
+        mark_best_settings(result_.rows, options_.peer);
         widen_efficiency(result_.rows, options_.drift, processor_share(result_.rows, threads_of(options_)));
-        result_.equal_times = at_equal_times(result_.rows, options_.moments, options_.peer);
+        result_.equal_times = at_equal_times(result_.rows, options_.equal_times_seconds, options_.peer);
         result_.processor_share = processor_share(result_.rows, threads_of(options_));
     }
 

@@ -31,7 +31,7 @@ Subcommand add_bench(CLI::App& app) {
         ->check(CLI::Range(1, 1 << 20));
     bench->add_option("--peer", options.peer,
                       "cycles: measure Blender's path tracer beside ours, where Blender is installed");
-    bench->add_option("--at-seconds", options.moments, "Compare errors at these times, too: 1,4,15")
+    bench->add_option("--at-seconds", options.equal_times_seconds, "Compare errors at these times, too: 1,4,15")
         ->delimiter(',')
         ->check(positive_number());
     bench->add_option("--repeats", options.measure.repeats, "Seeds a measurement, at least 2 (default 5)")
@@ -67,7 +67,7 @@ Subcommand add_bench(CLI::App& app) {
         ->add_option("--drift", options.drift,
                      "By what part a machine's pace may change between runs (default 0.15): slower or faster by no "
                      "more is no finding")
-        ->check(number_within(0, 10, "a number from 0 to 10"));
+        ->check(number_in_range(0, 10, "a number from 0 to 10"));
     bench->add_option("--stats", options.stats,
                       "Write the figures of report.json to this file too (-: standard output)");
     bench->add_flag("--quiet", options.quiet, "No progress bar, no tables");
@@ -75,7 +75,7 @@ Subcommand add_bench(CLI::App& app) {
                               "0.35,0.05,0.65,0.2\nthen open out/index.html in a browser.") +
                   kExitCodes);
     return {bench, [all, size, excluded] {
-                if (!size->empty()) all->size = parse_picture_size(*size);
+                if (!size->empty()) all->size = parse_image_size(*size);
                 for (const std::string& text : *excluded)
                     all->excluded.push_back(parse_excluded_rectangle(text));
                 return compare::bench(*all);

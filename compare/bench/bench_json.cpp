@@ -23,9 +23,9 @@ json estimate_json(const Estimate& e) {
             {"dof", number(e.dof)}};
 }
 
-json trials_json(const std::vector<TrialFigures>& trials) {
+json trials_json(const std::vector<TrialResult>& trials) {
     json list = json::array();
-    for (const TrialFigures& t : trials)
+    for (const TrialResult& t : trials)
         list.push_back({{"seed", t.seed},
                         {"seconds", t.seconds},
                         {"cpu_seconds", t.cpu_seconds},
@@ -60,7 +60,7 @@ json row_json(const Measurement& m, bool with_rest) {
     return row;
 }
 
-json reference_json(const KeptReference& r) {
+json reference_json(const CachedReference& r) {
     return {{"estimator", r.estimator},
             {"file", r.file.string()},
             {"rendered", r.rendered},

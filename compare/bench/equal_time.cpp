@@ -14,7 +14,7 @@ struct Point {
 };
 
 /// Interpolates between two measurements. `t` in [0, 1] is the position in the logarithm of time.
-Estimate between(const Point& a, const Point& b, double t) {
+Estimate interpolate(const Point& a, const Point& b, double t) {
     const double slope = (b.log_error - a.log_error) / (b.log_seconds - a.log_seconds);
     const auto uncertainty = [&](const Point& p) {
         return std::hypot(p.error.relative_error, slope * p.seconds.relative_error);
@@ -40,18 +40,18 @@ std::optional<Estimate> error_at(const std::vector<Measurement>& rows, const std
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
         const Point &a = points[i], &b = points[i + 1];
         if (at >= a.log_seconds && at <= b.log_seconds && a.log_seconds < b.log_seconds)
-            return between(a, b, (at - a.log_seconds) / (b.log_seconds - a.log_seconds));
+            return interpolate(a, b, (at - a.log_seconds) / (b.log_seconds - a.log_seconds));
     }
     return std::nullopt;
 }
 
-std::vector<EqualTimeRow> at_equal_times(const std::vector<Measurement>& rows, const std::vector<double>& moments,
-                                         const std::string& peer) {
+std::vector<EqualTimeRow> at_equal_times(const std::vector<Measurement>& rows,
+                                         const std::vector<double>& equal_times_seconds, const std::string& peer) {
     std::vector<EqualTimeRow> table;
-    for (const double seconds : moments) {
+    for (const double seconds : equal_times_seconds) {
         const auto ratio = [&](const std::optional<Estimate>& error, bool rest) -> std::optional<Estimate> {
-            const auto its = peer.empty() ? std::nullopt : error_at(rows, peer, std::nullopt, seconds, rest);
-            return error && its ? std::optional(ratio_of(*error, *its)) : std::nullopt;
+            const auto peer_error = peer.empty() ? std::nullopt : error_at(rows, peer, std::nullopt, seconds, rest);
+            return error && peer_error ? std::optional(ratio_of(*error, *peer_error)) : std::nullopt;
         };
         std::set<std::string> seen;
         for (const Measurement& m : rows) {

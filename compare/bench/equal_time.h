@@ -9,7 +9,7 @@
 
 namespace duet::compare {
 
-/// Returns the mean squared error of one contender at time `seconds`, interpolated linearly in the logarithms
+/// Returns the mean squared error of one renderer at time `seconds`, interpolated linearly in the logarithms
 /// of time and error between its measurements. Returns nothing outside the measured times. If `rest` is set,
 /// the error omits the excluded rectangles. The uncertainty is the larger one of the two neighboring
 /// measurements; it combines the uncertainty of the error with that of the time, converted by the slope between
@@ -18,7 +18,7 @@ namespace duet::compare {
 std::optional<Estimate> error_at(const std::vector<Measurement>& rows, const std::string& technique,
                                  const std::optional<std::string>& sampler, double seconds, bool rest);
 
-/// One contender at one time.
+/// One renderer at one time.
 struct EqualTimeRow {
     double seconds = 0;
     std::string name;
@@ -26,8 +26,8 @@ struct EqualTimeRow {
     std::optional<Estimate> to_peer, rest_to_peer; ///< its error over the peer's: below 1 is better
 };
 
-/// Returns every contender at each of the times, in order, compared with `peer` unless that is empty.
-std::vector<EqualTimeRow> at_equal_times(const std::vector<Measurement>& rows, const std::vector<double>& moments,
-                                         const std::string& peer);
+/// Returns every renderer at each of the times, in order, compared with `peer` unless that is empty.
+std::vector<EqualTimeRow> at_equal_times(const std::vector<Measurement>& rows,
+                                         const std::vector<double>& equal_times_seconds, const std::string& peer);
 
 } // namespace duet::compare

@@ -10,18 +10,18 @@ namespace duet::compare {
 
 namespace {
 
-[[noreturn]] void refuse(std::string_view text) {
+[[noreturn]] void fail(std::string_view text) {
     throw Error(message("--exclude: found ", text,
                         ", expected x0,y0,x1,y1: whole pixels, or parts of width and height in [0, 1]"));
 }
 
-std::array<double, 4> four_numbers(std::string_view text) {
+std::array<double, 4> parse_four_numbers(std::string_view text) {
     std::array<double, 4> numbers{};
     const char *at = text.data(), *const end = text.data() + text.size();
     for (std::size_t i = 0; i < 4; ++i) {
         const auto [next, error] = std::from_chars(at, end, numbers[i]);
         const bool separated = i == 3 ? next == end : next != end && *next == ',';
-        if (error != std::errc() || !separated || !std::isfinite(numbers[i]) || numbers[i] < 0) refuse(text);
+        if (error != std::errc() || !separated || !std::isfinite(numbers[i]) || numbers[i] < 0) fail(text);
         at = next + 1;
     }
     return numbers;
@@ -30,10 +30,10 @@ std::array<double, 4> four_numbers(std::string_view text) {
 } // namespace
 
 ExcludedRectangle parse_excluded_rectangle(std::string_view text) {
-    const std::array<double, 4> n = four_numbers(text);
+    const std::array<double, 4> n = parse_four_numbers(text);
     const bool fractions = std::all_of(n.begin(), n.end(), [](double v) { return v <= 1; });
     const bool whole = std::all_of(n.begin(), n.end(), [](double v) { return v == std::floor(v); });
-    if ((!fractions && !whole) || !(n[0] < n[2]) || !(n[1] < n[3])) refuse(text);
+    if ((!fractions && !whole) || !(n[0] < n[2]) || !(n[1] < n[3])) fail(text);
     return {n[0], n[1], n[2], n[3], fractions};
 }
 

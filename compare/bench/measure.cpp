@@ -12,18 +12,18 @@ namespace duet::compare {
 namespace {
 
 /// A measurement in progress.
-struct Running {
-    const Contender* contender = nullptr;
+struct RunningMeasurement {
+    const BenchRenderer* renderer = nullptr;
     Measurement measurement;
     ImageRgb last; ///< the previous seed's image; half the squared difference of two estimates estimates the variance
     double squared_differences = 0;
 };
 
-std::vector<Running> all_of(const std::vector<Contender>& contenders) {
-    std::vector<Running> list;
-    for (const Contender& c : contenders)
+std::vector<RunningMeasurement> start_measurements(const std::vector<BenchRenderer>& renderers) {
+    std::vector<RunningMeasurement> list;
+    for (const BenchRenderer& c : renderers)
         for (const int spp : c.spps) {
-            Running running{&c, {}, {}, 0};
+            RunningMeasurement running{&c, {}, {}, 0};
             running.measurement.technique = c.technique;
             running.measurement.sampler = c.sampler;
             running.measurement.note = c.note;
@@ -34,39 +34,39 @@ std::vector<Running> all_of(const std::vector<Contender>& contenders) {
 }
 
 double mean_squared_difference(const ImageRgb& a, const ImageRgb& b) {
-    return picture_error(a, b, Image<std::uint8_t>(a.width(), a.height(), 1)).mse;
+    return image_error(a, b, Image<std::uint8_t>(a.width(), a.height(), 1)).mse;
 }
 
 /// Renders once and records the errors. Returns false if stopped.
-bool run_trial(Running& running, std::uint64_t seed, const Reference& reference, const Image<std::uint8_t>& counted,
-               Control& control) {
-    Trial trial = running.contender->render(running.measurement.spp, seed, control);
+bool run_trial(RunningMeasurement& running, std::uint64_t seed, const Reference& reference,
+               const Image<std::uint8_t>& counted, Control& control) {
+    TimedImage trial = running.renderer->render(running.measurement.spp, seed, control);
     if (control.stopped()) return false;
     const Image<std::uint8_t> all(counted.width(), counted.height(), 1);
     running.measurement.trials.push_back({seed, trial.seconds, trial.cpu_seconds,
-                                          picture_error(trial.picture, reference.mean, all),
-                                          picture_error(trial.picture, reference.mean, counted)});
-    if (!running.last.empty()) running.squared_differences += mean_squared_difference(trial.picture, running.last);
-    running.last = std::move(trial.picture);
+                                          image_error(trial.image, reference.mean, all),
+                                          image_error(trial.image, reference.mean, counted)});
+    if (!running.last.empty()) running.squared_differences += mean_squared_difference(trial.image, running.last);
+    running.last = std::move(trial.image);
     return true;
 }
 
-template <typename Figure> Estimate mean_over(const std::vector<TrialFigures>& trials, Figure figure) {
+template <typename Figure> Estimate mean_over(const std::vector<TrialResult>& trials, Figure figure) {
     std::vector<double> values;
-    for (const TrialFigures& t : trials) values.push_back(figure(t));
+    for (const TrialResult& t : trials) values.push_back(figure(t));
     return mean_of(values);
 }
 
-Measurement finish(Running& running, double reference_error) {
+Measurement finish(RunningMeasurement& running, double reference_error) {
     Measurement m = std::move(running.measurement);
     std::vector<double> seconds;
-    for (const TrialFigures& t : m.trials) seconds.push_back(t.seconds);
+    for (const TrialResult& t : m.trials) seconds.push_back(t.seconds);
     const double pairs = static_cast<double>(m.trials.size()) - 1;
     m.variance = pairs > 0 ? running.squared_differences / (2 * pairs) : std::numeric_limits<double>::quiet_NaN();
-    m.mse = mean_over(m.trials, [](const TrialFigures& t) { return t.whole.mse; });
-    m.relmse = mean_over(m.trials, [](const TrialFigures& t) { return t.whole.relmse; });
-    m.rest_mse = mean_over(m.trials, [](const TrialFigures& t) { return t.rest.mse; });
-    m.rest_relmse = mean_over(m.trials, [](const TrialFigures& t) { return t.rest.relmse; });
+    m.mse = mean_over(m.trials, [](const TrialResult& t) { return t.whole.mse; });
+    m.relmse = mean_over(m.trials, [](const TrialResult& t) { return t.whole.relmse; });
+    m.rest_mse = mean_over(m.trials, [](const TrialResult& t) { return t.rest.mse; });
+    m.rest_relmse = mean_over(m.trials, [](const TrialResult& t) { return t.rest.relmse; });
     m.seconds = median_of(std::move(seconds));
     m.efficiency = efficiency_of(m.mse, m.seconds);
     m.relmse_efficiency = efficiency_of(m.relmse, m.seconds);
@@ -83,7 +83,7 @@ double Measurement::bias_share() const {
     return explained < mse.low() ? 1 - explained / mse.value : 0; // a NaN variance (one trial) yields 0
 }
 
-void count_best_only(std::vector<Measurement>& rows, const std::string& technique) {
+void mark_best_settings(std::vector<Measurement>& rows, const std::string& technique) {
     for (Measurement& a : rows)
         if (a.technique == technique)
             a.counted = std::none_of(rows.begin(), rows.end(), [&](const Measurement& b) {
@@ -92,19 +92,19 @@ void count_best_only(std::vector<Measurement>& rows, const std::string& techniqu
 }
 
 void widen_efficiency(std::vector<Measurement>& rows, double drift, double share) {
-    const double lost = share > 0 && share < 1 ? -std::log(share) : 0;
+    const double log_lost_share = share > 0 && share < 1 ? -std::log(share) : 0;
     constexpr double kManyDegrees = 1e6; // the drift is assumed, not estimated
-    const Estimate pace{1, std::hypot(std::log1p(drift), lost) / 2, kManyDegrees};
+    const Estimate clock_speed{1, std::hypot(std::log1p(drift), log_lost_share) / 2, kManyDegrees};
     for (Measurement& m : rows)
         for (Estimate* const efficiency :
              {&m.efficiency, &m.relmse_efficiency, &m.rest_efficiency, &m.rest_relmse_efficiency})
-            *efficiency = ratio_of(*efficiency, pace);
+            *efficiency = ratio_of(*efficiency, clock_speed);
 }
 
 double processor_share(const std::vector<Measurement>& rows, int threads) {
     double wall = 0, processor = 0;
     for (const Measurement& m : rows)
-        for (const TrialFigures& t : m.trials) {
+        for (const TrialResult& t : m.trials) {
             if (t.seconds < 0.01 || t.cpu_seconds <= 0) continue;
             wall += t.seconds;
             processor += t.cpu_seconds;
@@ -112,19 +112,19 @@ double processor_share(const std::vector<Measurement>& rows, int threads) {
     return wall > 0 ? processor / (wall * threads) : 1;
 }
 
-PictureError picture_error(const ImageRgb& picture, const ImageRgb& reference, const Image<std::uint8_t>& counted) {
-    DUET_CHECK_EQ(picture.size(), reference.size());
-    DUET_CHECK_EQ(picture.size(), counted.size());
-    PictureError total;
+ImageError image_error(const ImageRgb& image, const ImageRgb& reference, const Image<std::uint8_t>& counted) {
+    DUET_CHECK_EQ(image.size(), reference.size());
+    DUET_CHECK_EQ(image.size(), counted.size());
+    ImageError total;
     double pixels = 0;
-    for (int y = 0; y < picture.height(); ++y) {
-        PictureError row; // summed per row first, because the rounding error of a sum grows with its length
-        for (int x = 0; x < picture.width(); ++x) {
+    for (int y = 0; y < image.height(); ++y) {
+        ImageError row; // summed per row first, because the rounding error of a sum grows with its length
+        for (int x = 0; x < image.width(); ++x) {
             if (counted(x, y) == 0) continue;
             ++pixels;
             for (std::size_t c = 0; c < 3; ++c) {
                 const double r = static_cast<double>(reference(x, y)[c]);
-                const double square = sqr(static_cast<double>(picture(x, y)[c]) - r);
+                const double square = sqr(static_cast<double>(image(x, y)[c]) - r);
                 row.mse += square;
                 row.relmse += square / (sqr(r) + 0.01);
             }
@@ -135,21 +135,21 @@ PictureError picture_error(const ImageRgb& picture, const ImageRgb& reference, c
     return {total.mse / (3 * pixels), total.relmse / (3 * pixels)};
 }
 
-std::vector<Measurement> measure(const std::vector<Contender>& contenders, const Reference& reference,
-                                 const Image<std::uint8_t>& counted, const MeasureSettings& settings,
+std::vector<Measurement> measure(const std::vector<BenchRenderer>& renderers, const Reference& reference,
+                                 const Image<std::uint8_t>& counted, const BenchMeasureSettings& settings,
                                  Control& control) {
     Control quiet{control.stop, {}};
-    for (const Contender& c : contenders) c.render(1, settings.seed, quiet); // warms up caches and CPU clocks
+    for (const BenchRenderer& c : renderers) c.render(1, settings.seed, quiet); // warms up caches and CPU clocks
 
-    std::vector<Running> running = all_of(contenders);
+    std::vector<RunningMeasurement> running = start_measurements(renderers);
     const auto count = static_cast<std::uint32_t>(running.size());
     double round_work = 0, done = 0;
-    for (const Running& r : running) round_work += r.measurement.spp;
+    for (const RunningMeasurement& r : running) round_work += r.measurement.spp;
     const Stopwatch watch;
     for (int round = 0; round < settings.repeats; ++round) {
         if (round >= 2 && watch.seconds() > settings.time_limit) break;
         for (std::uint32_t i = 0; i < count; ++i) {
-            Running& next = running[permute(i, count, hash_combine(0, static_cast<std::uint64_t>(round)))];
+            RunningMeasurement& next = running[permute(i, count, hash_combine(0, static_cast<std::uint64_t>(round)))];
             const std::uint64_t seed = settings.seed + 1 + static_cast<std::uint64_t>(round);
             if (!run_trial(next, seed, reference, counted, quiet)) return {};
             done += next.measurement.spp;
@@ -159,7 +159,7 @@ std::vector<Measurement> measure(const std::vector<Contender>& contenders, const
     }
     const double reference_error = reference.mse();
     std::vector<Measurement> results;
-    for (Running& r : running) results.push_back(finish(r, reference_error));
+    for (RunningMeasurement& r : running) results.push_back(finish(r, reference_error));
     return results;
 }
 

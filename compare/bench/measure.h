@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/system/control.h"
-#include "compare/bench/contender.h"
+#include "compare/bench/bench_renderer.h"
 #include "compare/bench/estimate.h"
 #include "compare/bench/reference.h"
 
@@ -15,23 +15,23 @@
 namespace duet::compare {
 
 /// Mean squared error of an image over all channels and counted pixels.
-struct PictureError {
+struct ImageError {
     double mse = 0;
     double relmse = 0; ///< mean of (x − r)² / (r² + 0.01), as in error_metrics
 };
 
 /// Errors of a trial for the whole image and without the excluded rectangles. They are equal if there are none.
-struct TrialFigures {
+struct TrialResult {
     std::uint64_t seed = 0;
     double seconds = 0, cpu_seconds = 0;
-    PictureError whole, rest;
+    ImageError whole, rest;
 };
 
-/// One contender at one sample count.
+/// One renderer at one sample count.
 struct Measurement {
     std::string technique, sampler, note;
     int spp = 0;
-    std::vector<TrialFigures> trials;
+    std::vector<TrialResult> trials;
     double variance = 0; ///< mean over pixels and channels, from differences of successive seeds; NaN: one trial
     /// Metrics of the whole image, the median time, and the efficiencies derived from them.
     Estimate mse, relmse, seconds, efficiency, relmse_efficiency;
@@ -45,7 +45,7 @@ struct Measurement {
     double bias_share() const;
 };
 
-struct MeasureSettings {
+struct BenchMeasureSettings {
     int repeats = 5;         ///< number of seeds, at least 2
     double time_limit = 600; ///< seconds after which no further round starts; two are always made
     std::uint64_t seed = 0;  ///< trial i of each measurement uses seed + 1 + i
@@ -53,7 +53,7 @@ struct MeasureSettings {
 
 /// Keeps only a peer's best settings counted: among rows of one technique with the same sample count, the most
 /// efficient.
-void count_best_only(std::vector<Measurement>& rows, const std::string& technique);
+void mark_best_settings(std::vector<Measurement>& rows, const std::string& technique);
 
 /// Widens the confidence bands of the efficiencies by what one run cannot know about time. `drift` is the
 /// relative change of the CPU's speed between runs. `share` is the processor_share: on an idle CPU, a render
@@ -66,14 +66,15 @@ void widen_efficiency(std::vector<Measurement>& rows, double drift, double share
 /// trial.
 double processor_share(const std::vector<Measurement>& rows, int threads);
 
-/// Returns the errors of `picture` against `reference` over the pixels where `counted` is not 0. Both must have
+/// Returns the errors of `image` against `reference` over the pixels where `counted` is not 0. Both must have
 /// the same size. Pixels that are not finite make the error NaN.
-PictureError picture_error(const ImageRgb& picture, const ImageRgb& reference, const Image<std::uint8_t>& counted);
+ImageError image_error(const ImageRgb& image, const ImageRgb& reference, const Image<std::uint8_t>& counted);
 
-/// Measures every contender at each of its sample counts, with one seed per round. A round runs all of them
-/// once in its own order, so that changes of the CPU's speed affect all alike. Each contender first runs once
+/// Measures every renderer at each of its sample counts, with one seed per round. A round runs all of them
+/// once in its own order, so that changes of the CPU's speed affect all alike. Each renderer first runs once
 /// without being measured. `control` reports the fraction done. Returns nothing if it was stopped.
-std::vector<Measurement> measure(const std::vector<Contender>& contenders, const Reference& reference,
-                                 const Image<std::uint8_t>& counted, const MeasureSettings& settings, Control& control);
+std::vector<Measurement> measure(const std::vector<BenchRenderer>& renderers, const Reference& reference,
+                                 const Image<std::uint8_t>& counted, const BenchMeasureSettings& settings,
+                                 Control& control);
 
 } // namespace duet::compare

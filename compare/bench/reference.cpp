@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 constexpr const char* kKeyAttribute = "duet:reference";
 
 /// Returns the image made of three channels of a file; empty if one is missing.
-ImageRgb picture(const ExrFile& file, const std::string& prefix) {
+ImageRgb image(const ExrFile& file, const std::string& prefix) {
     ImageRgb image(file.width, file.height);
     constexpr const char* kChannels[] = {"R", "G", "B"};
     for (std::size_t c = 0; c < 3; ++c) {
@@ -54,7 +54,7 @@ fs::path default_reference_folder() {
 }
 
 fs::path ReferenceCache::path(const std::string& scene_name, const ReferenceKey& key) const {
-    return folder_ / (scene_name + "-" + key.estimator + "-" + hexadecimal(hash_bytes(0, key.text())) + ".exr");
+    return folder_ / (scene_name + "-" + key.estimator + "-" + to_hex(hash_bytes(0, key.text())) + ".exr");
 }
 
 std::optional<Reference> ReferenceCache::find(const std::string& scene_name, const ReferenceKey& key) const {
@@ -65,7 +65,7 @@ std::optional<Reference> ReferenceCache::find(const std::string& scene_name, con
         const bool same = std::any_of(file.attributes.begin(), file.attributes.end(), [&](const ExrAttribute& a) {
             return a.name == kKeyAttribute && a.value == key.text();
         });
-        Reference reference{picture(file, ""), picture(file, "variance.")};
+        Reference reference{image(file, ""), image(file, "variance.")};
         if (!same || reference.mean.empty() || reference.variance.empty()) return std::nullopt;
         if (file.width != key.width || file.height != key.height) return std::nullopt;
         return reference;

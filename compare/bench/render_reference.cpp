@@ -20,15 +20,15 @@ std::uint64_t reference_seed(const std::string& estimator) {
 }
 
 /// Accumulates images and their squares in double precision.
-class MeanOfPictures {
+class ImageAccumulator {
 public:
-    MeanOfPictures(int width, int height) : sums_(width, height), squares_(width, height) {}
+    ImageAccumulator(int width, int height) : sums_(width, height), squares_(width, height) {}
 
-    void add(const ImageRgb& picture) {
-        DUET_CHECK_EQ(picture.size(), sums_.size());
+    void add(const ImageRgb& image) {
+        DUET_CHECK_EQ(image.size(), sums_.size());
         ++count_;
-        for (std::size_t i = 0; i < picture.size(); ++i) {
-            const Rgbd value(picture[i]);
+        for (std::size_t i = 0; i < image.size(); ++i) {
+            const Rgbd value(image[i]);
             sums_[i] += value;
             squares_[i] += value * value;
         }
@@ -52,42 +52,42 @@ private:
     int count_ = 0;
 };
 
-KeptReference found_or_rendered(const EstimatorId& estimator, const Scene& scene, const View& view,
-                                const ReferenceSettings& settings,
-                                const std::function<Reference(const std::filesystem::path& unfinished)>& render,
-                                const Control& control) {
+CachedReference load_or_render(const EstimatorId& estimator, const Scene& scene, const View& view,
+                               const ReferenceSettings& settings,
+                               const std::function<Reference(const std::filesystem::path& unfinished)>& render,
+                               const Control& control) {
     const ReferenceKey key{hash_scene_files(scene), estimator.name, estimator.version, view.width, view.height,
                            settings.depth,          settings.spp,   estimator.program};
     const std::string name = scene.path.stem().string();
     const ReferenceCache cache(settings.folder);
-    KeptReference kept{{}, estimator.name, cache.path(name, key), false};
+    CachedReference cached{{}, estimator.name, cache.path(name, key), false};
     if (std::optional<Reference> found = cache.find(name, key)) {
-        kept.reference = std::move(*found);
+        cached.reference = std::move(*found);
     } else {
-        std::filesystem::path unfinished = kept.file;
+        std::filesystem::path unfinished = cached.file;
         unfinished.replace_extension(".film.exr");
         make_folder(settings.folder);
         Reference rendered = render(unfinished);
-        if (control.stopped()) return kept;
-        kept.reference = std::move(rendered);
-        kept.rendered = true;
-        cache.store(name, key, kept.reference);
-        std::error_code none_is_well;
-        std::filesystem::remove(unfinished, none_is_well);
+        if (control.stopped()) return cached;
+        cached.reference = std::move(rendered);
+        cached.rendered = true;
+        cache.store(name, key, cached.reference);
+        std::error_code ignored;
+        std::filesystem::remove(unfinished, ignored);
     }
-    return kept;
+    return cached;
 }
 
 } // namespace
 
-std::string unfit_for_naive(const Scene& scene) {
+std::string naive_limitation(const Scene& scene) {
     return scene.needs.delta_lights ? "naive cannot find point, spot and sun lights" : "";
 }
 
-KeptReference reference_by(const std::string& estimator, const Scene& scene, const View& view,
-                           const ReferenceSettings& settings, Control& control) {
+CachedReference reference_by(const std::string& estimator, const Scene& scene, const View& view,
+                             const ReferenceSettings& settings, Control& control) {
     const auto render = [&](const std::filesystem::path& unfinished) {
-        raytrace::Settings s;
+        raytrace::PathTracerSettings s;
         s.film = unfinished;
         s.integrator = raytrace::integrator(estimator);
         s.samples_per_pixel = settings.spp;
@@ -98,23 +98,24 @@ KeptReference reference_by(const std::string& estimator, const Scene& scene, con
         Rendering rendering = raytrace::render(raytrace::prepare(scene, s), view, s, control);
         return Reference{std::move(rendering.radiance), std::move(rendering.variance)};
     };
-    return found_or_rendered({estimator, raytrace::kEstimatorVersion, ""}, scene, view, settings, render, control);
+    return load_or_render({estimator, raytrace::kEstimatorVersion, ""}, scene, view, settings, render, control);
 }
 
-KeptReference reference_by_seeds(const EstimatorId& estimator, const Scene& scene, const View& view,
-                                 const ReferenceSettings& settings,
-                                 const std::function<ImageRgb(int spp, std::uint64_t seed)>& render, Control& control) {
+CachedReference reference_by_seeds(const EstimatorId& estimator, const Scene& scene, const View& view,
+                                   const ReferenceSettings& settings,
+                                   const std::function<ImageRgb(int spp, std::uint64_t seed)>& render,
+                                   Control& control) {
     const auto render_all = [&](const std::filesystem::path&) {
-        MeanOfPictures mean(view.width, view.height);
+        ImageAccumulator mean(view.width, view.height);
         const int spp = std::max(2, settings.spp / kReferenceSeeds);
         for (int i = 0; i < kReferenceSeeds && !control.stopped(); ++i) {
-            const ImageRgb picture = render(spp, reference_seed(estimator.name) + static_cast<std::uint64_t>(i));
-            if (!control.stopped()) mean.add(picture);
+            const ImageRgb image = render(spp, reference_seed(estimator.name) + static_cast<std::uint64_t>(i));
+            if (!control.stopped()) mean.add(image);
             control.report(static_cast<double>(i + 1) / kReferenceSeeds);
         }
         return mean.reference();
     };
-    return found_or_rendered(estimator, scene, view, settings, render_all, control);
+    return load_or_render(estimator, scene, view, settings, render_all, control);
 }
 
 } // namespace duet::compare

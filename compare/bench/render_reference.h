@@ -21,7 +21,7 @@ struct ReferenceSettings {
 };
 
 /// A reference and its origin.
-struct KeptReference {
+struct CachedReference {
     Reference reference;
     std::string estimator;
     std::filesystem::path file;
@@ -33,8 +33,8 @@ struct KeptReference {
 /// Returns a reference by the path tracer's integrator of that name ("path", "naive"), with Sobol samples and a
 /// separate seed. If it is not in the cache, it is rendered and stored there. If stopped, returns an empty
 /// reference; the film is stored next to the reference's file, and the next call resumes from it.
-KeptReference reference_by(const std::string& estimator, const Scene& scene, const View& view,
-                           const ReferenceSettings& settings, Control& control);
+CachedReference reference_by(const std::string& estimator, const Scene& scene, const View& view,
+                             const ReferenceSettings& settings, Control& control);
 
 /// Number of seeds for a reference by another renderer. Each seed gets an equal fraction of the samples. The
 /// spread of the images yields the variance, with kReferenceSeeds − 1 degrees of freedom per pixel.
@@ -44,11 +44,12 @@ struct EstimatorId {
     int version = 0;
     std::string program;
 };
-KeptReference reference_by_seeds(const EstimatorId& estimator, const Scene& scene, const View& view,
-                                 const ReferenceSettings& settings,
-                                 const std::function<ImageRgb(int spp, std::uint64_t seed)>& render, Control& control);
+CachedReference reference_by_seeds(const EstimatorId& estimator, const Scene& scene, const View& view,
+                                   const ReferenceSettings& settings,
+                                   const std::function<ImageRgb(int spp, std::uint64_t seed)>& render,
+                                   Control& control);
 
 /// Returns why `naive` cannot check a scene; empty if it can.
-std::string unfit_for_naive(const Scene& scene);
+std::string naive_limitation(const Scene& scene);
 
 } // namespace duet::compare

@@ -13,7 +13,7 @@ namespace duet::compare {
 
 /// The comparison of the reference with another estimator's.
 struct IndependentCheck {
-    KeptReference other;
+    CachedReference other;
     BiasCheck check;
     std::vector<std::string> approximations; ///< of the other; with any, a disagreement is reported but is not a
                                              ///< failure
@@ -25,7 +25,7 @@ struct SceneResult {
     std::string scene;      ///< file name as given
     std::string scene_hash; ///< hash_scene_files
     int width = 0, height = 0;
-    KeptReference reference;
+    CachedReference reference;
     std::vector<IndependentCheck> checks; ///< one per independent estimator
     std::string no_naive;                 ///< why naive is not among the checks; empty: it is
     std::vector<Measurement> rows;

@@ -4,7 +4,7 @@
 #include "common/image/srgb.h"
 #include "common/program/program.h"
 #include "common/program/statistics.h"
-#include "compare/frames/processors.h"
+#include "compare/frames/cpu_affinity.h"
 
 #include <algorithm>
 #include <iomanip>
@@ -100,29 +100,28 @@ void print_table(std::ostream& out, const FramesOptions& options, const std::vec
                 out << "peer: " << row.peer_name << '\n';
                 return;
             }
-    out << (Peer::built() ? "no peer was asked for\n" : "no peer: this program was built without EGL\n");
+    out << (LlvmpipeRenderer::built() ? "no peer was asked for\n" : "no peer: this program was built without EGL\n");
 }
 
-void write_pictures(const std::filesystem::path& folder, const MeshRows& mesh) {
-    const auto write = [&](const FrameRow& row, const char* whose, ImageRgb picture) {
-        if (picture.empty()) return;
-        for (Rgb& pixel : picture.pixels())
-            pixel = {srgb_decode(pixel.r), srgb_decode(pixel.g), srgb_decode(pixel.b)};
-        write_image(folder / (mesh.mesh + "-" + name(row.view) + "-" + whose + ".png"), picture);
+void write_images(const std::filesystem::path& folder, const MeshRows& mesh) {
+    const auto write = [&](const FrameRow& row, const char* whose, ImageRgb image) {
+        if (image.empty()) return;
+        for (Rgb& pixel : image.pixels()) pixel = {srgb_decode(pixel.r), srgb_decode(pixel.g), srgb_decode(pixel.b)};
+        write_image(folder / (mesh.mesh + "-" + name(row.view) + "-" + whose + ".png"), image);
     };
     for (const FrameRow& row : mesh.rows) {
         if (row.threads != mesh.rows.front().threads) continue;
-        write(row, "ours", row.picture);
-        write(row, "peer", row.peer_picture);
+        write(row, "ours", row.image);
+        write(row, "peer", row.peer_image);
     }
 }
 
 /// Measures all rows of a mesh. Returns false after an interrupt signal.
 bool measure_mesh(const FramesOptions& options, const std::vector<int>& threads, MeshRows& mesh, const Scene& scene,
                   ProgressBar& bar, double first, double share, const InterruptFlag& interrupt) {
-    raster::Settings phong; // no frame here casts shadows
+    raster::RasterSettings phong; // no frame here casts shadows
     phong.shading = raster::Shading::kPhong;
-    const raster::Prepared prepared = raster::prepare(scene, phong);
+    const raster::RasterScene prepared = raster::prepare(scene, phong);
     FrameSettings settings = options.settings;
     settings.stop = &interrupt.flag();
     double done = 0;
@@ -139,7 +138,7 @@ bool measure_mesh(const FramesOptions& options, const std::vector<int>& threads,
 
 std::vector<int> thread_counts(const FramesOptions& options) {
     if (!options.threads.empty()) return options.threads;
-    const int all = Processors::available();
+    const int all = CpuAffinity::available();
     return all > 1 ? std::vector<int>{1, all} : std::vector<int>{1};
 }
 
@@ -159,7 +158,7 @@ int frames(const FramesOptions& options) {
             MeshRows mesh{options.meshes[i].stem().string(), std::get<Mesh>(scene.shapes[0]).triangles.size(), {}};
             if (!measure_mesh(options, threads, mesh, scene, bar, static_cast<double>(i) * share, share, interrupt))
                 return kExitInterrupted;
-            if (!options.folder.empty()) write_pictures(options.folder, mesh);
+            if (!options.folder.empty()) write_images(options.folder, mesh);
             meshes.push_back(std::move(mesh));
         }
     }

@@ -49,7 +49,7 @@ Subcommand add_frames(CLI::App& app) {
                    kExitCodes);
     return {frames, [all, size, no_peer] {
                 if (!size->empty()) {
-                    const PictureSize parsed = parse_picture_size(*size);
+                    const ImageSize parsed = parse_image_size(*size);
                     all->settings.width = parsed.width;
                     all->settings.height = parsed.height;
                 }

@@ -1,8 +1,8 @@
 #if defined(DUET_LLVMPIPE)
-#include "compare/frames/peer.h"
+#include "compare/frames/llvmpipe.h"
 
 #include "compare/frames/gl.h"
-#include "raster/shader/phong.h"
+#include "raster/shading/phong_model.h"
 
 #include "common/system/error.h"
 
@@ -24,7 +24,7 @@ void main() {
 }
 )";
 
-/// This is raster/shader/phong.h in GLSL.
+/// This is raster/shading/phong_model.h in GLSL.
 constexpr const char* kFragmentShader = R"(#version 450 core
 in vec3 p, n;
 uniform vec3 eye, to_sun, diffuse, sun, ambient;
@@ -52,7 +52,7 @@ struct Vertex {
 /// Returns the projection matrix. Pixel (0, 0) comes first in the buffer, and depth is near/depth: reversed,
 /// without a far plane, as in the rasterizer.
 std::array<float, 16> clip_matrix(const View& view) {
-    const Pinhole pinhole = CameraModel(view).through();
+    const Pinhole pinhole = CameraModel(view).pinhole();
     const Mat4d& m = pinhole.world_to_pixel;
     std::array<float, 16> columns{};
     for (std::size_t c = 0; c < 4; ++c) {
@@ -66,13 +66,13 @@ std::array<float, 16> clip_matrix(const View& view) {
 
 } // namespace
 
-struct Peer::State {
+struct LlvmpipeRenderer::State {
     GlContext gl;
     View view;
     GLsizei indices = 0;
     GLuint phong = 0, depth = 0;
 
-    State(const Scene& scene, const View& seen, int threads) : gl(threads), view(seen) {
+    State(const Scene& scene, const View& requested_view, int threads) : gl(threads), view(requested_view) {
         upload(std::get<Mesh>(scene.shapes.at(0)));
         make_target();
         phong = program(replaced(replaced(kFragmentShader, "DIFFUSE", raster::kPhongDiffuse), "SPECULAR",
@@ -169,18 +169,18 @@ struct Peer::State {
     }
 };
 
-bool Peer::built() { return true; }
+bool LlvmpipeRenderer::built() { return true; }
 
-Peer::Peer(const Scene& scene, const View& view, int threads)
+LlvmpipeRenderer::LlvmpipeRenderer(const Scene& scene, const View& view, int threads)
     : state_(std::make_unique<State>(scene, view, threads)) {}
-Peer::~Peer() = default;
+LlvmpipeRenderer::~LlvmpipeRenderer() = default;
 
-std::string Peer::name() const {
+std::string LlvmpipeRenderer::name() const {
     const auto text = [&](GLenum what) { return reinterpret_cast<const char*>(state_->gl.GetString(what)); };
     return message(text(GL_RENDERER), ", ", text(GL_VERSION));
 }
 
-void Peer::draw(FrameWork work) {
+void LlvmpipeRenderer::draw(FrameWork work) {
     const GlContext& gl = state_->gl;
     const GLboolean colors = work == FrameWork::kPhong ? GL_TRUE : GL_FALSE;
     gl.UseProgram(colors ? state_->phong : state_->depth);
@@ -190,7 +190,7 @@ void Peer::draw(FrameWork work) {
     gl.Finish();
 }
 
-ImageRgb Peer::picture() const {
+ImageRgb LlvmpipeRenderer::image() const {
     const View& view = state_->view;
     Image<std::array<std::uint8_t, 4>> bytes(view.width, view.height);
     state_->gl.ReadPixels(0, 0, view.width, view.height, GL_RGBA, GL_UNSIGNED_BYTE, &bytes[0]);
@@ -203,7 +203,7 @@ ImageRgb Peer::picture() const {
     return result;
 }
 
-ImageFloat Peer::nearness() const {
+ImageFloat LlvmpipeRenderer::reversed_depth() const {
     const View& view = state_->view;
     ImageFloat result(view.width, view.height);
     state_->gl.ReadPixels(0, 0, view.width, view.height, GL_DEPTH_COMPONENT, GL_FLOAT, &result[0]);

@@ -2,7 +2,7 @@
 
 #include "common/image/srgb.h"
 #include "common/system/stopwatch.h"
-#include "compare/frames/processors.h"
+#include "compare/frames/cpu_affinity.h"
 #include "compare/metrics/flip.h"
 
 #include <algorithm>
@@ -13,29 +13,30 @@
 namespace duet::compare {
 namespace {
 
-raster::Settings settings_for(FrameWork work, int threads) {
-    raster::Settings settings;
+raster::RasterSettings settings_for(FrameWork work, int threads) {
+    raster::RasterSettings settings;
     settings.threads = threads;
     settings.front_faces_only = true; // like the peer
     settings.shading = raster::Shading::kPhong;
-    settings.output = work == FrameWork::kPhong ? raster::Output::kSrgb8 : raster::Output::kNearness;
+    settings.output = work == FrameWork::kPhong ? raster::Output::kSrgb8 : raster::Output::kReversedDepth;
     return settings;
 }
 
-ImageRgb encoded_values(const Image<Rgba8>& picture) {
-    ImageRgb result(picture.width(), picture.height());
+ImageRgb encoded_values(const Image<Rgba8>& image) {
+    ImageRgb result(image.width(), image.height());
     const auto value = [](std::uint8_t code) { return static_cast<float>(code) / 255; };
     for (std::size_t i = 0; i < result.size(); ++i)
-        result[i] = {value(picture[i].r), value(picture[i].g), value(picture[i].b)};
+        result[i] = {value(image[i].r), value(image[i].g), value(image[i].b)};
     return result;
 }
 
-double share_covered(const ImageFloat& nearness) {
-    return static_cast<double>(std::count_if(nearness.begin(), nearness.end(), [](float n) { return n > 0; })) /
-           static_cast<double>(nearness.size());
+double covered_fraction(const ImageFloat& reversed_depth) {
+    return static_cast<double>(
+               std::count_if(reversed_depth.begin(), reversed_depth.end(), [](float n) { return n > 0; })) /
+           static_cast<double>(reversed_depth.size());
 }
 
-double share_uncovered(const ImageFloat& ours, const ImageFloat& peer) {
+double mismatched_fraction(const ImageFloat& ours, const ImageFloat& peer) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < ours.size(); ++i) count += (ours[i] > 0) != (peer[i] > 0);
     return static_cast<double>(count) / static_cast<double>(ours.size());
@@ -57,7 +58,7 @@ FrameDifference difference(const ImageFloat& ours, const ImageFloat& peer) {
         ++common;
         sum += std::abs(static_cast<double>(ours[i]) / static_cast<double>(peer[i]) - 1);
     }
-    return {share_uncovered(ours, peer), common > 0 ? sum / static_cast<double>(common) : 0, 0};
+    return {mismatched_fraction(ours, peer), common > 0 ? sum / static_cast<double>(common) : 0, 0};
 }
 
 double median(std::vector<double> values) {
@@ -81,7 +82,7 @@ double time_burst(const std::function<void()>& draw, const FrameSettings& settin
     do {
         draw();
         ++frames;
-    } while (watch.seconds() < settings.burst);
+    } while (watch.seconds() < settings.burst_seconds);
     return (settings.processor_time ? processor_seconds() - start : watch.seconds()) / frames;
 }
 
@@ -104,16 +105,17 @@ void measure(FrameRow& row, const std::function<void()>& ours, const std::functi
     row.ratio = {*least, median(ratios), *most};
 }
 
-void compare_pictures(FrameRow& row, const Rendering& ours, const ImageFloat& nearness,
-                      const std::optional<Peer>& peer) {
-    if (row.work == FrameWork::kPhong) row.picture = encoded_values(ours.srgb);
+void compare_images_of_frame(FrameRow& row, const Rendering& ours, const ImageFloat& reversed_depth,
+                             const std::optional<LlvmpipeRenderer>& peer) {
+    if (row.work == FrameWork::kPhong) row.image = encoded_values(ours.srgb);
     if (!peer) return;
     row.peer_name = peer->name();
     if (row.work == FrameWork::kPhong) {
-        row.peer_picture = peer->picture();
-        row.difference = difference(row.picture, row.peer_picture, share_uncovered(nearness, peer->nearness()));
+        row.peer_image = peer->image();
+        row.difference =
+            difference(row.image, row.peer_image, mismatched_fraction(reversed_depth, peer->reversed_depth()));
     } else {
-        row.difference = difference(ours.nearness, peer->nearness());
+        row.difference = difference(ours.reversed_depth, peer->reversed_depth());
     }
 }
 
@@ -125,14 +127,14 @@ void compare_pictures(FrameRow& row, const Rendering& ours, const ImageFloat& ne
 // covered pixels.
 bool FrameDifference::same() const { return coverage < 2e-3 && mean < 2e-3 && flip < 1e-2; }
 
-std::vector<FrameRow> measure_frames(const Scene& scene, const raster::Prepared& prepared, FrameView frame_kind,
+std::vector<FrameRow> measure_frames(const Scene& scene, const raster::RasterScene& prepared, FrameView frame_kind,
                                      int threads, const std::vector<FrameWork>& works, const FrameSettings& settings) {
-    const Processors pinned(threads);
+    const CpuAffinity pinned(threads);
     const View view = frame_view(scene, frame_kind, settings.width, settings.height);
-    std::optional<Peer> peer;
-    if (settings.peer && Peer::built()) peer.emplace(scene, view, threads);
+    std::optional<LlvmpipeRenderer> peer;
+    if (settings.peer && LlvmpipeRenderer::built()) peer.emplace(scene, view, threads);
     Control control;
-    Rendering depth, picture;
+    Rendering depth, image;
     raster::render(prepared, view, settings_for(FrameWork::kDepth, threads), control, depth);
     std::vector<FrameRow> rows;
     for (const FrameWork work : works) {
@@ -140,13 +142,13 @@ std::vector<FrameRow> measure_frames(const Scene& scene, const raster::Prepared&
         row.work = work;
         row.view = frame_kind;
         row.threads = threads;
-        row.covered = share_covered(depth.nearness);
-        const raster::Settings ours = settings_for(work, threads);
-        const auto draw_ours = [&] { raster::render(prepared, view, ours, control, picture); };
+        row.covered = covered_fraction(depth.reversed_depth);
+        const raster::RasterSettings ours = settings_for(work, threads);
+        const auto draw_ours = [&] { raster::render(prepared, view, ours, control, image); };
         std::function<void()> draw_peer;
         if (peer) draw_peer = [&] { peer->draw(work); };
         measure(row, draw_ours, draw_peer, settings);
-        compare_pictures(row, picture, depth.nearness, peer);
+        compare_images_of_frame(row, image, depth.reversed_depth, peer);
         rows.push_back(std::move(row));
     }
     return rows;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "compare/frames/frame_scene.h"
-#include "compare/frames/peer.h"
+#include "compare/frames/llvmpipe.h"
 #include "raster/render.h"
 
 #include <atomic>
@@ -32,13 +32,13 @@ struct FrameRow {
     FrameRatio ratio;               ///< range over the repeats
     std::optional<FrameDifference> difference;
     std::string peer_name;
-    ImageRgb picture, peer_picture; ///< Phong only, sRGB-encoded values
+    ImageRgb image, peer_image; ///< Phong only, sRGB-encoded values
 };
 
 struct FrameSettings {
     int width = 1920, height = 1080;
     int repeats = 9;
-    double burst = 0.03;   ///< minimum duration in seconds of each renderer's frames in a repeat
+    double burst_seconds = 0.03; ///< minimum duration in seconds of each renderer's frames in a repeat
     bool processor_time = false; ///< measure CPU time over all processors instead of wall-clock time
     bool peer = true;      ///< measure the peer, if it is built
     const std::atomic<bool>* stop = nullptr;
@@ -46,7 +46,7 @@ struct FrameSettings {
 
 /// Measures the rows of one mesh, view and thread count, one per work in `works`. `prepared` must be prepared
 /// from `scene`. Makes fewer repeats if `stop` is set.
-std::vector<FrameRow> measure_frames(const Scene& scene, const raster::Prepared& prepared, FrameView view, int threads,
-                                     const std::vector<FrameWork>& works, const FrameSettings& settings);
+std::vector<FrameRow> measure_frames(const Scene& scene, const raster::RasterScene& prepared, FrameView view,
+                                     int threads, const std::vector<FrameWork>& works, const FrameSettings& settings);
 
 } // namespace duet::compare

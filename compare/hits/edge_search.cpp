@@ -8,8 +8,8 @@ namespace {
 
 constexpr double kGoldenRatio = 1.6180339887498949;
 
-struct Search {
-    const ExactTracer& tracer;
+struct EdgeSearcher {
+    const ReferenceTracer& tracer;
     const Pinhole& pinhole;
     Vec2d pixel;
     const Hit &a, &b;
@@ -20,25 +20,25 @@ struct Search {
         if (dot(p - pixel, p - pixel) <= sqr(kEdgeRadius)) trace(p);
         return result.both();
     }
-    ExactHit trace(Vec2d p) {
+    ReferenceHit trace(Vec2d p) {
         const Rayd ray = pinhole.ray(p);
-        const ExactHit nearest = tracer.nearest(ray);
+        const ReferenceHit nearest = tracer.nearest(ray);
         result.found_a = result.found_a || nearest.same_as(a);
         result.found_b = result.found_b || nearest.same_as(b);
-        result.tied_a = result.tied_a || meets(ray, nearest, a);
-        result.tied_b = result.tied_b || meets(ray, nearest, b);
+        result.tied_a = result.tied_a || ties_with(ray, nearest, a);
+        result.tied_b = result.tied_b || ties_with(ray, nearest, b);
         return nearest;
     }
     /// Returns whether the ray hits a pipeline's primitive at the same distance as its closest hit.
-    bool meets(const Rayd& ray, const ExactHit& nearest, const Hit& hit) const {
+    bool ties_with(const Rayd& ray, const ReferenceHit& nearest, const Hit& hit) const {
         if (!nearest.valid() || !hit.valid()) return false;
-        const ExactHit other = tracer.intersect(ray, hit.object, hit.primitive);
-        return other.valid() && distance_apart(tracer, ray, nearest, other) <= kMeetingTolerance;
+        const ReferenceHit other = tracer.intersect(ray, hit.object, hit.primitive);
+        return other.valid() && relative_distance(tracer, ray, nearest, other) <= kTieTolerance;
     }
 };
 
 /// Tries circles whose radii halve towards the center. This resolves most disagreements, which are ordinary edges.
-bool try_circles(Search& search) {
+bool try_circles(EdgeSearcher& search) {
     constexpr int kAngles = 16;
     for (double radius = kEdgeRadius * (1 - 1e-9); radius > kEdgeRadius / 100; radius /= 2)
         for (int i = 0; i < kAngles; ++i) {
@@ -49,7 +49,7 @@ bool try_circles(Search& search) {
 }
 
 /// Tries Vogel's sunflower pattern, which covers the disk evenly for any number of points.
-bool try_disk(Search& search) {
+bool try_disk(EdgeSearcher& search) {
     constexpr int kPoints = 4096;
     for (int i = 0; i < kPoints; ++i) {
         const double radius = kEdgeRadius * std::sqrt((i + 0.5) / kPoints);
@@ -63,21 +63,22 @@ bool try_disk(Search& search) {
 /// Hodgman 1974).
 std::vector<Vec4d> clip(const std::vector<Vec4d>& polygon, Vec4d plane) {
     const auto side = [&](Vec4d v) { return plane.x * v.x + plane.y * v.y + plane.z * v.z + plane.w * v.w; };
-    std::vector<Vec4d> kept;
+    std::vector<Vec4d> clipped;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
         const Vec4d from = polygon[i], to = polygon[(i + 1) % polygon.size()];
         const double d0 = side(from), d1 = side(to);
-        if (d0 >= 0) kept.push_back(from);
-        if ((d0 < 0) != (d1 < 0)) kept.push_back(from + (to + from * -1.0) * (d0 / (d0 - d1)));
+        if (d0 >= 0) clipped.push_back(from);
+        if ((d0 < 0) != (d1 < 0)) clipped.push_back(from + (to + from * -1.0) * (d0 / (d0 - d1)));
     }
-    return kept;
+    return clipped;
 }
 
 constexpr int kSides = 8;
 
 /// Returns the part of a world-space polygon that projects into an octagon around `pixel`, in pixel
 /// coordinates. The octagon's sides are `reach` away from `pixel`.
-std::vector<Vec2d> within_reach(const Pinhole& pinhole, Vec2d pixel, const std::vector<Vec3d>& corners, double reach) {
+std::vector<Vec2d> clip_to_octagon(const Pinhole& pinhole, Vec2d pixel, const std::vector<Vec3d>& corners,
+                                   double reach) {
     std::vector<Vec4d> polygon;
     for (const Vec3d& p : corners) polygon.push_back(pinhole.world_to_pixel * Vec4d(p, 1.0));
     // Depth is affine in world space (and equals w for a perspective camera). Clip to the near plane first.
@@ -93,9 +94,9 @@ std::vector<Vec2d> within_reach(const Pinhole& pinhole, Vec2d pixel, const std::
     return points;
 }
 
-/// Tries points just inside the border of a polygon from within_reach(). If a hidden face is nearly edge-on,
+/// Tries points just inside the border of a polygon from clip_to_octagon(). If a hidden face is nearly edge-on,
 /// its border is where it meets the face in front of it.
-bool try_border(Search& search, const std::vector<Vec2d>& polygon) {
+bool try_border(EdgeSearcher& search, const std::vector<Vec2d>& polygon) {
     Vec2d middle;
     for (const Vec2d p : polygon) middle = middle + p * (1.0 / static_cast<double>(polygon.size()));
     constexpr int kPoints = 16;
@@ -110,11 +111,11 @@ bool try_border(Search& search, const std::vector<Vec2d>& polygon) {
 
 /// Tries low-discrepancy points in the part of one primitive that lies within reach, triangle by triangle of
 /// its fan. This finds slivers thousands of times thinner than the disk.
-bool try_primitive(Search& search, const Hit& hit) {
+bool try_primitive(EdgeSearcher& search, const Hit& hit) {
     if (!hit.valid()) return false;
     const std::vector<Vec2d> polygon = // in the octagon inscribed in the disk
-        within_reach(search.pinhole, search.pixel, search.tracer.corners(hit.object, hit.primitive),
-                     kEdgeRadius * std::cos(kPiDouble / kSides));
+        clip_to_octagon(search.pinhole, search.pixel, search.tracer.corners(hit.object, hit.primitive),
+                        kEdgeRadius * std::cos(kPiDouble / kSides));
     constexpr int kPoints = 64;
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
         for (int k = 0; k < kPoints; ++k) {
@@ -129,18 +130,18 @@ bool try_primitive(Search& search, const Hit& hit) {
 
 /// Returns whether any displaced ray could hit the primitive. It is false if the whole primitive projects
 /// outside of the octagon around the disk, enlarged by a margin for rounding.
-bool may_be_met(const Search& search, const Hit& hit) {
+bool may_be_hit(const EdgeSearcher& search, const Hit& hit) {
     if (!hit.valid()) return true;
     const std::vector<Vec3d> corners = search.tracer.corners(hit.object, hit.primitive);
-    return corners.empty() || !within_reach(search.pinhole, search.pixel, corners, 1.01 * kEdgeRadius).empty();
+    return corners.empty() || !clip_to_octagon(search.pinhole, search.pixel, corners, 1.01 * kEdgeRadius).empty();
 }
 
 } // namespace
 
-EdgeSearch search_edge(const ExactTracer& tracer, const Pinhole& pinhole, Vec2d pixel, const Hit& a, const Hit& b) {
-    Search search{tracer, pinhole, pixel, a, b, {}};
+EdgeSearch search_edge(const ReferenceTracer& tracer, const Pinhole& pinhole, Vec2d pixel, const Hit& a, const Hit& b) {
+    EdgeSearcher search{tracer, pinhole, pixel, a, b, {}};
     search.result.center = search.trace(pixel);
-    if (!may_be_met(search, a) || !may_be_met(search, b)) return search.result;
+    if (!may_be_hit(search, a) || !may_be_hit(search, b)) return search.result;
     (void)(search.result.both() || try_circles(search) || try_primitive(search, a) || try_primitive(search, b) ||
            try_disk(search));
     return search.result;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/camera/camera.h"
-#include "compare/hits/exact_trace.h"
+#include "compare/hits/reference_tracer.h"
 
 namespace duet::compare {
 
@@ -14,13 +14,13 @@ inline constexpr double kEdgeRadius = 1.0 / 128;
 /// Where a hidden face meets the face in front of it at an edge, both are at the same distance. Rounding then
 /// decides which one a pipeline returns (at equal distances: the lower primitive). The hidden face counts as
 /// visible if |Δt|·|cos θ| / t is at most this tolerance, which is about ten float roundings.
-inline constexpr double kMeetingTolerance = 1e-6;
+inline constexpr double kTieTolerance = 1e-6;
 
 /// Which of two pipelines' hits the double-precision rays within kEdgeRadius of the pixel center find.
 struct EdgeSearch {
     bool found_a = false, found_b = false; ///< a ray returns it as its closest hit
-    bool tied_a = false, tied_b = false;   ///< a ray hits it within kMeetingTolerance of the closest hit
-    ExactHit center;                       ///< closest hit of the undisplaced ray
+    bool tied_a = false, tied_b = false;   ///< a ray hits it within kTieTolerance of the closest hit
+    ReferenceHit center;                   ///< closest hit of the undisplaced ray
 
     bool both() const { return found_a && found_b; }
     bool both_or_tied() const { return (found_a || tied_a) && (found_b || tied_b); }
@@ -30,6 +30,6 @@ struct EdgeSearch {
 /// within reach (however thin they are), then over a dense disk. It stops when both hits are found or all of
 /// about 5,000 rays are tried. Each ray is traced through the whole scene: being close to an edge is not
 /// enough, a ray must hit the primitive.
-EdgeSearch search_edge(const ExactTracer& tracer, const Pinhole& pinhole, Vec2d pixel, const Hit& a, const Hit& b);
+EdgeSearch search_edge(const ReferenceTracer& tracer, const Pinhole& pinhole, Vec2d pixel, const Hit& a, const Hit& b);
 
 } // namespace duet::compare

@@ -9,8 +9,8 @@ namespace duet::compare {
 
 namespace {
 
-struct Judge {
-    const ExactTracer& tracer;
+struct HitClassifier {
+    const ReferenceTracer& tracer;
     Pinhole pinhole;
 
     Rayd ray(int x, int y) const { return pinhole.ray(center(x, y)); }
@@ -19,16 +19,17 @@ struct Judge {
     /// Returns whether the ray hits both primitives at the same distance.
     bool depth_tie(const Rayd& r, const Hit& a, const Hit& b) const {
         if (!a.valid() || !b.valid()) return false;
-        const ExactHit ea = tracer.intersect(r, a.object, a.primitive), eb = tracer.intersect(r, b.object, b.primitive);
-        return ea.valid() && eb.valid() && distance_apart(tracer, r, ea, eb) <= kDepthTolerance;
+        const ReferenceHit ea = tracer.intersect(r, a.object, a.primitive),
+                           eb = tracer.intersect(r, b.object, b.primitive);
+        return ea.valid() && eb.valid() && relative_distance(tracer, r, ea, eb) <= kDepthTolerance;
     }
 
-    Verdict verdict(int x, int y, const Hit& a, const Hit& b, ExactHit& exact) const {
+    HitVerdict verdict(int x, int y, const Hit& a, const Hit& b, ReferenceHit& exact) const {
         const EdgeSearch search = search_edge(tracer, pinhole, center(x, y), a, b);
         exact = search.center;
-        if (search.both()) return Verdict::kEdge;
+        if (search.both()) return HitVerdict::kEdge;
         const bool tie = depth_tie(ray(x, y), a, b) || search.both_or_tied();
-        return tie ? Verdict::kDepthTie : Verdict::kUnexplained;
+        return tie ? HitVerdict::kDepthTie : HitVerdict::kUnexplained;
     }
 
     /// Returns |Δt|·|cos θ| / t of two hits of one primitive, or infinity unless both distances are finite and
@@ -47,13 +48,14 @@ struct RowResult {
     std::vector<UnexplainedPixel> listed;
 };
 
-void judge_pixel(const Judge& judge, int x, int y, const Hit& a, const Hit& b, Verdict& verdict, RowResult& row) {
+void classify_pixel_hits(const HitClassifier& classifier, int x, int y, const Hit& a, const Hit& b, HitVerdict& verdict,
+                         RowResult& row) {
     HitAgreement& counts = row.counts;
     if (a.object == b.object && (!a.valid() || a.primitive == b.primitive)) {
-        verdict = Verdict::kSame;
+        verdict = HitVerdict::kSame;
         ++counts.same;
         if (!a.valid()) return;
-        const double error = judge.distance_error(x, y, a, b);
+        const double error = classifier.distance_error(x, y, a, b);
         if (!(error <= kDepthTolerance)) ++counts.distance_violations;
         if (error > counts.worst_distance) {
             counts.worst_distance = error;
@@ -62,11 +64,11 @@ void judge_pixel(const Judge& judge, int x, int y, const Hit& a, const Hit& b, V
         }
         return;
     }
-    ExactHit exact;
-    verdict = judge.verdict(x, y, a, b, exact);
-    if (verdict == Verdict::kEdge) ++counts.edge;
-    if (verdict == Verdict::kDepthTie) ++counts.depth_tie;
-    if (verdict == Verdict::kUnexplained) {
+    ReferenceHit exact;
+    verdict = classifier.verdict(x, y, a, b, exact);
+    if (verdict == HitVerdict::kEdge) ++counts.edge;
+    if (verdict == HitVerdict::kDepthTie) ++counts.depth_tie;
+    if (verdict == HitVerdict::kUnexplained) {
         ++counts.unexplained;
         row.listed.push_back({x, y, a, b, exact});
     }
@@ -84,7 +86,7 @@ void add(HitAgreement& total, const RowResult& row) {
         total.worst_y = row.counts.worst_y;
     }
     for (const UnexplainedPixel& pixel : row.listed)
-        if (total.listed.size() < kListed) total.listed.push_back(pixel);
+        if (total.listed.size() < kMaxListed) total.listed.push_back(pixel);
 }
 
 void check_hits(const Scene& scene, const View& view, const Image<Hit>& hits, const char* name) {
@@ -105,17 +107,17 @@ HitAgreement compare_hits(const Scene& scene, const View& view, const Image<Hit>
     check_hits(scene, view, raster, "raster");
     check_hits(scene, view, raytrace, "raytrace");
     const CameraModel camera(view);
-    const ExactTracer tracer(scene, camera.time(0));
-    const Judge judge{tracer, camera.through()};
+    const ReferenceTracer tracer(scene, camera.time(0));
+    const HitClassifier classifier{tracer, camera.pinhole()};
 
     HitAgreement result;
     result.pixels = static_cast<std::int64_t>(raster.size());
-    result.verdicts = Image<Verdict>(view.width, view.height);
+    result.verdicts = Image<HitVerdict>(view.width, view.height);
     std::vector<RowResult> rows(static_cast<std::size_t>(view.height));
     parallel_for(rows.size(), threads, [&](std::size_t row) {
         const int y = static_cast<int>(row);
         for (int x = 0; x < view.width; ++x)
-            judge_pixel(judge, x, y, raster(x, y), raytrace(x, y), result.verdicts(x, y), rows[row]);
+            classify_pixel_hits(classifier, x, y, raster(x, y), raytrace(x, y), result.verdicts(x, y), rows[row]);
     });
     for (const RowResult& row : rows) add(result, row);
     return result;

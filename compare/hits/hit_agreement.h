@@ -4,18 +4,18 @@
 #include "common/camera/camera.h"
 #include "common/image/image.h"
 #include "common/scene/scene.h"
-#include "compare/hits/exact_trace.h"
+#include "compare/hits/reference_tracer.h"
 
 #include <cstdint>
 #include <vector>
 
 namespace duet::compare {
 
-enum class Verdict : std::uint8_t {
-    kSame,     ///< same object and primitive, or both miss
-    kEdge,     ///< double-precision rays within 1/128 pixel of the center find both primitives
-    kDepthTie, ///< the double-precision ray hits both at the same distance, within kDepthTolerance; or displaced rays
-               ///< find one, and hit the other within kMeetingTolerance of its occluder
+enum class HitVerdict : std::uint8_t {
+    kSame,       ///< same object and primitive, or both miss
+    kEdge,       ///< double-precision rays within 1/128 pixel of the center find both primitives
+    kDepthTie,   ///< the double-precision ray hits both at the same distance, within kDepthTolerance; or displaced rays
+                 ///< find one, and hit the other within kTieTolerance of its occluder
     kUnexplained ///< neither same, edge nor tie: one of the pipelines is wrong
 };
 
@@ -26,19 +26,19 @@ inline constexpr double kDepthTolerance = 1e-5;
 struct UnexplainedPixel {
     int x = 0, y = 0;
     Hit raster, raytrace;
-    ExactHit exact; ///< closest hit of the double-precision ray through the pixel center
+    ReferenceHit exact; ///< closest hit of the double-precision ray through the pixel center
 };
 
 struct HitAgreement {
     std::int64_t pixels = 0, same = 0, edge = 0, depth_tie = 0, unexplained = 0; ///< pixels is the sum of the others
-    Image<Verdict> verdicts;
-    std::vector<UnexplainedPixel> listed; ///< the first kListed unexplained pixels, from the top
+    Image<HitVerdict> verdicts;
+    std::vector<UnexplainedPixel> listed; ///< the first kMaxListed unexplained pixels, from the top
     // The distances below are measured where both pipelines hit the same primitive.
     double worst_distance = 0;            ///< largest |Δt|·|cos θ| / t
     int worst_x = 0, worst_y = 0;         ///< the first pixel with that distance
     std::int64_t distance_violations = 0; ///< pixels over kDepthTolerance, or without a finite distance
 };
-inline constexpr std::size_t kListed = 100;
+inline constexpr std::size_t kMaxListed = 100;
 
 /// Compares two images of hits of one view. Each must be made with one ray through each pixel's center and the
 /// lens center, at the time when the shutter opens. `threads` 0 uses all. Throws Error if an image does not

@@ -12,64 +12,65 @@
 
 namespace duet::compare {
 
-struct Range {
+struct MedianRange {
     double min = 0, median = 0, max = 0;
 };
 /// Returns the range of at least one value. The median of an even number of values is the lower of the middle two.
-Range range_of(std::vector<double> values);
+MedianRange median_range(std::vector<double> values);
 
 /// Does the work once and returns the seconds it took.
-using Timed = std::function<double()>;
+using TimedWork = std::function<double()>;
 
 /// Measures the time of work on `threads` threads: the CPU time of a single thread, which other programs
 /// disturb much less; the wall-clock time of several threads.
-class WorkWatch {
+class WorkStopwatch {
 public:
-    explicit WorkWatch(int threads) : alone_(threads == 1), begin_(std::clock()) {}
+    explicit WorkStopwatch(int threads) : single_threaded_(threads == 1), begin_(std::clock()) {}
     double seconds() const {
-        return alone_ ? static_cast<double>(std::clock() - begin_) / CLOCKS_PER_SEC : watch_.seconds();
+        return single_threaded_ ? static_cast<double>(std::clock() - begin_) / CLOCKS_PER_SEC : watch_.seconds();
     }
 
 private:
-    bool alone_;
+    bool single_threaded_;
     std::clock_t begin_; ///< CPU time of the process, whose other threads sleep
     Stopwatch watch_;
 };
 
-struct Versus {
-    Range ratio;                 ///< peer's seconds / ours, for measurements adjacent in time: above 1, Duet is faster
+struct PairedTiming {
+    MedianRange ratio;           ///< peer's seconds / ours, for measurements adjacent in time: above 1, Duet is faster
     double ours = 0, theirs = 0; ///< seconds of the pair with the median ratio
 };
-struct Interleaved {
+struct InterleavedTimings {
     double seconds = 0; ///< Duet's median, also without peers
     int repeats = 0;
-    std::vector<Versus> peers; ///< in the order given
+    std::vector<PairedTiming> peers; ///< in the order given
 };
 
 /// With fewer measurements, there is no verdict on which side is faster.
-inline constexpr int kLeastForVerdict = 5;
+inline constexpr int kMinRepeatsForVerdict = 5;
 
 /// Measures in rounds. In each round, `ours` runs before, between and after every two peers, so that each peer
-/// is adjacent to it: ours, A, B, ours, C, D, ours … Makes at least kLeastForVerdict rounds if `repeats` allows
+/// is adjacent to it: ours, A, B, ours, C, D, ours … Makes at least kMinRepeatsForVerdict rounds if `repeats` allows
 /// it, then up to `repeats` while less than `time_limit` seconds have passed. The result is meaningless if
 /// `control` was stopped.
-Interleaved interleave(const Timed& ours, const std::vector<Timed>& peers, int repeats, double time_limit,
-                       const Control& control);
+InterleavedTimings interleave(const TimedWork& ours, const std::vector<TimedWork>& peers, int repeats,
+                              double time_limit, const Control& control);
 
 /// The subset of a ray set that one measurement traces: whole groups of blocks, spread evenly over the set, so
 /// that tracing takes about the requested time.
-struct Portion {
+struct RaySubset {
     std::size_t rays = 0;            ///< number of rays traced, over all passes
     std::vector<std::size_t> groups; ///< groups of kGroup blocks each
     int passes = 1;
 
     static constexpr std::size_t kGroup = 4;
 };
-/// Returns the portion of a set of `rays` rays for a tracer that traces `rate` rays per second, to last `seconds`.
-Portion portion_of(std::size_t rays, double rate, double seconds);
+/// Returns the subset of a set of `rays` rays for a tracer that traces `rate` rays per second, to last `seconds`.
+RaySubset choose_ray_subset(std::size_t rays, double rate, double seconds);
 
-/// Returns the seconds (WorkWatch) to trace the portion on `threads` threads. `answers` has one element per
+/// Returns the seconds (WorkStopwatch) to trace the subset on `threads` threads. `ray_results` has one element per
 /// block of the whole set.
-double trace_seconds(const Tracer& tracer, const Portion& portion, int threads, std::vector<AnswerBlock>& answers);
+double trace_seconds(const Tracer& tracer, const RaySubset& subset, int threads,
+                     std::vector<RayResultBlock>& ray_results);
 
 } // namespace duet::compare

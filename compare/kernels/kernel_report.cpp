@@ -30,14 +30,14 @@ std::string figure(const KernelRow& row, double value) {
     return out.str();
 }
 
-std::string ratio_text(const Range& ratio) {
+std::string ratio_text(const MedianRange& ratio) {
     std::ostringstream out;
     out << std::fixed << std::setprecision(2) << ratio.min << " - " << ratio.median << " - " << ratio.max;
     return out.str();
 }
 
 /// Formats 1234567 as "1,234,567".
-std::string grouped(std::int64_t number) {
+std::string with_separators(std::int64_t number) {
     const std::string digits = std::to_string(number);
     std::string text;
     for (std::size_t i = 0; i < digits.size(); ++i) {
@@ -47,13 +47,13 @@ std::string grouped(std::int64_t number) {
     return text;
 }
 
-json range_json(const Range& range) { return {{"min", range.min}, {"median", range.median}, {"max", range.max}}; }
+json range_json(const MedianRange& range) { return {{"min", range.min}, {"median", range.median}, {"max", range.max}}; }
 
-json faults_json(const Faults& faults) {
+json faults_json(const KernelErrors& faults) {
     return {{"rays", faults.rays}, {"edge_faults", faults.edge}, {"wrong", faults.wrong}};
 }
 
-json row_json(const KernelTable& table, const KernelRow& row) {
+json row_json(const KernelResults& table, const KernelRow& row) {
     const bool peer = !row.peer_name.empty();
     json result = {{"mesh", table.mesh},
                    {"scene", table.scene},
@@ -89,31 +89,31 @@ json row_json(const KernelTable& table, const KernelRow& row) {
 }
 
 /// Returns a sort key for the amount of differences and leaks. Unexplained ones come first.
-std::array<std::int64_t, 4> gravity(const KernelRow& row) {
+std::array<std::int64_t, 4> severity(const KernelRow& row) {
     std::array<std::int64_t, 4> result{};
     if (row.mismatches) result = {row.mismatches->unexplained, row.mismatches->fault, 0, row.mismatches->differ()};
     if (row.leaks) result[2] = row.leaks->ours + row.leaks->peer;
     return result;
 }
 
-/// Returns, for each work, the row with the largest gravity(), sorted in descending order. Answers don't depend
+/// Returns, for each work, the row with the largest severity(), sorted in descending order. Answers don't depend
 /// on threads.
-std::vector<const KernelRow*> rows_to_explain(const KernelTable& table) {
+std::vector<const KernelRow*> rows_to_explain(const KernelResults& table) {
     std::vector<const KernelRow*> worst;
     for (const KernelRow& row : table.rows) {
         if (!row.mismatches && !row.leaks) continue;
         const auto same = std::ranges::find(worst, row.work, [](const KernelRow* r) { return r->work; });
         if (same == worst.end())
             worst.push_back(&row);
-        else if (gravity(row) > gravity(**same))
+        else if (severity(row) > severity(**same))
             *same = &row;
     }
     std::ranges::stable_sort(worst,
-                             [](const KernelRow* a, const KernelRow* b) { return gravity(*a)[0] > gravity(*b)[0]; });
+                             [](const KernelRow* a, const KernelRow* b) { return severity(*a)[0] > severity(*b)[0]; });
     return worst;
 }
 
-void print_differences(std::ostream& out, const KernelTable& table) {
+void print_differences(std::ostream& out, const KernelResults& table) {
     const std::vector<const KernelRow*> rows = rows_to_explain(table);
     if (rows.empty()) return;
     const auto line = [&](const std::string& work, const std::array<std::string, 9>& cells, const std::string& name) {
@@ -129,8 +129,8 @@ void print_differences(std::ostream& out, const KernelTable& table) {
     for (const KernelRow* row : rows) {
         const Mismatches m = row->mismatches.value_or(Mismatches{});
         const Leaks leaks = row->leaks.value_or(Leaks{});
-        const auto if_peer = [&](std::int64_t n) { return row->mismatches ? grouped(n) : "-"; };
-        const auto if_closed = [&](std::int64_t n) { return row->leaks ? grouped(n) : "-"; };
+        const auto if_peer = [&](std::int64_t n) { return row->mismatches ? with_separators(n) : "-"; };
+        const auto if_closed = [&](std::int64_t n) { return row->leaks ? with_separators(n) : "-"; };
         line(row->work + (m.unexplained > 0 ? " !" : ""),
              {if_peer(m.rays), if_peer(m.tie), if_peer(m.edge), if_peer(m.ours.edge), if_peer(m.peer.edge),
               if_peer(m.ours.wrong), if_peer(m.peer.wrong), if_closed(leaks.ours),
@@ -139,21 +139,22 @@ void print_differences(std::ostream& out, const KernelTable& table) {
     }
 }
 
-/// Prints the checks of the answers: by the judge, against the peer's, and for rays aimed at edges.
-void print_checks(std::ostream& out, const KernelTable& table) {
+/// Prints the checks of the results: by the oracle, against the peer's, and for rays aimed at edges.
+void print_checks(std::ostream& out, const KernelResults& table) {
     print_differences(out, table);
-    Faults judged;
-    for (const KernelTable::JudgedWork& work : table.judged) judged += work.found;
+    KernelErrors judged;
+    for (const KernelResults::CheckedWork& work : table.judged) judged += work.found;
     if (judged.rays > 0)
-        out << "  " << grouped(judged.rays) << " of our answers judged in double precision: " << grouped(judged.wrong)
-            << " wrong, " << grouped(judged.edge) << " edge faults\n";
+        out << "  " << with_separators(judged.rays)
+            << " of our answers judged in double precision: " << with_separators(judged.wrong) << " wrong, "
+            << with_separators(judged.edge) << " edge faults\n";
     if (table.watertight.empty()) return;
-    out << "  " << grouped(table.watertight.front().faults.rays)
+    out << "  " << with_separators(table.watertight.front().faults.rays)
         << " rays aimed at points, edges and vertices from within, each judged (lost, edge faults, wrong):\n";
-    for (const KernelTable::Aimed& aimed : table.watertight)
+    for (const KernelResults::Aimed& aimed : table.watertight)
         out << "    " << std::left << std::setw(32) << aimed.kernel << std::right << std::setw(10)
-            << grouped(aimed.misses) << std::setw(10) << grouped(aimed.faults.edge) << std::setw(10)
-            << grouped(aimed.faults.wrong) << '\n';
+            << with_separators(aimed.misses) << std::setw(10) << with_separators(aimed.faults.edge) << std::setw(10)
+            << with_separators(aimed.faults.wrong) << '\n';
 }
 
 } // namespace
@@ -161,26 +162,26 @@ void print_checks(std::ostream& out, const KernelTable& table) {
 void mark_best(std::vector<KernelRow>& rows) {
     for (KernelRow& row : rows)
         row.best = !row.peer_name.empty() && std::ranges::none_of(rows, [&](const KernelRow& other) {
-            const bool rival = other.work == row.work && other.threads == row.threads && !other.peer_name.empty();
-            return rival && (other.ratio.median < row.ratio.median ||
-                             (&other < &row && other.ratio.median == row.ratio.median)); // the first of equal rows
+            const bool comparable = other.work == row.work && other.threads == row.threads && !other.peer_name.empty();
+            return comparable && (other.ratio.median < row.ratio.median ||
+                                  (&other < &row && other.ratio.median == row.ratio.median)); // the first of equal rows
         });
 }
 
-std::string verdict(const Range& ratio, int repeats) {
-    if (repeats < kLeastForVerdict) return "too few";
+std::string verdict(const MedianRange& ratio, int repeats) {
+    if (repeats < kMinRepeatsForVerdict) return "too few";
     return ratio.min > 1 ? "ahead" : ratio.max < 1 ? "behind" : "even";
 }
 
-json rows_json(const KernelTable& table) {
+json rows_json(const KernelResults& table) {
     json rows = json::array();
     for (const KernelRow& row : table.rows) rows.push_back(row_json(table, row));
     return rows;
 }
 
-json watertight_json(const KernelTable& table) {
+json watertight_json(const KernelResults& table) {
     json list = json::array();
-    for (const KernelTable::Aimed& aimed : table.watertight) {
+    for (const KernelResults::Aimed& aimed : table.watertight) {
         json entry = {{"mesh", table.mesh},
                       {"scene", table.scene},
                       {"triangles", table.triangles},
@@ -192,9 +193,9 @@ json watertight_json(const KernelTable& table) {
     return list;
 }
 
-json judged_json(const KernelTable& table) {
+json judged_json(const KernelResults& table) {
     json list = json::array();
-    for (const KernelTable::JudgedWork& judged : table.judged) {
+    for (const KernelResults::CheckedWork& judged : table.judged) {
         json entry = {{"mesh", table.mesh}, {"scene", table.scene}, {"work", judged.work}};
         entry.update(faults_json(judged.found));
         list.push_back(entry);
@@ -202,10 +203,10 @@ json judged_json(const KernelTable& table) {
     return list;
 }
 
-void print_table(std::ostream& out, const KernelTable& table) {
-    out << table.mesh << ", " << table.scene << ": " << grouped(static_cast<std::int64_t>(table.triangles))
+void print_table(std::ostream& out, const KernelResults& table) {
+    out << table.mesh << ", " << table.scene << ": " << with_separators(static_cast<std::int64_t>(table.triangles))
         << " triangles, " << table.width << "x" << table.height << " camera rays";
-    if (table.left_out > 0) out << ", " << table.left_out << " spheres left out";
+    if (table.omitted_spheres > 0) out << ", " << table.omitted_spheres << " spheres left out";
     out << "; million rays a second\n";
     const auto line = [&](const std::string& work, const std::string& threads, const std::string& ours,
                           const std::string& peer, const std::string& ratio, const std::string& repeats,
@@ -230,18 +231,18 @@ void print_table(std::ostream& out, const KernelTable& table) {
     print_checks(out, table);
 }
 
-std::vector<std::string> faults(const KernelTable& table) {
+std::vector<std::string> kernel_failures(const KernelResults& table) {
     std::vector<std::string> found;
     const auto add = [&](std::int64_t count, const auto&... what) {
         if (count > 0) found.push_back(message(table.mesh, ", ", table.scene, ": ", count, what...));
     };
-    for (const KernelTable::Aimed& aimed : table.watertight) {
+    for (const KernelResults::Aimed& aimed : table.watertight) {
         if (!aimed.kernel.starts_with("duet")) continue;
         add(aimed.misses, " of our rays left the closed scene (", aimed.kernel, ")");
         add(aimed.faults.edge, " of our rays slipped through edges that they were aimed at (", aimed.kernel, ")");
         add(aimed.faults.wrong, " of our answers to rays aimed at edges are wrong (", aimed.kernel, ")");
     }
-    for (const KernelTable::JudgedWork& judged : table.judged) {
+    for (const KernelResults::CheckedWork& judged : table.judged) {
         add(judged.found.wrong, " of ", judged.found.rays, " of our answers to ", judged.work, " rays are wrong");
         add(judged.found.edge, " of ", judged.found.rays, " of our ", judged.work, " rays slipped through edges");
     }

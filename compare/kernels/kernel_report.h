@@ -1,8 +1,8 @@
 // The results of `compare kernels` as JSON and as text.
 #pragma once
 
+#include "compare/kernels/hit_oracle.h"
 #include "compare/kernels/interleave.h"
-#include "compare/kernels/judge.h"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -26,7 +26,7 @@ struct KernelRow {
     /// Million rays per second, seconds (build), or bytes per triangle (memory). The values are from the pair
     /// of adjacent measurements with the median ratio; without a peer, Duet's median.
     double ours = 0, peer = 0;
-    Range ratio;          ///< above 1: Duet is faster
+    MedianRange ratio;    ///< above 1: Duet is faster
     bool best = false;    ///< the peer's best setting for this work and thread count, with the lowest median ratio
     std::size_t rays = 0; ///< rays of one measurement
     int repeats = 0;      ///< pairs of measurements
@@ -35,44 +35,44 @@ struct KernelRow {
 };
 
 /// All results of one scene.
-struct KernelTable {
+struct KernelResults {
     std::string mesh, scene;
-    std::size_t triangles = 0, left_out = 0;
+    std::size_t triangles = 0, omitted_spheres = 0;
     int width = 0, height = 0;
     std::vector<KernelRow> rows;
     struct Aimed {
         std::string kernel;
         std::int64_t misses;
-        Faults faults;
+        KernelErrors faults;
     };
     std::vector<Aimed> watertight; ///< Duet first; empty if the scene is not closed or no rays were requested
-    struct JudgedWork {
+    struct CheckedWork {
         std::string work;
-        Faults found;
+        KernelErrors found;
     };
-    std::vector<JudgedWork> judged; ///< findings of the double-precision judge on a sample of Duet's answers
+    std::vector<CheckedWork> judged; ///< findings of the double-precision oracle on a sample of Duet's results
 };
 
 /// Marks the row with the lowest median ratio among rows of the same work and thread count.
 void mark_best(std::vector<KernelRow>& rows);
 
 /// Returns "ahead" if every repeat was above 1, "behind" if every one was below, else "even"; "too few" for
-/// fewer repeats than kLeastForVerdict.
-std::string verdict(const Range& ratio, int repeats);
+/// fewer repeats than kMinRepeatsForVerdict.
+std::string verdict(const MedianRange& ratio, int repeats);
 
 /// Returns the rows: mesh, scene, triangles, work, threads, ours, peer, peer_name, ratio {min, median, max}
 /// (null without a peer), best, repeats; for rays also rays and as_rendered; mismatches and leaks if they were
 /// counted.
-nlohmann::json rows_json(const KernelTable& table);
-nlohmann::json watertight_json(const KernelTable& table);
-nlohmann::json judged_json(const KernelTable& table);
+nlohmann::json rows_json(const KernelResults& table);
+nlohmann::json watertight_json(const KernelResults& table);
+nlohmann::json judged_json(const KernelResults& table);
 
 /// Prints one line for each work and thread count, Duet against the peer's best setting. Then prints one line
 /// for each work with the mismatches and leaks, for the peer's setting with the most of them; lines with
 /// unexplained ones come first.
-void print_table(std::ostream& out, const KernelTable& table);
+void print_table(std::ostream& out, const KernelResults& table);
 
-/// Returns Duet's errors, one line each: leaks, misses, edge faults, wrong answers. Empty if there are none.
-std::vector<std::string> faults(const KernelTable& table);
+/// Returns Duet's errors, one line each: leaks, misses, edge faults, wrong results. Empty if there are none.
+std::vector<std::string> kernel_failures(const KernelResults& table);
 
 } // namespace duet::compare

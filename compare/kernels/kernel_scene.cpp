@@ -35,7 +35,7 @@ void append(Mesh& all, const std::array<Vec3, 4>& quad) {
 struct Flattened {
     Mesh mesh;
     std::vector<std::optional<std::uint32_t>> first; ///< index of each object's first triangle; none for a sphere
-    std::size_t left_out = 0;                        ///< number of spheres omitted
+    std::size_t omitted_spheres = 0;                 ///< number of spheres omitted
 };
 
 /// Merges everything except spheres into one mesh in world space, at shutter opening.
@@ -44,14 +44,14 @@ Flattened flattened(const Scene& scene) {
     for (const Object& object : scene.objects) {
         const Shape& shape = scene.shapes[object.shape];
         if (std::holds_alternative<Sphere>(shape)) {
-            ++all.left_out;
+            ++all.omitted_spheres;
             all.first.emplace_back();
             continue;
         }
         all.first.emplace_back(static_cast<std::uint32_t>(all.mesh.triangles.size()));
         const Mat4 to_world = object_transform(object, static_cast<float>(scene.camera.shutter_open)).to_world;
-        const bool still = object.identity && !object.moving;
-        const auto placed = [&](Vec3 p) { return still ? p : transform_point(to_world, p); };
+        const bool fixed = object.identity && !object.moving;
+        const auto placed = [&](Vec3 p) { return fixed ? p : transform_point(to_world, p); };
         if (const auto* mesh = std::get_if<Mesh>(&shape)) {
             std::vector<Vec3> positions;
             for (const Vec3& p : mesh->positions) positions.push_back(placed(p));
@@ -68,7 +68,7 @@ Flattened flattened(const Scene& scene) {
 }
 
 /// Returns the scene's lights. Area lights refer to their triangles in the flattened mesh.
-std::vector<Light> lights_on(const Flattened& flat, std::vector<Light> lights) {
+std::vector<Light> lights_of_flattened(const Flattened& flat, std::vector<Light> lights) {
     for (Light& light : lights)
         if (auto* surface = std::get_if<SurfaceLight>(&light)) {
             const auto first = surface->object == kNoObject ? std::nullopt : flat.first[surface->object];
@@ -101,7 +101,7 @@ Camera clutter_camera() {
 }
 
 /// Returns a square area light above everything, facing down. In a closed room it is just below the ceiling.
-SurfaceLight lamp_above(const Box3d& box, bool enclosed) {
+SurfaceLight light_above(const Box3d& box, bool enclosed) {
     const Vec3d size = box.diagonal();
     const double side = 0.3 * max(size.x, size.z);
     const double height = enclosed ? box.high.y - 0.02 * size.y : box.high.y + max_component(size);
@@ -112,30 +112,30 @@ SurfaceLight lamp_above(const Box3d& box, bool enclosed) {
 }
 
 /// Adds the area light to a room. Its triangles become part of the room's mesh, which belongs to object `object`.
-SurfaceLight hang_lamp(Mesh& room, std::uint32_t object) {
-    SurfaceLight lamp = lamp_above(bounds_of(room), true);
-    lamp.object = object;
-    lamp.primitive = static_cast<std::uint32_t>(room.triangles.size());
-    append(room, corners(std::get<Quad>(lamp.shape)));
-    return lamp;
+SurfaceLight add_ceiling_light(Mesh& room, std::uint32_t object) {
+    SurfaceLight area_light = light_above(bounds_of(room), true);
+    area_light.object = object;
+    area_light.primitive = static_cast<std::uint32_t>(room.triangles.size());
+    append(room, corners(std::get<Quad>(area_light.shape)));
+    return area_light;
 }
 
 /// Returns the 27 transforms of the clutter arrangement for a mesh.
-std::vector<Mat4d> clutter_places(const Mesh& mesh) {
+std::vector<Mat4d> clutter_transforms(const Mesh& mesh) {
     constexpr double kScale = 0.7, kGrid = 1.1;
     const Box3d box = bounds_of(mesh);
     const double scale = kScale * 2 / max_component(box.diagonal());
-    std::vector<Mat4d> places;
+    std::vector<Mat4d> transforms;
     for (int copy = 0; copy < 27; ++copy) {
-        const Mat4d turned = random_rotation(mix_bits(static_cast<std::uint64_t>(copy) + 1));
-        const Vec3d place = Vec3d(copy % 3 - 1, copy / 3 % 3 - 1, copy / 9 - 1) * kGrid;
-        places.push_back(translation(place) * turned * scaling(Vec3d(scale, scale, scale)) *
-                         translation(-box.center()));
+        const Mat4d rotated = random_rotation(mix_bits(static_cast<std::uint64_t>(copy) + 1));
+        const Vec3d cell = Vec3d(copy % 3 - 1, copy / 3 % 3 - 1, copy / 9 - 1) * kGrid;
+        transforms.push_back(translation(cell) * rotated * scaling(Vec3d(scale, scale, scale)) *
+                             translation(-box.center()));
     }
-    return places;
+    return transforms;
 }
 
-Object placed(std::uint32_t shape, const Mat4d& to_world) {
+Object make_object(std::uint32_t shape, const Mat4d& to_world) {
     Object object;
     object.name = message("object ", shape);
     object.shape = shape;
@@ -168,23 +168,23 @@ KernelScene kernel_scene(std::string name, Arrangement arrangement, std::vector<
 /// Returns the clutter arrangement with the copies as instances. The room is the last object.
 KernelScene instanced(std::string name, Mesh mesh) {
     std::vector<Object> objects;
-    for (const Mat4d& place : clutter_places(mesh)) objects.push_back(placed(0, place));
-    objects.push_back(placed(1, Mat4d()));
+    for (const Mat4d& transform : clutter_transforms(mesh)) objects.push_back(make_object(0, transform));
+    objects.push_back(make_object(1, Mat4d()));
     Mesh room = enclosed({}, Vec3(), kClutterHalf);
-    const SurfaceLight lamp = hang_lamp(room, 27);
+    const SurfaceLight area_light = add_ceiling_light(room, 27);
     KernelScene result = kernel_scene(std::move(name), Arrangement::kInstances, {std::move(mesh), std::move(room)},
                                       std::move(objects), clutter_camera());
-    result.lights = {lamp};
+    result.lights = {area_light};
     return result;
 }
 
-KernelScene of_scene_file(const Scene& loaded) {
+KernelScene kernel_scene_of_file(const Scene& loaded) {
     Flattened flat = flattened(loaded);
     if (flat.mesh.triangles.empty()) throw Error(loaded.path.string() + ": found spheres at most, expected triangles");
-    std::vector<Light> lights = lights_on(flat, loaded.lights);
+    std::vector<Light> lights = lights_of_flattened(flat, loaded.lights);
     KernelScene result =
         make_kernel_scene(loaded.path.stem().string(), Arrangement::kAlone, std::move(flat.mesh), loaded.camera);
-    result.left_out = flat.left_out;
+    result.omitted_spheres = flat.omitted_spheres;
     if (!lights.empty()) result.lights = std::move(lights);
     return result;
 }
@@ -199,7 +199,7 @@ Arrangement parse_arrangement(const std::string& name) {
 
 const char* name_of(Arrangement arrangement) { return kNames[static_cast<std::size_t>(arrangement)]; }
 
-bool is_bare_mesh(const std::filesystem::path& file) { return lower_case_ending(file) == ".obj"; }
+bool is_bare_mesh(const std::filesystem::path& file) { return lower_case_extension(file) == ".obj"; }
 
 Mesh enclosed(Mesh mesh, Vec3 center, float half) {
     std::vector<Vec3> positions;
@@ -219,9 +219,9 @@ Mesh enclosed(Mesh mesh, Vec3 center, float half) {
 
 Mesh cluttered(const Mesh& mesh) {
     Mesh all;
-    for (const Mat4d& place : clutter_places(mesh)) {
+    for (const Mat4d& transform : clutter_transforms(mesh)) {
         std::vector<Vec3> positions;
-        for (const Vec3& p : mesh.positions) positions.push_back(Vec3(transform_point(place, Vec3d(p))));
+        for (const Vec3& p : mesh.positions) positions.push_back(Vec3(transform_point(transform, Vec3d(p))));
         append(all, positions, mesh.triangles);
     }
     return all;
@@ -235,10 +235,10 @@ std::size_t KernelScene::triangle_count() const {
 
 KernelScene make_kernel_scene(std::string name, Arrangement arrangement, Mesh mesh, const Camera& camera) {
     const bool room = arrangement != Arrangement::kAlone;
-    const SurfaceLight lamp = room ? hang_lamp(mesh, 0) : lamp_above(bounds_of(mesh), false);
+    const SurfaceLight area_light = room ? add_ceiling_light(mesh, 0) : light_above(bounds_of(mesh), false);
     KernelScene result =
-        kernel_scene(std::move(name), arrangement, {std::move(mesh)}, {placed(0, Mat4d())}, camera);
-    result.lights = {lamp};
+        kernel_scene(std::move(name), arrangement, {std::move(mesh)}, {make_object(0, Mat4d())}, camera);
+    result.lights = {area_light};
     return result;
 }
 
@@ -248,9 +248,9 @@ KernelScene load_kernel_scene(const std::filesystem::path& file, Arrangement arr
         if (arrangement != Arrangement::kAlone)
             throw Error(file.string() + ": a scene file is measured as it is; only a mesh (.obj) can be put in a " +
                         name_of(arrangement));
-        return of_scene_file(loaded);
+        return kernel_scene_of_file(loaded);
     }
-    Mesh& given = std::get<Mesh>(loaded.shapes.front()); // first shape; the ground follows (scene_around_mesh)
+    Mesh& given = std::get<Mesh>(loaded.shapes.front()); // first shape; the ground follows (default_scene_for_mesh)
     Mesh mesh;
     append(mesh, given.positions, given.triangles);
     const std::string name = file.stem().string();

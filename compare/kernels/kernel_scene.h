@@ -28,7 +28,7 @@ struct KernelScene {
     Camera camera;
     std::vector<Light> lights; ///< targets of the shadow rays, used in turn
     bool enclosed = false;     ///< every ray from the camera or a surface hits a triangle
-    std::size_t left_out = 0;  ///< number of spheres in the file, which are omitted
+    std::size_t omitted_spheres = 0; ///< number of spheres in the file, which are omitted
 
     const Mesh& mesh_of(std::size_t object) const {
         return std::get<Mesh>(scene->shapes[scene->objects[object].shape]);

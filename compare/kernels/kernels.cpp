@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr const char* kHowToGetThePeer =
+constexpr const char* kEmbreeMissing =
     "no peer: this program was built without Embree. Install it (Debian, Ubuntu: apt install libembree-dev), then "
     "configure and build again";
 
@@ -38,7 +38,7 @@ std::vector<EmbreeQuality> chosen_peers(const std::vector<std::string>& names) {
     if (names == std::vector<std::string>{"none"}) return {};
     const std::vector<EmbreeQuality> all = embree_qualities();
     if (all.empty()) {
-        if (!names.empty()) throw Error("--peers: found " + names.front() + ", but " + kHowToGetThePeer);
+        if (!names.empty()) throw Error("--peers: found " + names.front() + ", but " + kEmbreeMissing);
         return {};
     }
     std::vector<std::string> known;
@@ -72,10 +72,10 @@ std::vector<Case> cases_of(const KernelsOptions& options) {
     return cases;
 }
 
-json report_json(const KernelsOptions& options, const MeasureKernels& settings,
-                 const std::vector<KernelTable>& tables) {
+json report_json(const KernelsOptions& options, const KernelSettings& settings,
+                 const std::vector<KernelResults>& tables) {
     json rows = json::array(), watertight = json::array(), judged = json::array();
-    for (const KernelTable& table : tables) {
+    for (const KernelResults& table : tables) {
         for (json& row : rows_json(table)) rows.push_back(std::move(row));
         for (json& row : watertight_json(table)) watertight.push_back(std::move(row));
         for (json& row : judged_json(table)) judged.push_back(std::move(row));
@@ -98,7 +98,7 @@ json report_json(const KernelsOptions& options, const MeasureKernels& settings,
 
 int kernels(const KernelsOptions& options) {
     check_json_path(options.stats);
-    MeasureKernels settings;
+    KernelSettings settings;
     settings.works = chosen_works(options.works);
     settings.peers = chosen_peers(options.peers);
     settings.quality = raytrace::bvh_quality(options.bvh);
@@ -110,10 +110,10 @@ int kernels(const KernelsOptions& options) {
     settings.seed = options.seed;
     const std::vector<Case> cases = cases_of(options);
     const bool table_wanted = !options.quiet && options.stats != "-";
-    if (!options.quiet && embree_version().empty()) std::cerr << "compare: " << kHowToGetThePeer << '\n';
+    if (!options.quiet && embree_version().empty()) std::cerr << "compare: " << kEmbreeMissing << '\n';
 
     const InterruptFlag interrupt;
-    std::vector<KernelTable> tables;
+    std::vector<KernelResults> tables;
     ProgressBar bar("kernels", options.quiet);
     for (std::size_t i = 0; i < cases.size(); ++i) {
         const Control control{&interrupt.flag(), [&](double part) {
@@ -128,8 +128,8 @@ int kernels(const KernelsOptions& options) {
     }
     if (!options.stats.empty()) write_json(options.stats, report_json(options, settings, tables));
     int code = kExitOk;
-    for (const KernelTable& table : tables)
-        for (const std::string& fault : faults(table)) {
+    for (const KernelResults& table : tables)
+        for (const std::string& fault : kernel_failures(table)) {
             std::cerr << "compare: " << fault << '\n';
             code = kExitFailed;
         }

@@ -17,7 +17,7 @@ struct KernelsOptions {
     std::vector<std::string> works;                   ///< some of kWorks; empty: all
     std::vector<std::string> peers;                   ///< Embree's settings (name_of), or "none"; empty: all
     std::string bvh = "default";                      ///< build quality of Duet's BVH
-    PictureSize size{1920, 1080};                     ///< one camera ray per pixel
+    ImageSize size{1920, 1080};                       ///< one camera ray per pixel
     int threads = 0;                                  ///< for the multithreaded rows; 0: all hardware threads
     int repeats = 7;
     double seconds = 0.15;               ///< duration of one measurement in seconds
@@ -30,7 +30,7 @@ struct KernelsOptions {
 /// Names of the works: build, camera, camera-bulk, bounce, shadow.
 extern const std::vector<std::string> kWorks;
 
-/// Prints one table per scene. Returns 1 if any of Duet's answers is wrong or a ray leaked, 130 after an
+/// Prints one table per scene. Returns 1 if any of Duet's results is wrong or a ray leaked, 130 after an
 /// interrupt signal. Throws Error for files and names that cannot be used.
 int kernels(const KernelsOptions& options);
 

@@ -45,14 +45,14 @@ Subcommand add_kernels(CLI::App& app) {
                         "Measurements of each, in turns; under 5 there is no verdict (default 7)")
         ->check(CLI::Range(1, 10000));
     kernels->add_option("--seconds", options.seconds, "Length of one measurement of rays (default 0.15)")
-        ->check(number_within(1e-4, 1e4, "seconds from 1e-4 to 1e4"));
+        ->check(number_in_range(1e-4, 1e4, "seconds from 1e-4 to 1e4"));
     kernels
         ->add_option("--watertight", options.watertight,
                      "Rays aimed at points, edges and vertices from within, each judged in double precision, where the mesh "
                      "or room is closed; 0: none (default "
                      "1000000)")
         ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40));
-    kernels->add_option("--seed", options.seed, "Seed of all random numbers (default 0)")->check(whole_number());
+    kernels->add_option("--seed", options.seed, "Seed of all random numbers (default 0)")->check(unsigned_integer());
     kernels->add_option("--stats", options.stats, "Write the rows as JSON to this file (-: standard output)");
     kernels->add_flag("--quiet", options.quiet, "No table, no progress bar; faults are still explained");
     kernels->footer(
@@ -63,7 +63,7 @@ Subcommand add_kernels(CLI::App& app) {
                     "or leaks out of a closed room or mesh.") +
         kExitCodes);
     return {kernels, [all, size] {
-                if (!size->empty()) all->size = parse_picture_size(*size);
+                if (!size->empty()) all->size = parse_image_size(*size);
                 return compare::kernels(*all);
             }};
 }

@@ -15,13 +15,13 @@ const std::vector<std::string> kWorks{"build", "camera", "camera-bulk", "bounce"
 
 namespace {
 
-constexpr std::size_t kJudged = 20'000; ///< number of Duet's answers to each kind of ray that are judged
+constexpr std::size_t kMaxCheckedRays = 20'000; ///< number of Duet's results to each kind of ray that are judged
 constexpr double kBuildLimit = 40; ///< time limit for the builds with one thread count, as a multiple of `seconds`
 
 /// Divides the progress of one scene into equal steps.
-class Steps {
+class ProgressSteps {
 public:
-    Steps(const Control& whole, std::size_t count) : whole_(whole), share_(1 / static_cast<double>(count)) {}
+    ProgressSteps(const Control& whole, std::size_t count) : whole_(whole), share_(1 / static_cast<double>(count)) {}
     /// Returns the control of the next step.
     Control next() {
         const double begin = done_;
@@ -47,33 +47,33 @@ private:
     std::optional<EmbreeDevice> widest_, avx2_;
 };
 
-/// Rays, their query, and all tracers that answer it.
+/// Rays, their query, and all tracers that can run it.
 struct Work {
     std::string name;
     std::vector<Ray> rays;
     std::vector<Hit> ends; ///< for shadow rays
-    Questions questions() const { return {rays, ends}; }
+    RayQueries ray_queries() const { return {rays, ends}; }
     Tracer ours;
     std::vector<Tracer> peers;
-    // The fields below are computed from the answers to all rays.
+    // The fields below are computed from the results to all rays.
     std::vector<std::optional<Mismatches>> mismatches; ///< one per peer
     std::vector<Leaks> leaks;                          ///< one per peer; without peers, one for Duet alone
 };
 
 class SceneMeasurement {
 public:
-    SceneMeasurement(const KernelScene& scene, const MeasureKernels& settings, const Control& control)
-        : scene_(scene), settings_(settings), control_(control), judge_(*scene.scene),
+    SceneMeasurement(const KernelScene& scene, const KernelSettings& settings, const Control& control)
+        : scene_(scene), settings_(settings), control_(control), oracle_(*scene.scene),
           steps_(control, thread_counts().size() * settings.works.size() + 2) {
         table_.mesh = scene.mesh;
         table_.scene = name_of(scene.arrangement);
         table_.triangles = scene.triangle_count();
-        table_.left_out = scene.left_out;
+        table_.omitted_spheres = scene.omitted_spheres;
         table_.width = settings.size.width;
         table_.height = settings.size.height;
     }
 
-    KernelTable run() {
+    KernelResults run() {
         if (wanted("build"))
             for (const int threads : thread_counts()) measure_builds(threads);
         if (control_.stopped()) return table_;
@@ -83,7 +83,7 @@ public:
         steps_.next().report(1);
         for (const Work& work : works_)
             for (const int threads : thread_counts()) measure_rays(work, threads);
-        if (settings_.watertight > 0 && scene_.closed() && !control_.stopped()) aim_at_weak_places();
+        if (settings_.watertight > 0 && scene_.closed() && !control_.stopped()) test_watertightness();
         mark_best(table_.rows);
         return std::move(table_);
     }
@@ -97,20 +97,21 @@ private:
 
     void measure_builds(int threads) {
         const Control control = steps_.next();
-        const Timed ours = [&] {
-            const WorkWatch watch(threads);
+        const TimedWork ours = [&] {
+            const WorkStopwatch watch(threads);
             const raytrace::Accelerator built(*scene_.scene, threads, settings_.quality);
             return watch.seconds();
         };
         const Devices devices(settings_.peers, *scene_.scene, threads);
-        std::vector<Timed> peers;
+        std::vector<TimedWork> peers;
         for (const EmbreeQuality& quality : settings_.peers)
             peers.push_back([&devices, quality, threads] {
-                const WorkWatch watch(threads);
+                const WorkStopwatch watch(threads);
                 const EmbreeScene built(devices.of(quality), quality);
                 return watch.seconds();
             });
-        const Interleaved found = interleave(ours, peers, settings_.repeats, kBuildLimit * settings_.seconds, control);
+        const InterleavedTimings found =
+            interleave(ours, peers, settings_.repeats, kBuildLimit * settings_.seconds, control);
         if (control.stopped()) return;
         std::vector<std::string> names;
         for (const EmbreeQuality& quality : settings_.peers) names.push_back(full_name(name_of(quality)));
@@ -169,34 +170,34 @@ private:
         if (rays.empty() || control_.stopped()) return;
         works_.push_back({std::move(name), std::move(rays), std::move(ends), {}, {}, {}, {}});
         Work& work = works_.back(); // does not move, because the capacity is reserved
-        const Questions questions = work.questions();
-        work.ours = !questions.closest()         ? our_occluded(*accelerator_, work.rays, work.ends)
-                    : work.name == "camera-bulk" ? our_bulk(*accelerator_, work.rays)
-                                                 : our_closest(*accelerator_, work.rays);
-        const std::vector<Answer> ours = all_answers(work.ours, work.rays.size(), settings_.threads);
-        const std::size_t stride = (work.rays.size() + kJudged - 1) / kJudged;
-        table_.judged.push_back({work.name, judge_answers(judge_, questions, ours, stride, settings_.threads)});
+        const RayQueries ray_queries = work.ray_queries();
+        work.ours = !ray_queries.closest()       ? duet_occluded(*accelerator_, work.rays, work.ends)
+                    : work.name == "camera-bulk" ? duet_batched(*accelerator_, work.rays)
+                                                 : duet_closest(*accelerator_, work.rays);
+        const std::vector<RayResult> ours = trace_all(work.ours, work.rays.size(), settings_.threads);
+        const std::size_t stride = (work.rays.size() + kMaxCheckedRays - 1) / kMaxCheckedRays;
+        table_.judged.push_back({work.name, check_answers(oracle_, ray_queries, ours, stride, settings_.threads)});
         const std::int64_t our_leaks = leaks_of(work, ours);
-        work.peers = peers_at(work);
+        work.peers = peer_tracers(work);
         for (const Tracer& peer : work.peers) {
-            const std::vector<Answer> theirs = all_answers(peer, work.rays.size(), settings_.threads);
-            work.mismatches.push_back(compare_answers(judge_, questions, ours, theirs, settings_.threads));
+            const std::vector<RayResult> theirs = trace_all(peer, work.rays.size(), settings_.threads);
+            work.mismatches.push_back(compare_results(oracle_, ray_queries, ours, theirs, settings_.threads));
             work.leaks.push_back({our_leaks, leaks_of(work, theirs)});
         }
         if (work.peers.empty()) work.leaks.push_back({our_leaks, 0});
     }
 
     /// Returns tracers for all ways in which the peer can do a work.
-    std::vector<Tracer> peers_at(const Work& work) const {
+    std::vector<Tracer> peer_tracers(const Work& work) const {
         std::vector<Tracer> tracers;
-        const auto add = [&](std::size_t i, Tracer tracer, const std::string& more) {
-            tracer.name = full_name(name_of(settings_.peers[i])) +
-                          (tracer.name.empty() ? "" : " " + tracer.name) + more;
+        const auto add = [&](std::size_t i, Tracer tracer, const std::string& name_suffix) {
+            tracer.name =
+                full_name(name_of(settings_.peers[i])) + (tracer.name.empty() ? "" : " " + tracer.name) + name_suffix;
             tracers.push_back(std::move(tracer));
         };
         for (std::size_t i = 0; i < embree_.size(); ++i) {
             const EmbreeScene& embree = *embree_[i];
-            if (!work.questions().closest()) {
+            if (!work.ray_queries().closest()) {
                 add(i, embree.occluded(work.rays), "");
             } else if (work.name == "camera-bulk") {
                 for (const EmbreeForm form : embree_bulk_forms()) add(i, embree.closest(work.rays, form, true), "");
@@ -208,45 +209,46 @@ private:
         return tracers;
     }
 
-    std::int64_t leaks_of(const Work& work, const std::vector<Answer>& answers) const {
-        if (!scene_.enclosed || !work.questions().closest()) return 0;
-        return std::ranges::count_if(answers, [](const Answer& a) { return !a.hit(); });
+    std::int64_t leaks_of(const Work& work, const std::vector<RayResult>& ray_results) const {
+        if (!scene_.enclosed || !work.ray_queries().closest()) return 0;
+        return std::ranges::count_if(ray_results, [](const RayResult& a) { return !a.hit(); });
     }
 
     void measure_rays(const Work& work, int threads) {
         const Control control = steps_.next();
         if (control.stopped()) return;
-        std::vector<AnswerBlock> answers(block_count(work.rays.size()));
-        const auto timed = [&](const Tracer& tracer, const Portion& portion) -> Timed {
-            return [&, portion] { return trace_seconds(tracer, portion, threads, answers); };
+        std::vector<RayResultBlock> ray_results(block_count(work.rays.size()));
+        const auto timed = [&](const Tracer& tracer, const RaySubset& subset) -> TimedWork {
+            return [&, subset] { return trace_seconds(tracer, subset, threads, ray_results); };
         };
         // A short measurement determines how many rays take the requested time.
-        const Portion look = portion_of(work.rays.size(), 1e6, 0.1 * threads);
-        const double rate = static_cast<double>(look.rays) / timed(work.ours, look)();
-        const Portion portion = portion_of(work.rays.size(), rate, settings_.seconds);
-        std::vector<Timed> peers;
+        const RaySubset pilot = choose_ray_subset(work.rays.size(), 1e6, 0.1 * threads);
+        const double rate = static_cast<double>(pilot.rays) / timed(work.ours, pilot)();
+        const RaySubset subset = choose_ray_subset(work.rays.size(), rate, settings_.seconds);
+        std::vector<TimedWork> peers;
         std::vector<std::string> names;
         for (const Tracer& peer : work.peers) {
-            peers.push_back(timed(peer, portion));
+            peers.push_back(timed(peer, subset));
             names.push_back(peer.name);
         }
-        const Interleaved found = interleave(timed(work.ours, portion), peers, settings_.repeats, kNoLimit, control);
+        const InterleavedTimings found =
+            interleave(timed(work.ours, subset), peers, settings_.repeats, kNoLimit, control);
         if (control.stopped()) return;
         const std::size_t first = table_.rows.size();
         add_rows(work.name, threads, found, names,
-                 [&](double seconds) { return static_cast<double>(portion.rays) / seconds / 1e6; });
+                 [&](double seconds) { return static_cast<double>(subset.rays) / seconds / 1e6; });
         for (std::size_t i = first; i < table_.rows.size(); ++i) {
             KernelRow& row = table_.rows[i];
-            row.rays = portion.rays;
+            row.rays = subset.rays;
             if (!work.peers.empty()) row.mismatches = work.mismatches[i - first];
-            if (scene_.enclosed && work.questions().closest()) row.leaks = work.leaks[i - first];
+            if (scene_.enclosed && work.ray_queries().closest()) row.leaks = work.leaks[i - first];
         }
     }
 
     /// Adds one row per peer, or one for Duet alone.
     template <typename Figure>
-    void add_rows(const std::string& work, int threads, const Interleaved& found, const std::vector<std::string>& names,
-                  const Figure& figure) {
+    void add_rows(const std::string& work, int threads, const InterleavedTimings& found,
+                  const std::vector<std::string>& names, const Figure& figure) {
         KernelRow row;
         row.work = work;
         row.threads = threads;
@@ -262,9 +264,10 @@ private:
         }
     }
 
-    void aim_at_weak_places() {
-        std::vector<TracerFor> kernels{[&](std::span<const Ray> rays) { return our_closest(*accelerator_, rays); },
-                                       [&](std::span<const Ray> rays) { return our_bulk(*accelerator_, rays); }};
+    void test_watertightness() {
+        std::vector<TracerFactory> kernels{
+            [&](std::span<const Ray> rays) { return duet_closest(*accelerator_, rays); },
+            [&](std::span<const Ray> rays) { return duet_batched(*accelerator_, rays); }};
         std::vector<std::string> names{"duet", "duet bulk"};
         for (std::size_t i = 0; i < embree_.size(); ++i) {
             kernels.push_back([this, i](std::span<const Ray> rays) {
@@ -272,7 +275,7 @@ private:
             });
             names.push_back(full_name(name_of(settings_.peers[i])));
         }
-        const Watertight found = test_watertight(scene_, judge_, kernels, settings_.watertight, settings_.seed,
+        const Watertight found = test_watertight(scene_, oracle_, kernels, settings_.watertight, settings_.seed,
                                                  settings_.threads, steps_.next());
         for (std::size_t i = 0; i < names.size(); ++i)
             table_.watertight.push_back({names[i], found.kernels[i].misses, found.kernels[i].faults});
@@ -281,11 +284,11 @@ private:
     static constexpr double kNoLimit = 1e9; // seconds
 
     const KernelScene& scene_;
-    const MeasureKernels& settings_;
+    const KernelSettings& settings_;
     const Control& control_;
-    Judge judge_;
-    Steps steps_;
-    KernelTable table_;
+    HitOracle oracle_;
+    ProgressSteps steps_;
+    KernelResults table_;
     std::optional<raytrace::Accelerator> accelerator_;
     std::optional<Devices> devices_;
     std::vector<std::unique_ptr<EmbreeScene>> embree_;
@@ -294,7 +297,7 @@ private:
 
 } // namespace
 
-KernelTable measure_kernels(const KernelScene& scene, const MeasureKernels& settings, const Control& control) {
+KernelResults measure_kernels(const KernelScene& scene, const KernelSettings& settings, const Control& control) {
     return SceneMeasurement(scene, settings, control).run();
 }
 

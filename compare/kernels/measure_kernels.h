@@ -12,11 +12,11 @@
 
 namespace duet::compare {
 
-struct MeasureKernels {
+struct KernelSettings {
     std::vector<std::string> works;   ///< some of kWorks
     std::vector<EmbreeQuality> peers; ///< empty: Duet alone
     raytrace::BvhQuality quality = raytrace::BvhQuality::kDefault; ///< build quality of Duet's BVH
-    PictureSize size{1920, 1080};
+    ImageSize size{1920, 1080};
     int threads = 1; ///< threads of the second set of rows; 1: no second set
     int repeats = 7;
     double seconds = 0.15;       ///< duration of one measurement of rays
@@ -25,6 +25,6 @@ struct MeasureKernels {
 };
 
 /// Measures the scene. The result is meaningless if `control` was stopped.
-KernelTable measure_kernels(const KernelScene& scene, const MeasureKernels& settings, const Control& control);
+KernelResults measure_kernels(const KernelScene& scene, const KernelSettings& settings, const Control& control);
 
 } // namespace duet::compare

@@ -25,7 +25,7 @@ int even_bits(int code) {
 }
 
 /// Returns the position of the i-th pixel within a whole tile.
-std::pair<int, int> place_in_tile(int i, PixelOrder order) {
+std::pair<int, int> pixel_in_tile(int i, PixelOrder order) {
     static_assert(kTile == 16);
     if (order == PixelOrder::kRows) return {i % kTile, i / kTile};
     return {even_bits(i), even_bits(i >> 1)};
@@ -49,15 +49,15 @@ std::vector<Made> collect(std::span<const Ray> rays, int threads,
 }
 
 /// Returns the surface point of the ray's first hit.
-std::optional<SurfacePoint> first_point(const KernelScene& scene, const raytrace::Accelerator& accelerator,
-                                        const Ray& ray) {
+std::optional<SurfacePoint> first_surface_point(const KernelScene& scene, const raytrace::Accelerator& accelerator,
+                                                const Ray& ray) {
     const Hit hit = accelerator.closest(ray);
     if (!hit.valid()) return std::nullopt;
     return surface_point(*scene.scene, ray, hit);
 }
 
 /// Returns two random samples in [0, 1) that belong to the ray.
-Vec2 numbers(std::uint64_t seed, std::size_t index) {
+Vec2 random_samples(std::uint64_t seed, std::size_t index) {
     const std::uint64_t bits = hash_combine(mix_bits(seed), index);
     return {unit_float(high_bits(bits)), unit_float(low_bits(bits))};
 }
@@ -73,7 +73,7 @@ std::vector<Ray> camera_rays(const Camera& camera, int width, int height, PixelO
         auto next = static_cast<std::size_t>(y0) * static_cast<std::size_t>(width); // the rows of tiles above are full
         for (int column = 0; column < columns; ++column) {
             for (int i = 0; i < kTile * kTile; ++i) {
-                const auto [x_in_tile, y_in_tile] = place_in_tile(i, order);
+                const auto [x_in_tile, y_in_tile] = pixel_in_tile(i, order);
                 const int x = column * kTile + x_in_tile, y = y0 + y_in_tile;
                 if (x < width && y < height) rays[next++] = model.ray({x + 0.5, y + 0.5});
             }
@@ -85,24 +85,24 @@ std::vector<Ray> camera_rays(const Camera& camera, int width, int height, PixelO
 std::vector<Ray> bounce_rays(const KernelScene& scene, const raytrace::Accelerator& accelerator,
                              std::span<const Ray> rays, std::uint64_t seed, int threads) {
     return collect<Ray>(rays, threads, [&](const Ray& ray, std::size_t index) -> std::optional<Ray> {
-        const std::optional<SurfacePoint> point = first_point(scene, accelerator, ray);
+        const std::optional<SurfacePoint> point = first_surface_point(scene, accelerator, ray);
         if (!point) return std::nullopt;
         const Vec3 n = dot(point->ng, ray.direction) > 0 ? -point->ng : point->ng;
-        const Vec3 w = normalize(frame_from_normal(n).to_world(cosine_hemisphere(numbers(seed, index))));
+        const Vec3 w = normalize(frame_from_normal(n).to_world(cosine_hemisphere(random_samples(seed, index))));
         return Ray{offset_origin(*point, w), w};
     });
 }
 
 namespace {
 
-struct Aimed {
+struct AimedRay {
     Ray ray;
     Hit end;
 };
 
 /// Returns the triangle that a ray to the light ends on. For a quad, it is the one of its two triangles that
 /// the ray hits.
-Hit end_on(const SurfaceLight& light, const Ray& ray, float distance) {
+Hit light_hit(const SurfaceLight& light, const Ray& ray, float distance) {
     Hit end;
     end.t = distance;
     end.object = light.object;
@@ -126,25 +126,25 @@ Hit end_on(const SurfaceLight& light, const Ray& ray, float distance) {
 
 ShadowRays shadow_rays(const KernelScene& scene, const raytrace::Accelerator& accelerator, std::span<const Ray> rays,
                        std::uint64_t seed, int threads) {
-    constexpr float kShort = 1 - 1e-4f;
-    const auto make = [&](const Ray& ray, std::size_t index) -> std::optional<Aimed> {
-        const std::optional<SurfacePoint> point = first_point(scene, accelerator, ray);
+    constexpr float kShadowRayScale = 1 - 1e-4f;
+    const auto make = [&](const Ray& ray, std::size_t index) -> std::optional<AimedRay> {
+        const std::optional<SurfacePoint> point = first_surface_point(scene, accelerator, ray);
         if (!point) return std::nullopt;
         const Light& light = scene.lights[index % scene.lights.size()];
-        const std::optional<LightSample> s = sample_light(light, point->p, numbers(~seed, index));
+        const std::optional<LightSample> s = sample_light(light, point->p, random_samples(~seed, index));
         if (!s) return std::nullopt;
         const bool lit = dot(point->ng, s->wi) * dot(point->ng, ray.direction) < 0; // the side of the incoming ray
         if (!lit) return std::nullopt;
-        Aimed aimed{{offset_origin(*point, s->wi), s->wi}, {}};
+        AimedRay aimed{{offset_origin(*point, s->wi), s->wi}, {}};
         aimed.end.t = s->distance;
         if (const auto* surface = std::get_if<SurfaceLight>(&light))
-            aimed.end = end_on(*surface, aimed.ray, s->distance);
-        aimed.ray.t_max = s->distance * kShort;
+            aimed.end = light_hit(*surface, aimed.ray, s->distance);
+        aimed.ray.t_max = s->distance * kShadowRayScale;
         if (aimed.end.object == kNoObject) aimed.end.t = aimed.ray.t_max;
         return aimed;
     };
     ShadowRays result;
-    for (const Aimed& aimed : collect<Aimed>(rays, threads, make)) {
+    for (const AimedRay& aimed : collect<AimedRay>(rays, threads, make)) {
         result.rays.push_back(aimed.ray);
         result.ends.push_back(aimed.end);
     }

@@ -17,7 +17,7 @@ namespace duet::compare {
 
 /// A kernel's result for one ray: the distance and triangle of the closest hit; for a shadow ray, only whether
 /// it is blocked.
-struct Answer {
+struct RayResult {
     static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
     float t = std::numeric_limits<float>::infinity();
@@ -27,11 +27,11 @@ struct Answer {
     bool hit() const { return triangle != kNone; }
 };
 
-/// Rays are traced in blocks of kBlock. Each block's answers have their own cache lines. Otherwise false
+/// Rays are traced in blocks of kBlock. Each block's results have their own cache lines. Otherwise false
 /// sharing between threads would prevent scaling.
 inline constexpr std::size_t kBlock = 256;
-struct alignas(64) AnswerBlock {
-    std::array<Answer, kBlock> answers;
+struct alignas(64) RayResultBlock {
+    std::array<RayResult, kBlock> ray_results;
 };
 
 inline std::size_t block_count(std::size_t rays) { return (rays + kBlock - 1) / kBlock; }
@@ -42,20 +42,20 @@ inline std::span<const Ray> block_of(std::span<const Ray> rays, std::size_t bloc
 /// A function that traces one block of the set; only this differs between kernels. It may be called from any thread.
 struct Tracer {
     std::string name; ///< "embree 3.13.5 medium packets 16"
-    std::function<void(std::size_t block, Answer* answers)> trace;
+    std::function<void(std::size_t block, RayResult* ray_results)> trace;
 };
 
 /// Returns a tracer for closest hits by the accelerator's public functions, called exactly as the path tracer
 /// calls them. The rays and the accelerator must outlive the tracer.
-Tracer our_closest(const raytrace::Accelerator& accelerator, std::span<const Ray> rays);
-/// Rays per call of our_bulk's tracer, as when the path tracer traces camera rays.
+Tracer duet_closest(const raytrace::Accelerator& accelerator, std::span<const Ray> rays);
+/// Rays per call of duet_batched's tracer, as when the path tracer traces camera rays.
 inline constexpr std::size_t kBatch = 64;
-Tracer our_bulk(const raytrace::Accelerator& accelerator, std::span<const Ray> rays);
+Tracer duet_batched(const raytrace::Accelerator& accelerator, std::span<const Ray> rays);
 /// Returns a tracer for occlusion. `ends` is what each ray is aimed at, which does not block it
 /// (`Accelerator::occluded`).
-Tracer our_occluded(const raytrace::Accelerator& accelerator, std::span<const Ray> rays, std::span<const Hit> ends);
+Tracer duet_occluded(const raytrace::Accelerator& accelerator, std::span<const Ray> rays, std::span<const Hit> ends);
 
-/// Returns a tracer's answers to all rays of a set, in order.
-std::vector<Answer> all_answers(const Tracer& tracer, std::size_t rays, int threads);
+/// Returns a tracer's results to all rays of a set, in order.
+std::vector<RayResult> trace_all(const Tracer& tracer, std::size_t rays, int threads);
 
 } // namespace duet::compare

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/system/control.h"
-#include "compare/kernels/judge.h"
+#include "compare/kernels/hit_oracle.h"
 #include "compare/kernels/kernel_scene.h"
 
 #include <functional>
@@ -11,7 +11,7 @@
 namespace duet::compare {
 
 /// Returns a kernel's tracer for the given rays.
-using TracerFor = std::function<Tracer(std::span<const Ray>)>;
+using TracerFactory = std::function<Tracer(std::span<const Ray>)>;
 
 /// Results of the rays, per kernel. One third of the rays is aimed at random points of random triangles, one
 /// third at points of their edges, and one third at vertices. They start at points inside a closed mesh or
@@ -21,7 +21,7 @@ using TracerFor = std::function<Tracer(std::span<const Ray>)>;
 struct Watertight {
     struct Kernel {
         std::int64_t misses = 0; ///< rays without a hit, which escaped
-        Faults faults;           ///< over all rays: slipped through an edge to what is behind, or otherwise wrong
+        KernelErrors faults;     ///< over all rays: slipped through an edge to what is behind, or otherwise wrong
     };
     std::int64_t rays = 0;
     std::vector<Kernel> kernels; ///< in the order given
@@ -30,10 +30,11 @@ struct Watertight {
 /// Runs the test. The scene must be closed (KernelScene::closed). The rays depend only on the seed and their
 /// number. The result is meaningless if `control` was stopped. Throws Error if no point inside was found
 /// because the mesh is too thin.
-Watertight test_watertight(const KernelScene& scene, const Judge& judge, const std::vector<TracerFor>& kernels,
+Watertight test_watertight(const KernelScene& scene, const HitOracle& oracle, const std::vector<TracerFactory>& kernels,
                            std::int64_t rays, std::uint64_t seed, int threads, const Control& control);
 
 /// Returns points inside a closed mesh, where the winding number of the double-precision ray is above 0.
-std::vector<Vec3> points_inside(const KernelScene& scene, const Judge& judge, std::size_t count, std::uint64_t seed);
+std::vector<Vec3> points_inside(const KernelScene& scene, const HitOracle& oracle, std::size_t count,
+                                std::uint64_t seed);
 
 } // namespace duet::compare

@@ -38,42 +38,42 @@ private:
 };
 
 /// Renders and measures everything. After an interrupt signal, the result is incomplete and must not be used.
-LadderResult find_out(const Scene& scene, const View& view, const LadderOptions& options,
-                      const InterruptFlag& interrupt) {
+LadderResult measure_ladder(const Scene& scene, const View& view, const LadderOptions& options,
+                            const InterruptFlag& interrupt) {
     const Stopwatch watch;
     const PreparedPair pair = prepare_pair(scene, options.settings);
     LadderResult result{scene, view, options.settings, plan_rungs(scene, pair), {}, {}, {}, {}, {}, 0};
-    const double climbing_cost = 1.5 * pair.raytrace_settings.samples_per_pixel;
-    Tasks tasks(measuring_cost(result.plan) + climbing_cost, options.quiet, interrupt);
+    const double evaluation_cost = 1.5 * pair.raytrace_settings.samples_per_pixel;
+    Tasks tasks(measuring_cost(result.plan) + evaluation_cost, options.quiet, interrupt);
     result.rungs = measure_rungs(scene, view, result.plan, options.settings.threads,
                                  [&](double cost) { return tasks.next(cost); });
     const MeasuredQuantity& everything = result.rungs.back().front();
-    Control control = tasks.next(climbing_cost);
-    result.pictures = climb(everything.raster.picture, pair, view, control);
+    Control control = tasks.next(evaluation_cost);
+    result.images = evaluate_ladder(everything.raster.image, pair, view, control);
     if (control.stopped()) return result;
-    result.metrics = image_metrics(everything.raster.picture, everything.raytrace.picture, Encoding::kLinear,
-                                   options.settings.threads);
-    result.shares = shares(result.pictures);
-    result.map = map_causes(result.pictures);
+    result.metrics =
+        image_metrics(everything.raster.image, everything.raytrace.image, Encoding::kLinear, options.settings.threads);
+    result.shares = shares(result.images);
+    result.map = map_causes(result.images);
     result.seconds = watch.seconds();
     return result;
 }
 
-void write_pictures(const fs::path& folder, const LadderResult& result) {
+void write_images(const fs::path& folder, const LadderResult& result) {
     for (std::size_t k = 0; k < kRungCount; ++k)
         for (const MeasuredQuantity& q : result.rungs[k]) {
-            write_image(folder / message(k + 1, '-', q.name, "-raster.png"), q.raster.picture);
-            write_image(folder / message(k + 1, '-', q.name, "-raytrace.png"), q.raytrace.picture);
+            write_image(folder / message(k + 1, '-', q.name, "-raster.png"), q.raster.image);
+            write_image(folder / message(k + 1, '-', q.name, "-raytrace.png"), q.raytrace.image);
         }
-    const double range = difference_range(result.pictures.first, result.pictures.picture(kRungCount));
+    const double range = difference_range(result.images.first, result.images.image(kRungCount));
     for (std::size_t k = 0; k <= kRungCount; ++k) {
-        const ImageRgb picture = result.pictures.picture(k);
-        write_image(folder / message("picture-", k, ".png"), picture);
+        const ImageRgb image = result.images.image(k);
+        write_image(folder / message("picture-", k, ".png"), image);
         if (k > 0)
             write_image(folder / message("change-", k, ".png"),
-                        difference_picture(result.pictures.picture(k - 1), picture, range));
+                        difference_image(result.images.image(k - 1), image, range));
     }
-    write_image(folder / "cause.png", cause_picture(result.map));
+    write_image(folder / "cause.png", cause_image(result.map));
 }
 
 } // namespace
@@ -85,11 +85,11 @@ int ladder(const LadderOptions& options) {
     const fs::path folder = make_folder(options.folder);
     const View view{scene.camera, options.size.width > 0 ? options.size.width : scene.width,
                     options.size.height > 0 ? options.size.height : scene.height};
-    const LadderResult result = find_out(scene, view, options, interrupt);
+    const LadderResult result = measure_ladder(scene, view, options, interrupt);
     if (interrupt.raised()) return kExitInterrupted;
 
     const nlohmann::json report = ladder_json(result);
-    write_pictures(folder, result);
+    write_images(folder, result);
     write_json(folder / "report.json", report);
     write_file(folder / "index.html", ladder_page(result, report));
     if (!options.stats.empty()) write_json(options.stats, report);

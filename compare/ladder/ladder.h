@@ -1,7 +1,7 @@
 // `compare ladder`: compares both pipelines rung by rung and attributes the difference of their images to causes.
 #pragma once
 
-#include "compare/pipeline.h"
+#include "compare/renderer.h"
 
 #include <filesystem>
 #include <string>
@@ -10,8 +10,8 @@ namespace duet::compare {
 
 struct LadderOptions {
     std::filesystem::path scene, folder;
-    PictureSize size{0, 0};    ///< 0: the scene's size
-    PipelineSettings settings; ///< an odd raytrace_spp is rounded up, because the samples form two halves
+    ImageSize size{0, 0};        ///< 0: the scene's size
+    ComparisonSettings settings; ///< an odd raytrace_spp is rounded up, because the samples form two halves
     std::string stats;         ///< file for a copy of report.json; "-" for standard output; empty: none
     bool quiet = false;        ///< no progress bar, no table
 };

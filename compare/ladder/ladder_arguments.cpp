@@ -15,7 +15,7 @@ Subcommand add_ladder(CLI::App& app) {
     const auto all = std::make_shared<LadderOptions>();
     const auto size = std::make_shared<std::string>();
     LadderOptions& options = *all;
-    PipelineSettings& settings = options.settings;
+    ComparisonSettings& settings = options.settings;
     ladder->add_option("SCENE", options.scene, "A scene file (.json) or a bare mesh (.obj)")->required();
     ladder->add_option("-o,--output", options.folder, "The folder for index.html, report.json and the pictures")
         ->required();
@@ -31,7 +31,7 @@ Subcommand add_ladder(CLI::App& app) {
                      "The path tracer's scattering events at most: 0 emission only, 1 direct light (default 64)")
         ->check(CLI::Range(0, 1 << 20));
     ladder->add_option("--threads", settings.threads, "Threads (default: all)")->check(CLI::Range(1, 1024));
-    ladder->add_option("--seed", settings.seed, "Seed of all random numbers (default 0)")->check(whole_number());
+    ladder->add_option("--seed", settings.seed, "Seed of all random numbers (default 0)")->check(unsigned_integer());
     ladder->add_option("--stats", options.stats,
                        "Write the figures of report.json to this file too (-: standard output)");
     ladder->add_flag("--quiet", options.quiet, "No progress bar, no table");
@@ -39,7 +39,7 @@ Subcommand add_ladder(CLI::App& app) {
                                "then open out/index.html in a browser.") +
                    kExitCodes);
     return {ladder, [all, size] {
-                if (!size->empty()) all->size = parse_picture_size(*size);
+                if (!size->empty()) all->size = parse_image_size(*size);
                 return compare::ladder(*all);
             }};
 }

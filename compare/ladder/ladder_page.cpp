@@ -37,11 +37,11 @@ std::string plane(const Image<std::uint8_t>& image) {
     return encode_plane(std::vector<std::uint32_t>(image.begin(), image.end()), image.width(), 1);
 }
 
-json rung_pictures(const MeasuredRung& rung, int factor) {
+json rung_images(const MeasuredRung& rung, int factor) {
     json list = json::array();
     for (const MeasuredQuantity& q : rung)
         list.push_back(
-            {{"raster", data_url(q.raster.picture, factor)}, {"raytrace", data_url(q.raytrace.picture, factor)}});
+            {{"raster", data_url(q.raster.image, factor)}, {"raytrace", data_url(q.raytrace.image, factor)}});
     return list;
 }
 
@@ -54,15 +54,15 @@ json cause_colors() {
 } // namespace
 
 std::string ladder_page(const LadderResult& result, const json& report) {
-    const LadderPictures& pictures = result.pictures;
+    const LadderImages& images = result.images;
     const int factor = (result.view.width + kWidest - 1) / kWidest;
-    const double range = difference_range(pictures.first, pictures.picture(kRungCount));
+    const double range = difference_range(images.first, images.image(kRungCount));
     json steps = json::array(), changes = json::array(), rungs = json::array();
     for (std::size_t k = 0; k <= kRungCount; ++k) {
-        steps.push_back(data_url(pictures.picture(k), factor));
+        steps.push_back(data_url(images.image(k), factor));
         if (k == 0) continue;
-        changes.push_back(data_url(difference_picture(pictures.picture(k - 1), pictures.picture(k), range), factor));
-        rungs.push_back(rung_pictures(result.rungs[k - 1], factor));
+        changes.push_back(data_url(difference_image(images.image(k - 1), images.image(k), range), factor));
+        rungs.push_back(rung_images(result.rungs[k - 1], factor));
     }
     const std::string title = result.scene.path.filename().string();
     return make_page(kLadderSource, title,

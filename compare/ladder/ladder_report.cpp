@@ -25,7 +25,7 @@ json shares_json(const LadderResult& result) {
     for (std::size_t i = 0; i < kCauseCount; ++i)
         list.push_back({{"cause", i == kNoise ? "noise" : kRungNames[i].id},
                         {"title", cause_title(i)},
-                        {"share", result.shares.none ? json(nullptr) : json(result.shares.share[i])},
+                        {"share", result.shares.negligible ? json(nullptr) : json(result.shares.share[i])},
                         {"largest_in", result.map.pixels[i]}});
     return list;
 }
@@ -72,7 +72,7 @@ json rung_json(const LadderResult& result, std::size_t k) {
             {"id", kRungNames[k].id},
             {"title", kRungNames[k].title},
             {"note", plan.note},
-            {"ways", {{"raster", plan.raster_way}, {"raytrace", plan.raytrace_way}}},
+            {"ways", {{"raster", plan.raster_method}, {"raytrace", plan.raytrace_method}}},
             {"quantities", quantities},
             {"code", code_json(static_cast<int>(k) + 1)}};
 }
@@ -102,8 +102,8 @@ int lines_of(std::size_t k, std::string_view side) {
 void print_row(std::ostream& out, std::size_t k, bool first, const MeasuredQuantity* q) {
     out << "  " << k + 1 << ' ' << std::left << std::setw(14) << (q ? q->name : kRungNames[k].id) << std::right
         << std::setw(16) << (q ? error_text(*q) : "-") << std::setw(12)
-        << (q ? readable_seconds(q->raster.seconds) : "-") << std::setw(12)
-        << (q ? readable_seconds(q->raytrace.seconds) : "-");
+        << (q ? format_duration(q->raster.seconds) : "-") << std::setw(12)
+        << (q ? format_duration(q->raytrace.seconds) : "-");
     if (first)
         out << std::setw(10) << lines_of(k, "raster") << std::setw(10) << lines_of(k, "raytrace") << std::setw(10)
             << lines_of(k, "both");
@@ -119,7 +119,7 @@ void print_rung(std::ostream& out, const LadderResult& result, std::size_t k) {
 
 void print_shares(std::ostream& out, const LadderResult& result) {
     out << "where the difference comes from, each rung's approximation replaced in this order:\n";
-    if (result.shares.none) {
+    if (result.shares.negligible) {
         out << "  nowhere: the pictures are equal but for rounding\n";
         return;
     }
@@ -151,13 +151,13 @@ json ladder_json(const LadderResult& result) {
             {"seconds", result.seconds},
             {"metrics", metrics_json(result.metrics, "raster", "raytrace")},
             {"shares", shares_json(result)},
-            {"shares_sum", result.shares.none ? json(nullptr) : json(result.shares.sum)},
+            {"shares_sum", result.shares.negligible ? json(nullptr) : json(result.shares.sum)},
             {"difference_rms", result.shares.rms},
-            {"nothing_to_explain", result.shares.none},
+            {"nothing_to_explain", result.shares.negligible},
             {"visible_pixels", result.map.visible},
             {"rungs", rungs},
             {"frame", code_json(0)},
-            {"invalid_samples", result.pictures.invalid_samples}};
+            {"invalid_samples", result.images.invalid_samples}};
 }
 
 void print_ladder(std::ostream& out, const LadderResult& result) {
@@ -169,8 +169,8 @@ void print_ladder(std::ostream& out, const LadderResult& result) {
     for (const char* const column : {"raster", "raytrace", "both"}) out << std::setw(10) << column;
     out << '\n';
     for (std::size_t k = 0; k < kRungCount; ++k) print_rung(out, result, k);
-    if (result.pictures.invalid_samples > 0)
-        out << result.pictures.invalid_samples << " samples were NaN, infinite or negative, and were dropped\n";
+    if (result.images.invalid_samples > 0)
+        out << result.images.invalid_samples << " samples were NaN, infinite or negative, and were dropped\n";
 }
 
 } // namespace duet::compare

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/scene/scene.h"
-#include "compare/ladder/measure.h"
+#include "compare/ladder/measure_rungs.h"
 #include "compare/ladder/shares.h"
 #include "compare/metrics/image_metrics.h"
 
@@ -16,10 +16,10 @@ namespace duet::compare {
 struct LadderResult {
     const Scene& scene;
     View view;
-    PipelineSettings settings;
+    ComparisonSettings settings;
     std::array<RungPlan, kRungCount> plan;
     std::array<MeasuredRung, kRungCount> rungs;
-    LadderPictures pictures;
+    LadderImages images;
     Shares shares;
     CauseMap map;
     ImageMetrics metrics; ///< of the rasterizer's image against the path tracer's

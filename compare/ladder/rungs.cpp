@@ -4,58 +4,63 @@ namespace duet::compare {
 
 namespace {
 
-RenderFunction renderer(const raster::Prepared& prepared, const raster::Settings& settings) {
+RenderFunction render_function(const raster::RasterScene& prepared, const raster::RasterSettings& settings) {
     return [=](const View& view, Control& control) { return raster::render(prepared, view, settings, control); };
 }
-RenderFunction renderer(const raytrace::Prepared& prepared, const raytrace::Settings& settings) {
+RenderFunction render_function(const raytrace::PathTracerScene& prepared,
+                               const raytrace::PathTracerSettings& settings) {
     return [=](const View& view, Control& control) { return raytrace::render(prepared, view, settings, control); };
 }
 
-Quantity quantity(std::string name, const PreparedPair& pair, const raster::Settings& raster,
-                  const raytrace::Settings& raytrace) {
-    return {std::move(name), renderer(pair.raster, raster), renderer(pair.raytrace, raytrace), raster.samples_per_pixel,
-            raytrace.samples_per_pixel};
+RungRenderers make_renderers(std::string name, const PreparedPair& pair, const raster::RasterSettings& raster,
+                             const raytrace::PathTracerSettings& raytrace) {
+    return {std::move(name), render_function(pair.raster, raster), render_function(pair.raytrace, raytrace),
+            raster.samples_per_pixel, raytrace.samples_per_pixel};
 }
 
-Quantity hits(const PreparedPair& pair) {
-    raster::Settings raster = pair.raster_settings;
+RungRenderers hit_renderers(const PreparedPair& pair) {
+    raster::RasterSettings raster = pair.raster_settings;
     raster.samples_per_pixel = 1;
     raster.shading = raster::Shading::kDepth; // cheapest shading: only the hits are used
     raster.aovs.hit = true;
-    raytrace::Settings raytrace = pair.raytrace_settings;
+    raytrace::PathTracerSettings raytrace = pair.raytrace_settings;
     raytrace.samples_per_pixel = 1;
     raytrace.sampler = SamplerKind::kCenter;
     raytrace.integrator = raytrace::Integrator::kNormal;
     raytrace.aovs.hit = true;
-    return quantity("hits", pair, raster, raytrace);
+    return make_renderers("hits", pair, raster, raytrace);
 }
 
-Quantity surface(const char* name, const PreparedPair& pair, raster::Shading shading, raytrace::Integrator integrator) {
-    raster::Settings raster = pair.raster_settings;
+RungRenderers surface_renderers(const char* name, const PreparedPair& pair, raster::Shading shading,
+                                raytrace::Integrator integrator) {
+    raster::RasterSettings raster = pair.raster_settings;
     raster.shading = shading;
-    raytrace::Settings raytrace = pair.raytrace_settings;
+    raytrace::PathTracerSettings raytrace = pair.raytrace_settings;
     raytrace.integrator = integrator;
-    return quantity(name, pair, raster, raytrace);
+    return make_renderers(name, pair, raster, raytrace);
 }
 
 /// Renders some components of the light alone. `environment` sets the settings of that name.
-Quantity light(const char* name, const PreparedPair& pair, const raster::PartSet& parts,
-               raytrace::Integrator integrator, bool environment) {
-    raster::Settings raster = pair.raster_settings;
-    raster.parts = parts;
+RungRenderers light_renderers(const char* name, const PreparedPair& pair, const raster::LightComponentSet& parts,
+                              raytrace::Integrator integrator, bool environment) {
+    raster::RasterSettings raster = pair.raster_settings;
+    raster.components = parts;
     raster.environment = environment;
-    raytrace::Settings raytrace = pair.raytrace_settings;
+    raytrace::PathTracerSettings raytrace = pair.raytrace_settings;
     raytrace.integrator = integrator;
     raytrace.environment = environment;
-    return quantity(name, pair, raster, raytrace);
+    return make_renderers(name, pair, raster, raytrace);
 }
 
-constexpr raster::PartSet kLights{.emission = true, .direct = true, .environment = false, .reflection = false};
-constexpr raster::PartSet kEnvironment{.emission = false, .direct = false, .environment = true, .reflection = false};
-constexpr raster::PartSet kReflection{.emission = false, .direct = false, .environment = false, .reflection = true};
+constexpr raster::LightComponentSet kLights{
+    .emission = true, .direct = true, .environment = false, .reflection = false};
+constexpr raster::LightComponentSet kEnvironment{
+    .emission = false, .direct = false, .environment = true, .reflection = false};
+constexpr raster::LightComponentSet kReflection{
+    .emission = false, .direct = false, .environment = false, .reflection = true};
 
 /// Returns the rung, or only the note `absent` if the scene does not have the quantity.
-RungPlan if_present(bool present, RungPlan rung, const char* absent) {
+RungPlan rung_if_present(bool present, RungPlan rung, const char* absent) {
     if (present) return rung;
     return {{}, "", "", absent};
 }
@@ -64,10 +69,10 @@ constexpr const char* kNoLights = "The scene has no light but, perhaps, its envi
 
 } // namespace
 
-PreparedPair prepare_pair(const Scene& scene, const PipelineSettings& common) {
-    raster::Settings raster;
+PreparedPair prepare_pair(const Scene& scene, const ComparisonSettings& common) {
+    raster::RasterSettings raster;
     raster.samples_per_pixel = common.raster_spp;
-    raytrace::Settings raytrace;
+    raytrace::PathTracerSettings raytrace;
     raytrace.samples_per_pixel = common.raytrace_spp + common.raytrace_spp % 2; // two halves
     raytrace.aovs.variance = true; // makes the halves replicates
     raytrace.max_depth = common.max_depth;
@@ -80,49 +85,50 @@ std::array<RungPlan, kRungCount> plan_rungs(const Scene& scene, const PreparedPa
     using raytrace::Integrator;
     const SceneNeeds& needs = scene.needs;
     const bool lights = !scene.lights.empty();
-    const RungPlan visibility{{hits(pair)},
+    const RungPlan visibility{{hit_renderers(pair)},
                               "Projects each primitive onto the pixels and keeps the nearest.",
                               "Sends a ray through each pixel's centre into a bounding volume hierarchy.",
                               ""};
-    const RungPlan normals{{surface("normals", pair, raster::Shading::kNormal, Integrator::kNormal),
-                            surface("albedo", pair, raster::Shading::kAlbedo, Integrator::kAlbedo)},
+    const RungPlan normals{{surface_renderers("normals", pair, raster::Shading::kNormal, Integrator::kNormal),
+                            surface_renderers("albedo", pair, raster::Shading::kAlbedo, Integrator::kAlbedo)},
                            "Surface point and texture of its hits.",
                            "Surface point and texture of its hits.",
                            "Shared code: from a hit on, both are the same. Where these pictures differ, samples lie "
                            "elsewhere in the pixel."};
     PreparedPair open = pair; // renders without shadows
     open.raster_settings.shadows = false;
-    const RungPlan direct{{light("direct", open, kLights, Integrator::kUnshadowed, false)},
+    const RungPlan direct{{light_renderers("direct", open, kLights, Integrator::kUnshadowed, false)},
                           "Each light in closed form; on rough metal by a linearly transformed cosine.",
                           "One light sample a camera ray, its visibility left out.",
                           ""};
-    raster::Settings raster_lights = pair.raster_settings;
-    raster_lights.parts = kLights;
-    const RungPlan shadows{{light("shadows", pair, kLights, Integrator::kLights, false)},
+    raster::RasterSettings raster_lights = pair.raster_settings;
+    raster_lights.components = kLights;
+    const RungPlan shadows{{light_renderers("shadows", pair, kLights, Integrator::kLights, false)},
                            "The same light, times the part that shadow maps let pass.",
                            "Light and BSDF samples with shadow rays, combined by multiple importance sampling.",
                            paragraph(raster::approximations(pair.raster, raster_lights))};
     const RungPlan environment{
-        {light("environment", pair, kEnvironment, Integrator::kEnvironment, true)},
+        {light_renderers("environment", pair, kEnvironment, Integrator::kEnvironment, true)},
         "Irradiance in closed form or by spherical harmonics, times the part of the environment that the depths in the "
         "picture leave in sight.",
         "Light and BSDF samples of the environment, with shadow rays.",
         ""};
-    const RungPlan reflections{{light("reflections", pair, kReflection, Integrator::kReflection, true)},
-                               "Looks up the mirrored and the refracted ray in what the picture shows, past that the environment, blurred "
-                               "where metal is rough.",
-                               "Follows the path on from metal and glass to whatever it meets.",
-                               ""};
-    const RungPlan everything{{light("everything", pair, {}, Integrator::kPath, true)},
+    const RungPlan reflections{
+        {light_renderers("reflections", pair, kReflection, Integrator::kReflection, true)},
+        "Looks up the mirrored and the refracted ray in what the picture shows, past that the environment, blurred "
+        "where metal is rough.",
+        "Follows the path on from metal and glass to whatever it meets.",
+        ""};
+    const RungPlan everything{{light_renderers("everything", pair, {}, Integrator::kPath, true)},
                               "All of the above. Light that surfaces reflect onto each other is left out.",
                               "Whole paths.",
                               ""};
     return {visibility,
             normals,
-            if_present(lights, direct, kNoLights),
-            if_present(lights, shadows, kNoLights),
-            if_present(needs.environment, environment, "The scene has no environment."),
-            if_present(needs.specular || needs.glossy, reflections, "The scene has no metal and no glass."),
+            rung_if_present(lights, direct, kNoLights),
+            rung_if_present(lights, shadows, kNoLights),
+            rung_if_present(needs.environment, environment, "The scene has no environment."),
+            rung_if_present(needs.specular || needs.glossy, reflections, "The scene has no metal and no glass."),
             everything};
 }
 

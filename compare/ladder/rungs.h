@@ -1,7 +1,7 @@
 // The rungs of the ladder: the quantity that each one compares, and how each pipeline renders it separately.
 #pragma once
 
-#include "compare/pipeline.h"
+#include "compare/renderer.h"
 #include "raster/render.h"
 #include "raytrace/render.h"
 
@@ -31,28 +31,28 @@ inline constexpr std::array<RungName, kRungCount> kRungNames{{
 
 /// Both pipelines, prepared for the same scene.
 struct PreparedPair {
-    raster::Prepared raster;
-    raster::Settings raster_settings; ///< of the full image
-    raytrace::Prepared raytrace;
-    raytrace::Settings raytrace_settings; ///< of the full image, with an even number of samples
+    raster::RasterScene raster;
+    raster::RasterSettings raster_settings; ///< of the full image
+    raytrace::PathTracerScene raytrace;
+    raytrace::PathTracerSettings raytrace_settings; ///< of the full image, with an even number of samples
 };
-PreparedPair prepare_pair(const Scene& scene, const PipelineSettings& settings);
+PreparedPair prepare_pair(const Scene& scene, const ComparisonSettings& settings);
 
 /// A quantity that both pipelines can render separately: in Rendering::radiance or, for rung 1, in Rendering::hit.
-struct Quantity {
+struct RungRenderers {
     std::string name;
     RenderFunction raster, raytrace;
     int raster_spp, raytrace_spp;
 };
 
 struct RungPlan {
-    std::vector<Quantity> quantities;     ///< empty if the scene does not have the rung's light
-    std::string raster_way, raytrace_way; ///< how each pipeline computes it, as a sentence
+    std::vector<RungRenderers> renderers;       ///< empty if the scene does not have the rung's light
+    std::string raster_method, raytrace_method; ///< how each pipeline computes it, as a sentence
     std::string note;                     ///< what the scene or the rasterizer lacks; empty: nothing
 };
 
 /// Returns what both pipelines render at each rung. A new approximation of the rasterizer must be added to the
-/// settings of its rung here and, if it contributes light, to raster::LightParts. The rest of the ladder needs
+/// settings of its rung here and, if it contributes light, to raster::LightComponents. The rest of the ladder needs
 /// no change.
 std::array<RungPlan, kRungCount> plan_rungs(const Scene& scene, const PreparedPair& pair);
 

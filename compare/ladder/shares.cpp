@@ -14,13 +14,13 @@ namespace {
 double product(Rgbd a, Rgbd b) { return a.r * b.r + a.g * b.g + a.b * b.b; }
 
 /// Returns Δ_k of one pixel and half. Here k counts from 0.
-Rgbd change(const LadderPictures& pictures, std::size_t half, std::size_t k, std::size_t pixel) {
-    const auto& steps = pictures.halves[half];
-    return Rgbd(k == 0 ? pictures.first[pixel] : steps[k - 1][pixel]) - Rgbd(steps[k][pixel]);
+Rgbd change(const LadderImages& images, std::size_t half, std::size_t k, std::size_t pixel) {
+    const auto& steps = images.halves[half];
+    return Rgbd(k == 0 ? images.first[pixel] : steps[k - 1][pixel]) - Rgbd(steps[k][pixel]);
 }
 
-Rgbd difference(const LadderPictures& pictures, std::size_t half, std::size_t pixel) {
-    return Rgbd(pictures.first[pixel]) - Rgbd(pictures.halves[half].back()[pixel]);
+Rgbd difference(const LadderImages& images, std::size_t half, std::size_t pixel) {
+    return Rgbd(images.first[pixel]) - Rgbd(images.halves[half].back()[pixel]);
 }
 
 void add(Causes& sums, const Causes& causes) {
@@ -34,14 +34,14 @@ int largest_step(Rgb a, Rgb b) {
     return steps;
 }
 
-Image<Causes> all_causes(const LadderPictures& pictures) {
-    Image<Causes> causes(pictures.first.width(), pictures.first.height());
-    for (std::size_t i = 0; i < causes.size(); ++i) causes[i] = pixel_causes(pictures, i);
+Image<Causes> all_causes(const LadderImages& images) {
+    Image<Causes> causes(images.first.width(), images.first.height());
+    for (std::size_t i = 0; i < causes.size(); ++i) causes[i] = pixel_causes(images, i);
     return causes;
 }
 
 /// Returns the cause with the largest sum over a pixel and its neighbors.
-std::size_t largest_around(const Image<Causes>& causes, std::size_t pixel) {
+std::size_t main_cause_around(const Image<Causes>& causes, std::size_t pixel) {
     const int px = static_cast<int>(pixel) % causes.width(), py = static_cast<int>(pixel) / causes.width();
     Causes sums{};
     for (int y = std::max(py - 1, 0); y <= std::min(py + 1, causes.height() - 1); ++y)
@@ -51,18 +51,18 @@ std::size_t largest_around(const Image<Causes>& causes, std::size_t pixel) {
 
 } // namespace
 
-Causes pixel_causes(const LadderPictures& pictures, std::size_t pixel) {
-    const Rgbd a = difference(pictures, 0, pixel), b = difference(pictures, 1, pixel);
+Causes pixel_causes(const LadderImages& images, std::size_t pixel) {
+    const Rgbd a = difference(images, 0, pixel), b = difference(images, 1, pixel);
     Causes causes{};
     for (std::size_t k = 0; k < kRungCount; ++k)
-        causes[k] = (product(change(pictures, 0, k, pixel), b) + product(change(pictures, 1, k, pixel), a)) / 2;
+        causes[k] = (product(change(images, 0, k, pixel), b) + product(change(images, 1, k, pixel), a)) / 2;
     const Rgbd noise = (a - b) * 0.5;
     causes[kNoise] = product(noise, noise);
     return causes;
 }
 
-Shares shares(const LadderPictures& pictures) {
-    const int width = pictures.first.width(), height = pictures.first.height();
+Shares shares(const LadderImages& images) {
+    const int width = images.first.width(), height = images.first.height();
     Causes total{};
     double squares = 0, light = 0; // sums of squares of D and of I₇
     for (int y = 0; y < height; ++y) {
@@ -71,9 +71,9 @@ Shares shares(const LadderPictures& pictures) {
         for (int x = 0; x < width; ++x) {
             const auto pixel =
                 static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-            add(row, pixel_causes(pictures, pixel));
-            const Rgbd d = (difference(pictures, 0, pixel) + difference(pictures, 1, pixel)) * 0.5;
-            const Rgbd truth = Rgbd(pictures.first[pixel]) - d;
+            add(row, pixel_causes(images, pixel));
+            const Rgbd d = (difference(images, 0, pixel) + difference(images, 1, pixel)) * 0.5;
+            const Rgbd truth = Rgbd(images.first[pixel]) - d;
             row_squares += product(d, d);
             light += product(truth, truth);
         }
@@ -82,22 +82,22 @@ Shares shares(const LadderPictures& pictures) {
     }
     Shares result;
     result.rms = std::sqrt(squares / (3.0 * width * height));
-    result.none = !(squares > 1e-10 * light);
-    if (result.none) return result;
+    result.negligible = !(squares > 1e-10 * light);
+    if (result.negligible) return result;
     for (std::size_t i = 0; i < kCauseCount; ++i) result.share[i] = total[i] / squares;
     result.sum = std::accumulate(result.share.begin(), result.share.end(), 0.0);
     return result;
 }
 
-CauseMap map_causes(const LadderPictures& pictures) {
-    const ImageRgb& first = pictures.first;
-    const ImageRgb last = pictures.picture(kRungCount);
-    const Image<Causes> causes = all_causes(pictures);
+CauseMap map_causes(const LadderImages& images) {
+    const ImageRgb& first = images.first;
+    const ImageRgb last = images.image(kRungCount);
+    const Image<Causes> causes = all_causes(images);
     CauseMap map{
         Image<std::uint8_t>(first.width(), first.height()), Image<std::uint8_t>(first.width(), first.height()), {}, 0};
     std::array<std::size_t, kCauseCount> counts{};
     for (std::size_t i = 0; i < first.size(); ++i) {
-        map.cause[i] = static_cast<std::uint8_t>(largest_around(causes, i));
+        map.cause[i] = static_cast<std::uint8_t>(main_cause_around(causes, i));
         map.steps[i] = static_cast<std::uint8_t>(largest_step(first[i], last[i]));
         if (map.steps[i] >= kVisibleSteps) ++counts[map.cause[i]];
     }
@@ -121,15 +121,15 @@ std::array<int, 3> cause_color(std::size_t cause) {
     return kColors.at(cause);
 }
 
-ImageRgb cause_picture(const CauseMap& map) {
+ImageRgb cause_image(const CauseMap& map) {
     constexpr double kFull = 24; // 8-bit steps from which on a color has full brightness
-    ImageRgb picture(map.cause.width(), map.cause.height());
-    for (std::size_t i = 0; i < picture.size(); ++i) {
+    ImageRgb image(map.cause.width(), map.cause.height());
+    for (std::size_t i = 0; i < image.size(); ++i) {
         const auto color = cause_color(map.cause[i]);
         const double seen = map.steps[i] < kVisibleSteps ? 0.12 : 0.35 + 0.65 * std::min(map.steps[i] / kFull, 1.0);
-        for (std::size_t c = 0; c < 3; ++c) picture[i][c] = static_cast<float>(srgb_decode(color[c] / 255.0 * seen));
+        for (std::size_t c = 0; c < 3; ++c) image[i][c] = static_cast<float>(srgb_decode(color[c] / 255.0 * seen));
     }
-    return picture;
+    return image;
 }
 
 } // namespace duet::compare

@@ -1,7 +1,7 @@
 // Attribution of the difference between the pipelines to causes: each rung, and noise.
 #pragma once
 
-#include "compare/ladder/climb.h"
+#include "compare/ladder/evaluate_ladder.h"
 
 namespace duet::compare {
 
@@ -25,12 +25,12 @@ struct Shares {
     double rms = 0; ///< RMS of D over pixels and channels
     /// Whether D is no more than rounding error, 10⁻⁵ of the image's root mean square. Then there is nothing to
     /// attribute, and all shares are 0.
-    bool none = false;
+    bool negligible = false;
 };
-Shares shares(const LadderPictures& pictures);
+Shares shares(const LadderImages& images);
 
 /// Returns, for one pixel, the numerators of the shares in Shares. They add up to |D|² at that pixel.
-Causes pixel_causes(const LadderPictures& pictures, std::size_t pixel);
+Causes pixel_causes(const LadderImages& images, std::size_t pixel);
 
 /// A map of visible differences and their main causes. The causes of a single pixel are noisy, so the main
 /// cause is the largest sum over the pixel and its eight neighbors.
@@ -41,11 +41,11 @@ struct CauseMap {
     double visible = 0;                       ///< fraction of all pixels that differ by kVisibleSteps or more
 };
 inline constexpr int kVisibleSteps = 3;
-CauseMap map_causes(const LadderPictures& pictures);
+CauseMap map_causes(const LadderImages& images);
 
 /// Returns the color of a cause (sRGB-encoded, 0 to 255), from Okabe and Ito's palette for all kinds of color vision.
 std::array<int, 3> cause_color(std::size_t cause);
 /// Returns the map as a linear image. Each pixel has the color of its cause; smaller differences are darker.
-ImageRgb cause_picture(const CauseMap& map);
+ImageRgb cause_image(const CauseMap& map);
 
 } // namespace duet::compare

@@ -5,8 +5,8 @@ import math
 import re
 import subprocess
 
-MOST_RMSE = 0.01  # of linear color: other processors round differently, and a path may then take another turn
-MOST_RELATIVE = 0.01
+MAX_RMSE = 0.01  # of linear color: other processors round differently, and a path may then take another turn
+MAX_RELATIVE = 0.01
 NOISE = 0.002     # of a line's largest value: its values near zero may differ by more than a hundredth of themselves
 SERIES = re.compile(r'data-series="([^"]*)" data-x="([^"]*)" data-y="([^"]*)"')
 
@@ -17,7 +17,7 @@ def difference(found, expected, compare):
         return None
     if found.suffix == ".svg":
         return plot_difference(found.read_text(encoding="utf-8"), expected.read_text(encoding="utf-8"))
-    result = subprocess.run([compare, "images", found, expected, "--fail-above", f"rmse={MOST_RMSE}"], text=True,
+    result = subprocess.run([compare, "images", found, expected, "--fail-above", f"rmse={MAX_RMSE}"], text=True,
                             capture_output=True, check=False)
     return None if result.returncode == 0 else (result.stderr or result.stdout).strip().split("\n")[-1]
 
@@ -46,6 +46,6 @@ def plot_difference(found, expected):
         for x, y, wanted in zip(xs, ys, expected_ys):
             if timing[0] and not (math.isfinite(y) and y > 0):
                 return f"line '{name}' takes the time {y} at {x}, expected a positive one"
-            if not timing[0] and not abs(y - wanted) <= max(MOST_RELATIVE * abs(wanted), slack):
+            if not timing[0] and not abs(y - wanted) <= max(MAX_RELATIVE * abs(wanted), slack):
                 return f"line '{name}' is {y} at {x}, expected {wanted}"
     return None

@@ -122,14 +122,14 @@ Rows apply(const SeparableFilter& filter, Rows& channel, int y0, int y1, int hei
 // The metric ---------------------------------------------------------------------------------------------------------
 
 /// What an observer perceives of a band of rows: filtered colors and the strength of edges and points.
-struct Perceived {
+struct PerceivedBand {
     std::vector<Vec3> color;
     std::vector<float> edge, point;
 };
 
 /// `linear(pixel)` returns the displayed color as linear RGB in [0, 1].
 template <typename ToLinear>
-Perceived perceive(const ImageRgb& image, const ToLinear& linear, const Filters& filters, int y0, int y1) {
+PerceivedBand perceive(const ImageRgb& image, const ToLinear& linear, const Filters& filters, int y0, int y1) {
     int reach = 0;
     for (const SeparableFilter& f : filters) reach = std::max(reach, radius(f.vertical));
     const int first = std::max(y0 - reach, 0), end = std::min(y1 + reach, image.height()), width = image.width();
@@ -143,20 +143,20 @@ Perceived perceive(const ImageRgb& image, const ToLinear& linear, const Filters&
     for (std::size_t i = 0; i < kFlipFilters; ++i)
         f[i] = apply(filters[i], channels[filters[i].channel], y0, y1, image.height()).values;
     const std::size_t count = f[0].size();
-    Perceived seen{std::vector<Vec3>(count), std::vector<float>(count), std::vector<float>(count)};
+    PerceivedBand perceived{std::vector<Vec3>(count), std::vector<float>(count), std::vector<float>(count)};
     for (std::size_t i = 0; i < count; ++i) {
         const Vec3 color{f[kAchromatic][i], f[kRedGreen][i], f[kBlueYellowNarrow][i] + f[kBlueYellowWide][i]};
-        seen.color[i] = hunt_lab(from_opponent(color));
+        perceived.color[i] = hunt_lab(from_opponent(color));
         // Features are detected in Y with range 0 to 1. It equals Y of YCxCz up to a factor and an offset,
         // which the derivative filters ignore.
-        seen.edge[i] = std::sqrt(sqr(f[kEdgeX][i]) + sqr(f[kEdgeY][i])) / 116;
-        seen.point[i] = std::sqrt(sqr(f[kPointX][i]) + sqr(f[kPointY][i])) / 116;
+        perceived.edge[i] = std::sqrt(sqr(f[kEdgeX][i]) + sqr(f[kEdgeY][i])) / 116;
+        perceived.point[i] = std::sqrt(sqr(f[kPointX][i]) + sqr(f[kPointY][i])) / 116;
     }
-    return seen;
+    return perceived;
 }
 
 /// Raises the rows of the map from y0 on to the errors between two perceptions of them (§4.3).
-void raise(ImageFloat& map, int y0, const Perceived& test, const Perceived& reference) {
+void accumulate_errors(ImageFloat& map, int y0, const PerceivedBand& test, const PerceivedBand& reference) {
     float* errors = &map(0, y0);
     for (std::size_t i = 0; i < test.color.size(); ++i) {
         const float feature =
@@ -176,7 +176,7 @@ ImageFloat error_map(const ImageRgb& test, const ImageRgb& reference, int exposu
     parallel_for(static_cast<std::size_t>((map.height() + kBandRows - 1) / kBandRows), threads, [&](std::size_t band) {
         const int y0 = static_cast<int>(band) * kBandRows, y1 = std::min(y0 + kBandRows, map.height());
         for (int k = 0; k < exposures; ++k)
-            raise(map, y0, perceive_band(test, y0, y1, k), perceive_band(reference, y0, y1, k));
+            accumulate_errors(map, y0, perceive_band(test, y0, y1, k), perceive_band(reference, y0, y1, k));
     });
     return map;
 }
@@ -206,7 +206,7 @@ double weighted_percentile(const std::vector<float>& sorted, double sum, double 
     return sorted.empty() ? std::numeric_limits<double>::quiet_NaN() : static_cast<double>(sorted.back());
 }
 
-void pool(Flip& flip, const std::vector<std::size_t>& bad) {
+void pool_errors(Flip& flip, const std::vector<std::size_t>& bad) {
     for (const std::size_t i : bad) flip.map[i] = std::numeric_limits<float>::quiet_NaN();
     std::vector<float> sorted;
     for (const float error : flip.map)
@@ -273,7 +273,7 @@ Flip flip(const ImageRgb& test, const ImageRgb& reference, double pixels_per_deg
     result.map = error_map(pair.test, pair.reference, 1, threads, [&](const ImageRgb& image, int y0, int y1, int) {
         return perceive(image, linear, filters, y0, y1);
     });
-    pool(result, pair.bad);
+    pool_errors(result, pair.bad);
     return result;
 }
 
@@ -290,7 +290,7 @@ HdrFlip hdr_flip(const ImageRgb& test, const ImageRgb& reference, double pixels_
             const auto shown = [gain](Rgb c) { return Rgb(aces(gain * c.r), aces(gain * c.g), aces(gain * c.b)); };
             return perceive(image, shown, filters, y0, y1);
         });
-    pool(result, pair.bad);
+    pool_errors(result, pair.bad);
     return result;
 }
 

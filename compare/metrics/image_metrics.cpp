@@ -11,7 +11,7 @@ namespace duet::compare {
 namespace {
 
 /// Copies the metrics that need linear values from those of the decoded images.
-void take_linear_figures(ErrorMetrics& metrics, const ErrorMetrics& linear) {
+void copy_linear_metrics(ErrorMetrics& metrics, const ErrorMetrics& linear) {
     metrics.relmse = linear.relmse;
     metrics.relmse_trimmed = linear.relmse_trimmed;
     metrics.smape = linear.smape;
@@ -23,7 +23,7 @@ double largest_magnitude(Rgbd c) {
     return std::max({std::abs(c.r), std::abs(c.g), std::abs(c.b)});
 }
 
-void add_errors(std::vector<Figure>& list, const ErrorMetrics& m) {
+void add_errors(std::vector<MetricValue>& list, const ErrorMetrics& m) {
     list.insert(
         list.end(),
         {{"mse", m.mse, "mean of (a - b)^2"},
@@ -39,7 +39,7 @@ void add_errors(std::vector<Figure>& list, const ErrorMetrics& m) {
          {"infinite", static_cast<double>(m.infinite_a + m.infinite_b), "pixels with infinity, together"}});
 }
 
-void add_flip(std::vector<Figure>& list, const HdrFlip& f) {
+void add_flip(std::vector<MetricValue>& list, const HdrFlip& f) {
     list.insert(list.end(), {{"flip", f.mean, "mean of the FLIP map (HDR-FLIP of linear pictures), 0 to 1"},
                              {"flip_weighted_median", f.weighted_median, "half of all FLIP error lies below it"},
                              {"flip_first_quartile", f.first_quartile, "a quarter"},
@@ -48,7 +48,7 @@ void add_flip(std::vector<Figure>& list, const HdrFlip& f) {
                              {"flip_max", f.max, "the largest"}});
 }
 
-void add_z_test(std::vector<Figure>& list, const std::optional<ZTest>& z) {
+void add_z_test(std::vector<MetricValue>& list, const std::optional<ZTest>& z) {
     const auto value = [&](double ZTest::*member) {
         return z ? (*z).*member : std::numeric_limits<double>::quiet_NaN();
     };
@@ -77,13 +77,13 @@ ImageMetrics image_metrics(const ImageRgb& a, const ImageRgb& reference, Encodin
         metrics.flip = hdr_flip(a, reference, kFlipPixelsPerDegree, threads);
     } else {
         static_cast<Flip&>(metrics.flip) = flip(a, reference, kFlipPixelsPerDegree, threads);
-        take_linear_figures(metrics.errors, error_metrics(decoded(a), decoded(reference)));
+        copy_linear_metrics(metrics.errors, error_metrics(decoded(a), decoded(reference)));
     }
     return metrics;
 }
 
-std::vector<Figure> figures(const ImageMetrics& metrics) {
-    std::vector<Figure> list;
+std::vector<MetricValue> metric_values(const ImageMetrics& metrics) {
+    std::vector<MetricValue> list;
     add_errors(list, metrics.errors);
     list.push_back({"ssim", metrics.ssim, "structural similarity, 1 for equal pictures; less is worse", true});
     add_flip(list, metrics.flip);

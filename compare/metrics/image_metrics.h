@@ -12,7 +12,7 @@
 
 namespace duet::compare {
 
-using Encoding = PixelFile::Encoding;
+using Encoding = StoredImage::Encoding;
 
 struct ImageMetrics {
     ErrorMetrics errors;
@@ -31,15 +31,15 @@ ImageMetrics image_metrics(const ImageRgb& a, const ImageRgb& reference, Encodin
 ImageRgb decoded(const ImageRgb& image);
 
 /// One metric as a number with a name.
-struct Figure {
+struct MetricValue {
     std::string name; ///< name in the JSON and in METRIC=VALUE
     double value = 0;
     std::string meaning;
-    bool less_is_worse = false;
+    bool higher_is_better = false;
 };
 
 /// Returns the metrics that can have a limit, in the order of the table. The list always has the same names;
 /// the z-test's values are NaN if no z-test was made.
-std::vector<Figure> figures(const ImageMetrics& metrics);
+std::vector<MetricValue> metric_values(const ImageMetrics& metrics);
 
 } // namespace duet::compare

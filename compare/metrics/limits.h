@@ -21,6 +21,6 @@ std::string metric_names();
 
 /// Returns one sentence for each exceeded limit, which says by how much. A value exceeds its limit if it is
 /// above it, or below it if less is worse. NaN exceeds every limit.
-std::vector<std::string> exceeded(const std::vector<Limit>& limits, const std::vector<Figure>& found);
+std::vector<std::string> exceeded(const std::vector<Limit>& limits, const std::vector<MetricValue>& found);
 
 } // namespace duet::compare

@@ -1,6 +1,6 @@
 #include "compare/metrics/z_test.h"
 
-#include "compare/metrics/normal.h"
+#include "compare/metrics/normal_distribution.h"
 #include "compare/metrics/same_size.h"
 
 #include <algorithm>

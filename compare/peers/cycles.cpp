@@ -52,7 +52,7 @@ public:
 
     const ExportNotes& notes() const { return notes_; }
     const std::string& program() const { return program_; } ///< known once the script is ready
-    fs::path picture() const { return folder_.path / "picture.exr"; }
+    fs::path image() const { return folder_.path / "picture.exr"; }
 
     void send(const std::string& line) {
         if (!blender_.write_line(line)) fail();
@@ -70,10 +70,10 @@ public:
                 fail();
             }
             if (read.line == word) return seconds;
-            if (read.line.starts_with(kTellsVersion)) program_ = read.line.substr(kTellsVersion.size());
+            if (read.line.starts_with(kVersionPrefix)) program_ = read.line.substr(kVersionPrefix.size());
             if (const auto time = number_after(read.line, "Render time (without synchronization): ")) seconds = *time;
-            last_.push_back(read.line);
-            if (last_.size() > 8) last_.pop_front();
+            last_lines_.push_back(read.line);
+            if (last_lines_.size() > 8) last_lines_.pop_front();
         }
         return std::nullopt;
     }
@@ -88,15 +88,15 @@ private:
 
     [[noreturn]] void fail() const {
         std::string text = "Blender ended:";
-        for (const std::string& line : last_) text += " | " + line;
+        for (const std::string& line : last_lines_) text += " | " + line;
         throw Error(text, 1);
     }
 
     TemporaryFolder folder_;
     ExportNotes notes_;
     Subprocess blender_;
-    std::deque<std::string> last_;
-    static constexpr std::string_view kTellsVersion = "duet: ";
+    std::deque<std::string> last_lines_;
+    static constexpr std::string_view kVersionPrefix = "duet: ";
     std::string program_;
 };
 
@@ -116,21 +116,21 @@ std::string CyclesPeer::program(const Control& control) {
     return wait_until_ready(control) ? process_->program() : "";
 }
 
-Trial CyclesPeer::render(const Job& job, Control& control) {
+TimedImage CyclesPeer::render(const Job& job, Control& control) {
     if (!wait_until_ready(control)) return {};
-    const fs::path picture = process_->picture();
+    const fs::path image = process_->image();
     // Cycles' seeds have 31 bits.
-    process_->send(message(job.spp, ' ', job.seed % 0x7fffffff, ' ', job.adaptive ? 1 : 0, ' ', picture.string()));
+    process_->send(message(job.spp, ' ', job.seed % 0x7fffffff, ' ', job.adaptive ? 1 : 0, ' ', image.string()));
     const std::optional<double> seconds = process_->wait_for("duet: rendered", control);
     if (!seconds) return {};
     if (!(*seconds > 0)) throw Error("Blender's log tells no render time: another version than 3.x and 4.x?", 1);
-    return {read_image(picture), *seconds, 0};
+    return {read_image(image), *seconds, 0};
 }
 
-ImageRgb CyclesPeer::unbiased_picture(int spp, std::uint64_t seed, Control& control) {
+ImageRgb CyclesPeer::unbiased_image(int spp, std::uint64_t seed, Control& control) {
     DUET_CHECK_LE(2, spp);
-    const ImageRgb all = render({spp, seed, false}, control).picture;
-    const ImageRgb first = render({1, seed, false}, control).picture;
+    const ImageRgb all = render({spp, seed, false}, control).image;
+    const ImageRgb first = render({1, seed, false}, control).image;
     if (all.empty() || first.empty()) return {};
     ImageRgb others(all.width(), all.height());
     const double n = spp;
@@ -138,14 +138,14 @@ ImageRgb CyclesPeer::unbiased_picture(int spp, std::uint64_t seed, Control& cont
     return others;
 }
 
-std::vector<Contender> cycles_contenders(const std::shared_ptr<CyclesPeer>& peer, const std::vector<int>& spps) {
-    std::vector<Contender> contenders;
+std::vector<BenchRenderer> cycles_renderers(const std::shared_ptr<CyclesPeer>& peer, const std::vector<int>& spps) {
+    std::vector<BenchRenderer> renderers;
     for (const bool adaptive : {false, true})
-        contenders.push_back({"cycles", adaptive ? "adaptive" : "fixed", "", spps,
-                              [peer, adaptive](int spp, std::uint64_t seed, Control& control) {
-                                  return peer->render({spp, seed, adaptive}, control);
-                              }});
-    return contenders;
+        renderers.push_back({"cycles", adaptive ? "adaptive" : "fixed", "", spps,
+                             [peer, adaptive](int spp, std::uint64_t seed, Control& control) {
+                                 return peer->render({spp, seed, adaptive}, control);
+                             }});
+    return renderers;
 }
 
 } // namespace duet::compare

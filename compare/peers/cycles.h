@@ -1,7 +1,7 @@
-// Blender's Cycles as a contender of the bench: it renders the same scene in a Blender subprocess.
+// Blender's Cycles as a renderer of the bench: it renders the same scene in a Blender subprocess.
 #pragma once
 
-#include "compare/bench/contender.h"
+#include "compare/bench/bench_renderer.h"
 #include "compare/peers/export_scene.h"
 
 #include <memory>
@@ -27,13 +27,13 @@ public:
     /// synchronization)". It excludes start-up, scene loading, the BVH build and file output. Throws Error
     /// (exit code 1) with Blender's last lines if Blender fails. Returns an empty image if `control` was
     /// stopped; the process cannot be used afterwards.
-    Trial render(const Job& job, Control& control);
+    TimedImage render(const Job& job, Control& control);
 
     /// Renders an image without a small bias of Cycles. Cycles takes the first sample of each pixel through the
     /// pixel center. Edges are therefore wrong by a fraction 1/spp: 2.5 % of a thin bright light at 16 samples,
     /// 0.3 % at 128. This function renders that first sample separately, subtracts it, and returns the mean of
     /// the other samples. Requires spp ≥ 2. Returns an empty image if `control` was stopped.
-    ImageRgb unbiased_picture(int spp, std::uint64_t seed, Control& control);
+    ImageRgb unbiased_image(int spp, std::uint64_t seed, Control& control);
 
     const ExportNotes& notes() const;
 
@@ -52,7 +52,7 @@ private:
 /// for Duet. Reference images are cached under it.
 inline constexpr int kCyclesExportVersion = 3;
 
-/// Returns two contenders, Cycles with and without adaptive sampling, which share the peer.
-std::vector<Contender> cycles_contenders(const std::shared_ptr<CyclesPeer>& peer, const std::vector<int>& spps);
+/// Returns two renderers, Cycles with and without adaptive sampling, which share the peer.
+std::vector<BenchRenderer> cycles_renderers(const std::shared_ptr<CyclesPeer>& peer, const std::vector<int>& spps);
 
 } // namespace duet::compare

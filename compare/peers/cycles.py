@@ -90,7 +90,7 @@ class Nodes:
         return self.add("ShaderNodeMixRGB", 0, {"blend_type": "MULTIPLY"}, Fac=1.0, Color1=a, Color2=b)
 
 
-def load_picture(name):
+def load_image(name):
     image = bpy.data.images.load(os.path.join(FOLDER, name))
     image.colorspace_settings.name = "Non-Color"  # the file is linear, with Duet's primaries
     return image
@@ -100,7 +100,7 @@ def texture(nodes, t):
     uv = nodes.add("ShaderNodeUVMap", 0, {"uv_map": "uv"})
     if t["type"] == "image":
         scaled = nodes.add("ShaderNodeVectorMath", 0, {"operation": "MULTIPLY"}, _0=uv, _1=(t["scale"][0], t["scale"][1], 1.0))
-        settings = {"image": load_picture(t["file"]), "interpolation": "Linear" if t["bilinear"] else "Closest"}
+        settings = {"image": load_image(t["file"]), "interpolation": "Linear" if t["bilinear"] else "Closest"}
         return nodes.add("ShaderNodeTexImage", "Color", settings, Vector=scaled)
     place = nodes.add("ShaderNodeAttribute", "Vector", {"attribute_name": "p_object"}) if t["solid"] else uv
     # Cycles' checker is three-dimensional. It uses Color2 where the sum of the cell indices is even.
@@ -281,7 +281,7 @@ def make_environment(e):
             color = nodes.mix(height, rgba(e["down"]), rgba(e["up"]))
         else:
             turned = nodes.add("ShaderNodeCombineXYZ", 0, {}, **{axis: nodes.dot(direction, row) for axis, row in zip("XYZ", e["rows"])})
-            color = nodes.add("ShaderNodeTexEnvironment", 0, {"image": load_picture(e["file"]), "interpolation": "Linear"}, Vector=turned)
+            color = nodes.add("ShaderNodeTexEnvironment", 0, {"image": load_image(e["file"]), "interpolation": "Linear"}, Vector=turned)
     background = nodes.add("ShaderNodeBackground", 0, {}, Color=color, Strength=e.get("scale", 1.0))
     output = nodes.tree.nodes.new("ShaderNodeOutputWorld")
     nodes.tree.links.new(background, output.inputs["Surface"])

@@ -58,20 +58,20 @@ EmbreeDevice::EmbreeDevice(const Scene& scene, int threads, bool avx2) : handle_
     }
 }
 
-struct EmbreeScene::Built {
+struct EmbreeScene::BuiltScene {
     std::shared_ptr<EmbreeDevice::Handle> device;
     RTCScene scene = nullptr;
     std::vector<RTCScene> of_shapes; // one per shape, null if it is not instanced
     std::int64_t bytes = 0;
 
-    Built(const std::shared_ptr<EmbreeDevice::Handle>& of, EmbreeQuality quality);
-    ~Built() {
+    BuiltScene(const std::shared_ptr<EmbreeDevice::Handle>& of, EmbreeQuality quality);
+    ~BuiltScene() {
         for (RTCScene shape : of_shapes)
             if (shape != nullptr) rtcReleaseScene(shape);
         rtcReleaseScene(scene);
     }
-    Built(const Built&) = delete;
-    Built& operator=(const Built&) = delete;
+    BuiltScene(const BuiltScene&) = delete;
+    BuiltScene& operator=(const BuiltScene&) = delete;
 
 private:
     RTCScene new_scene() const {
@@ -113,7 +113,7 @@ private:
     RTCSceneFlags flags;
 };
 
-EmbreeScene::Built::Built(const std::shared_ptr<EmbreeDevice::Handle>& of, EmbreeQuality quality)
+EmbreeScene::BuiltScene::BuiltScene(const std::shared_ptr<EmbreeDevice::Handle>& of, EmbreeQuality quality)
     : device(of), of_shapes(of->scene->shapes.size()),
       build_quality(quality.high ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM),
       flags(quality.robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE) {
@@ -132,7 +132,7 @@ EmbreeScene::Built::Built(const std::shared_ptr<EmbreeDevice::Handle>& of, Embre
 }
 
 EmbreeScene::EmbreeScene(const EmbreeDevice& device, EmbreeQuality quality)
-    : built_(std::make_unique<Built>(device.handle(), quality)) {}
+    : built_(std::make_unique<BuiltScene>(device.handle(), quality)) {}
 
 EmbreeScene::~EmbreeScene() = default;
 
@@ -172,26 +172,26 @@ Tracer EmbreeScene::closest(std::span<const Ray> rays, EmbreeForm form, bool coh
         break;
     }
     DUET_CHECK(form == EmbreeForm::kSingle);
-    return {"", [scene, rays, coherent](std::size_t block, Answer* answers) {
+    return {"", [scene, rays, coherent](std::size_t block, RayResult* ray_results) {
                 const FlushToZero flush;
                 Query query(coherent);
                 for (const Ray& ray : block_of(rays, block)) {
-                    RTCRayHit hit = as_embree_hit(ray);
+                    RTCRayHit hit = to_embree_ray_hit(ray);
                     intersect1(scene, query, hit);
-                    *answers++ = answer_of(hit.ray.tfar, hit.hit.geomID, hit.hit.instID[0], hit.hit.primID);
+                    *ray_results++ = to_ray_result(hit.ray.tfar, hit.hit.geomID, hit.hit.instID[0], hit.hit.primID);
                 }
             }};
 }
 
 Tracer EmbreeScene::occluded(std::span<const Ray> rays) const {
     RTCScene scene = built_->scene;
-    return {"", [scene, rays](std::size_t block, Answer* answers) {
+    return {"", [scene, rays](std::size_t block, RayResult* ray_results) {
                 const FlushToZero flush;
                 Query query(false);
                 for (const Ray& ray : block_of(rays, block)) {
-                    RTCRay query_ray = as_embree(ray);
+                    RTCRay query_ray = to_embree_ray(ray);
                     occluded1(scene, query, query_ray);
-                    *answers++ = {ray.t_max, query_ray.tfar < 0 ? 0 : Answer::kNone}; // blocked: tfar = −∞
+                    *ray_results++ = {ray.t_max, query_ray.tfar < 0 ? 0 : RayResult::kNone}; // blocked: tfar = −∞
                 }
             }};
 }
@@ -203,7 +203,7 @@ std::string embree_version() { return {}; }
 struct EmbreeDevice::Handle {};
 std::vector<EmbreeQuality> embree_qualities() { return {}; }
 EmbreeDevice::EmbreeDevice(const Scene&, int, bool) { throw Error("this program was built without Embree", 1); }
-struct EmbreeScene::Built {};
+struct EmbreeScene::BuiltScene {};
 EmbreeScene::EmbreeScene(const EmbreeDevice&, EmbreeQuality) {
     throw Error("this program was built without Embree", 1);
 }

@@ -72,8 +72,8 @@ public:
     Tracer occluded(std::span<const Ray> rays) const;
 
 private:
-    struct Built;
-    std::unique_ptr<Built> built_;
+    struct BuiltScene;
+    std::unique_ptr<BuiltScene> built_;
 };
 
 } // namespace duet::compare

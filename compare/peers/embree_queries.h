@@ -82,20 +82,20 @@ inline void intersect_stream(RTCScene scene, Query& query, std::span<RTCRayHit> 
 #endif
 
 /// Embree returns the geometry and, if there is one, the instance. Both have the object's index as their ID.
-inline Answer answer_of(float t, unsigned geometry, unsigned instance, unsigned triangle) {
+inline RayResult to_ray_result(float t, unsigned geometry, unsigned instance, unsigned triangle) {
     if (geometry == RTC_INVALID_GEOMETRY_ID) return {};
     return {t, triangle, instance == RTC_INVALID_GEOMETRY_ID ? geometry : instance};
 }
 
 /// Returns the ray's start for Embree, whose interval includes t = tnear; Duet's excludes t_min. The difference
 /// matters for rays that start at t = 0 on a surface.
-inline float start_of(const Ray& ray) { return std::max(ray.t_min, std::numeric_limits<float>::min()); }
+inline float embree_t_near(const Ray& ray) { return std::max(ray.t_min, std::numeric_limits<float>::min()); }
 
-inline RTCRay as_embree(const Ray& ray) {
+inline RTCRay to_embree_ray(const Ray& ray) {
     return {ray.origin.x,
             ray.origin.y,
             ray.origin.z,
-            start_of(ray),
+            embree_t_near(ray),
             ray.direction.x,
             ray.direction.y,
             ray.direction.z,
@@ -122,7 +122,7 @@ template <int kWidth> std::vector<PacketRays<kWidth>> packets_of(std::span<const
         packet.org_x[lane] = ray.origin.x, packet.org_y[lane] = ray.origin.y, packet.org_z[lane] = ray.origin.z;
         packet.dir_x[lane] = ray.direction.x, packet.dir_y[lane] = ray.direction.y;
         packet.dir_z[lane] = ray.direction.z;
-        packet.tnear[lane] = start_of(ray), packet.tfar[lane] = ray.t_max;
+        packet.tnear[lane] = embree_t_near(ray), packet.tfar[lane] = ray.t_max;
         packet.valid[lane] = i < rays.size() ? -1 : 0;
     }
     return packets;
@@ -142,7 +142,7 @@ template <int kWidth> void load(const PacketRays<kWidth>& from, auto& ray) {
 
 template <int kWidth, typename RayHit>
 void trace_packets(RTCScene scene, Query& query, const std::vector<PacketRays<kWidth>>& packets, std::size_t block,
-                   Answer* answers) {
+                   RayResult* ray_results) {
     constexpr std::size_t kPackets = kBlock / kWidth;
     RayHit rays;
     std::memset(&rays, 0, sizeof rays);
@@ -153,24 +153,24 @@ void trace_packets(RTCScene scene, Query& query, const std::vector<PacketRays<kW
         std::memset(rays.hit.instID, 0xff, sizeof rays.hit.instID);
         intersect(packets[p].valid, scene, query, rays);
         for (std::size_t lane = 0; lane < kWidth; ++lane)
-            *answers++ = answer_of(rays.ray.tfar[lane], rays.hit.geomID[lane], rays.hit.instID[0][lane],
-                                   rays.hit.primID[lane]);
+            *ray_results++ = to_ray_result(rays.ray.tfar[lane], rays.hit.geomID[lane], rays.hit.instID[0][lane],
+                                           rays.hit.primID[lane]);
     }
 }
 
 template <int kWidth, typename RayHit>
-std::function<void(std::size_t, Answer*)> packet_function(RTCScene scene, std::span<const Ray> rays, bool coherent) {
+std::function<void(std::size_t, RayResult*)> packet_function(RTCScene scene, std::span<const Ray> rays, bool coherent) {
     const auto packets = std::make_shared<const std::vector<PacketRays<kWidth>>>(packets_of<kWidth>(rays));
-    return [scene, packets, coherent](std::size_t block, Answer* answers) {
+    return [scene, packets, coherent](std::size_t block, RayResult* ray_results) {
         const FlushToZero flush;
         Query query(coherent);
-        trace_packets<kWidth, RayHit>(scene, query, *packets, block, answers);
+        trace_packets<kWidth, RayHit>(scene, query, *packets, block, ray_results);
     };
 }
 
-inline RTCRayHit as_embree_hit(const Ray& ray) {
+inline RTCRayHit to_embree_ray_hit(const Ray& ray) {
     RTCRayHit hit;
-    hit.ray = as_embree(ray);
+    hit.ray = to_embree_ray(ray);
     hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     return hit;
@@ -178,11 +178,11 @@ inline RTCRayHit as_embree_hit(const Ray& ray) {
 
 #if DUET_EMBREE == 3
 /// Returns a function that traces a block's rays as an array of structures (rtcIntersect1M).
-inline std::function<void(std::size_t, Answer*)> stream_of_structures(RTCScene scene, std::span<const Ray> rays,
-                                                               bool coherent) {
+inline std::function<void(std::size_t, RayResult*)> stream_of_structures(RTCScene scene, std::span<const Ray> rays,
+                                                                         bool coherent) {
     const auto laid_out = std::make_shared<std::vector<RTCRayHit>>();
-    for (const Ray& ray : rays) laid_out->push_back(as_embree_hit(ray));
-    return [scene, laid_out, coherent](std::size_t block, Answer* answers) {
+    for (const Ray& ray : rays) laid_out->push_back(to_embree_ray_hit(ray));
+    return [scene, laid_out, coherent](std::size_t block, RayResult* ray_results) {
         const FlushToZero flush;
         Query query(coherent);
         const std::size_t first = block * kBlock, count = std::min(kBlock, laid_out->size() - first);
@@ -191,7 +191,7 @@ inline std::function<void(std::size_t, Answer*)> stream_of_structures(RTCScene s
         intersect_stream(scene, query, std::span(stream).first(count));
         for (std::size_t i = 0; i < count; ++i) {
             const RTCRayHit& hit = stream[i];
-            *answers++ = answer_of(hit.ray.tfar, hit.hit.geomID, hit.hit.instID[0], hit.hit.primID);
+            *ray_results++ = to_ray_result(hit.ray.tfar, hit.hit.geomID, hit.hit.instID[0], hit.hit.primID);
         }
     };
 }
@@ -213,11 +213,11 @@ struct alignas(64) StreamArrays {
     }
 };
 
-inline std::function<void(std::size_t, Answer*)> stream_of_arrays(RTCScene scene, std::span<const Ray> rays,
-                                                                   bool coherent) {
+inline std::function<void(std::size_t, RayResult*)> stream_of_arrays(RTCScene scene, std::span<const Ray> rays,
+                                                                     bool coherent) {
     const auto laid_out = std::make_shared<std::vector<PacketRays<kBlock>>>(packets_of<kBlock>(rays));
     const std::size_t size = rays.size();
-    return [scene, laid_out, size, coherent](std::size_t block, Answer* answers) {
+    return [scene, laid_out, size, coherent](std::size_t block, RayResult* ray_results) {
         const FlushToZero flush;
         Query query(coherent);
         const PacketRays<kBlock>& from = (*laid_out)[block];
@@ -235,7 +235,7 @@ inline std::function<void(std::size_t, Answer*)> stream_of_arrays(RTCScene scene
         const RTCRayHitNp pointers = stream.pointers();
         rtcIntersectNp(scene, &query.context, &pointers, count);
         for (std::size_t i = 0; i < count; ++i)
-            *answers++ = answer_of(stream.tfar[i], stream.geom[i], stream.instance[i], stream.prim[i]);
+            *ray_results++ = to_ray_result(stream.tfar[i], stream.geom[i], stream.instance[i], stream.prim[i]);
     };
 }
 #endif

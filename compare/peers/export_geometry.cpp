@@ -45,14 +45,14 @@ private:
 TriangleSoup mesh_triangles(const Mesh& mesh, const Mat4& to_world) {
     SoupBuilder builder(to_world);
     for (const Vec3 p : mesh.positions) builder.add_vertex(p);
-    constexpr Vec2 kOwn[] = {{0, 0}, {1, 0}, {0, 1}}; // texture coordinates of a mesh without any
+    constexpr Vec2 kDefaultUvs[] = {{0, 0}, {1, 0}, {0, 1}}; // texture coordinates of a mesh without any
     const bool smooth = !mesh.normals.empty();
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         std::array<SoupBuilder::Corner, 3> corners;
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint32_t v = mesh.triangles[t][k];
             corners[k] = {static_cast<std::int32_t>(v), mesh.positions[v], smooth ? mesh.normals[v] : Vec3(),
-                          mesh.uvs.empty() ? kOwn[k] : mesh.uvs[v]};
+                          mesh.uvs.empty() ? kDefaultUvs[k] : mesh.uvs[v]};
         }
         const std::uint16_t slot = mesh.material_slots.empty() ? std::uint16_t{0} : mesh.material_slots[t];
         builder.add_triangle(corners[0], corners[1], corners[2], slot, smooth);

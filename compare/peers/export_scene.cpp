@@ -25,9 +25,9 @@ using nlohmann::json;
 /// lanterns.json at 128 rings) it loses 3 % of the light. With 16 rings the silhouette is within 1 % of the
 /// radius.
 int sphere_rings(std::int64_t spheres) {
-    constexpr std::int64_t kMostTriangles = std::int64_t{1} << 21;
+    constexpr std::int64_t kMaxTriangles = std::int64_t{1} << 21;
     int rings = 128;
-    while (rings > 16 && sphere_triangle_count(rings) * spheres > kMostTriangles) rings -= 2;
+    while (rings > 16 && sphere_triangle_count(rings) * spheres > kMaxTriangles) rings -= 2;
     return rings;
 }
 
@@ -45,7 +45,7 @@ public:
         : folder_(folder), scene_(scene), view_(view), settings_(settings) {}
 
     ExportNotes run() {
-        if (settings_.depth < 1) refuse("paths of depth 0: the peer scatters at least once");
+        if (settings_.depth < 1) fail_unsupported("paths of depth 0: the peer scatters at least once");
         const fs::path geometry = folder_ / "geometry.bin";
         geometry_.open(geometry, std::ios::binary);
         json file = {
@@ -62,7 +62,7 @@ public:
     }
 
 private:
-    [[noreturn]] void refuse(const std::string& what) const {
+    [[noreturn]] void fail_unsupported(const std::string& what) const {
         throw Error(message(scene_.path.string(), ": cannot be exported: ", what));
     }
 
@@ -70,7 +70,7 @@ private:
 
     json texture(std::int32_t index) {
         const Texture& t = scene_.textures.textures[static_cast<std::size_t>(index)];
-        if (std::holds_alternative<NoiseTexture>(t)) refuse("textures of noise have no counterpart");
+        if (std::holds_alternative<NoiseTexture>(t)) fail_unsupported("textures of noise have no counterpart");
         if (const auto* checker = std::get_if<CheckerTexture>(&t))
             return {{"type", "checker"},
                     {"even", rgb_json(checker->even)},
@@ -87,13 +87,13 @@ private:
     }
 
     float constant(const ScalarSlot& slot, const char* what) {
-        if (!slot.constant()) refuse(message("textures of ", what, " are not exported"));
+        if (!slot.constant()) fail_unsupported(message("textures of ", what, " are not exported"));
         return slot.value;
     }
 
     void export_glass(const Dielectric& glass, json& result) {
-        if (glass.thin) refuse("thin glass has no counterpart");
-        if (glass.priority > 0) refuse("priorities of dielectrics have no counterpart");
+        if (glass.thin) fail_unsupported("thin glass has no counterpart");
+        if (glass.priority > 0) fail_unsupported("priorities of dielectrics have no counterpart");
         result["type"] = "dielectric";
         result["ior"] = glass.ior;
         const float roughness = constant(glass.roughness, "roughness");
@@ -113,7 +113,7 @@ private:
         if (const auto* metal = std::get_if<Metal>(&m)) {
             result["type"] = "metal";
             result["roughness"] = constant(metal->roughness, "roughness");
-            if (metal->conductor.exists()) notes_.insert("named conductors have Schlick's Fresnel term");
+            if (metal->conductor.valid()) notes_.insert("named conductors have Schlick's Fresnel term");
             if (!metal->at(scene_.textures, SurfacePoint{}).smooth())
                 notes_.insert("rough metal's Fresnel term is taken at the shading normal, not at the microfacet's");
         } else if (const auto* glass = std::get_if<Dielectric>(&m)) {
@@ -127,7 +127,7 @@ private:
             result["clearcoat_roughness"] = constant(principled->clearcoat_roughness, "roughness");
             notes_.insert("principled materials are Blender's, whose layers are not quite ours");
         } else if (const auto* coated = std::get_if<Coated>(&m)) {
-            if (coated->albedo.texture >= 0) refuse("textures under a coat are not exported");
+            if (coated->albedo.texture >= 0) fail_unsupported("textures under a coat are not exported");
             result["type"] = "principled";
             // This albedo includes inter-reflection within the coat.
             result["slot"]["value"] = rgb_json(coated->at(scene_.textures, SurfacePoint{}).diffuse);
@@ -137,13 +137,13 @@ private:
             notes_.insert("coated materials are Blender's principled ones, whose layers are not quite ours");
         } else if (const auto* emissive = std::get_if<Emissive>(&m)) {
             result["type"] = "emissive";
-            if (emissive->radiance_texture >= 0) refuse("textures of radiance are not exported");
+            if (emissive->radiance_texture >= 0) fail_unsupported("textures of radiance are not exported");
             result["radiance"] = rgb_json(emissive->radiance);
             result["two_sided"] = emissive->two_sided;
         } else {
             result["type"] = "diffuse";
             const auto* diffuse = std::get_if<Diffuse>(&m);
-            if (diffuse != nullptr && diffuse->rough()) refuse("rough diffuse surfaces have no counterpart");
+            if (diffuse != nullptr && diffuse->rough()) fail_unsupported("rough diffuse surfaces have no counterpart");
         }
         return result;
     }
@@ -154,8 +154,8 @@ private:
         for (const Object& o : scene_.objects) used.insert(o.materials.begin(), o.materials.end());
         json list = json::array();
         for (std::uint32_t i = 0; i < scene_.materials.size(); ++i) {
-            if (used.contains(i) && (scene_.maps[i].bends_normals() || scene_.maps[i].cuts_out()))
-                refuse("normal maps, bump maps and opacity are not exported");
+            if (used.contains(i) && (scene_.maps[i].perturbs_normal() || scene_.maps[i].has_transparency()))
+                fail_unsupported("normal maps, bump maps and opacity are not exported");
             json m = used.contains(i) ? material(scene_.materials[i]) : material(Diffuse{});
             m["name"] = scene_.material_names[i];
             list.push_back(std::move(m));
@@ -180,7 +180,7 @@ private:
                                     {"direction", vec_json(Vec3d(sun->direction))},
                                     {"color", rgb_json(sun->irradiance)}});
             } else if (const auto* spot = std::get_if<SpotLight>(&light)) {
-                if (spot->cos_outer < 0) refuse("a spot light wider than a half-space");
+                if (spot->cos_outer < 0) fail_unsupported("a spot light wider than a half-space");
                 if (!is_black(spot->intensity))
                     list.push_back({{"type", "spot"},
                                     {"position", vec_json(Vec3d(spot->position))},
@@ -214,7 +214,7 @@ private:
 
     json camera() const {
         const Camera& c = view_.camera;
-        const Pinhole view = CameraModel(view_).through();
+        const Pinhole view = CameraModel(view_).pinhole();
         const bool orthographic = c.projection == Camera::Projection::kOrthographic;
         const Vec3d dx = orthographic ? view.origin_dx : view.direction_dx;
         const Vec3d right = normalize(dx), back = view.forward * -1.0, up = cross(back, right);
@@ -230,7 +230,7 @@ private:
 
     // Objects --------------------------------------------------------------------------------------------------------
 
-    template <typename T> json stored(const std::vector<T>& values) {
+    template <typename T> json write_array(const std::vector<T>& values) {
         constexpr std::size_t kNumber = 4; // floats and 32-bit integers, tightly packed
         static_assert(sizeof(T) % kNumber == 0);
         const auto offset = static_cast<std::uint64_t>(geometry_.tellp());
@@ -241,18 +241,18 @@ private:
 
     json mesh_json(const std::string& name, const TriangleSoup& soup) {
         return {{"name", name},
-                {"positions", stored(soup.positions)},
-                {"triangles", stored(soup.triangles)},
-                {"slots", stored(soup.slots)},
-                {"normals", soup.normals.empty() ? json(nullptr) : stored(soup.normals)},
-                {"uvs", stored(soup.uvs)},
-                {"p_object", stored(soup.object_positions)}};
+                {"positions", write_array(soup.positions)},
+                {"triangles", write_array(soup.triangles)},
+                {"slots", write_array(soup.slots)},
+                {"normals", soup.normals.empty() ? json(nullptr) : write_array(soup.normals)},
+                {"uvs", write_array(soup.uvs)},
+                {"p_object", write_array(soup.object_positions)}};
     }
 
-    Mat4 placed(const Object& object) const {
+    Mat4 world_transform(const Object& object) const {
         if (!object.moving) return object.to_world;
         if (view_.camera.shutter_open != view_.camera.shutter_close)
-            refuse(message("the object ", object.name, " moves while the shutter is open"));
+            fail_unsupported(message("the object ", object.name, " moves while the shutter is open"));
         return object_transform(object, static_cast<float>(view_.camera.shutter_open)).to_world;
     }
 
@@ -280,11 +280,11 @@ private:
                     meshes.push_back(mesh_json("sphere", soup));
                 }
                 const double r = sphere_radius * static_cast<double>(sphere->radius);
-                matrix = Mat4d(placed(o)) * translation(Vec3d(sphere->center)) * scaling(Vec3d(r, r, r));
+                matrix = Mat4d(world_transform(o)) * translation(Vec3d(sphere->center)) * scaling(Vec3d(r, r, r));
                 object["mesh"] = *sphere_mesh;
             } else {
                 object["mesh"] = meshes.size();
-                const TriangleSoup soup = world_triangles(scene_.shapes[o.shape], placed(o));
+                const TriangleSoup soup = world_triangles(scene_.shapes[o.shape], world_transform(o));
                 if (!soup.normals.empty())
                     notes_.insert("smooth normals: the peer bends directions at their horizon in its own way");
                 meshes.push_back(mesh_json(o.name, soup));

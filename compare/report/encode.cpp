@@ -64,7 +64,7 @@ std::string encode_plane(const std::vector<std::uint32_t>& values, int width, in
     return base64(deflate(planes));
 }
 
-std::vector<std::string> encode_picture(const ImageRgb& image) {
+std::vector<std::string> encode_image(const ImageRgb& image) {
     std::vector<std::string> planes;
     std::vector<std::uint32_t> values(image.size());
     for (std::size_t c = 0; c < 3; ++c) {

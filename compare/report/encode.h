@@ -24,6 +24,6 @@ std::string base64(std::string_view bytes);
 std::string encode_plane(const std::vector<std::uint32_t>& values, int width, int bytes);
 
 /// Encodes an image's red, green and blue in half precision, two bytes each, by encode_plane.
-std::vector<std::string> encode_picture(const ImageRgb& image);
+std::vector<std::string> encode_image(const ImageRgb& image);
 
 } // namespace duet::compare

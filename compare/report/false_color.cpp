@@ -28,14 +28,14 @@ Rgb diverging_color(double value) {
     return lerp(kAnchors[low], kAnchors[low + 1], static_cast<float>(position - static_cast<double>(low))) / 255.0f;
 }
 
-ImageRgb difference_picture(const ImageRgb& a, const ImageRgb& b, double range) {
-    ImageRgb picture(a.width(), a.height());
-    for (std::size_t i = 0; i < picture.size(); ++i) {
+ImageRgb difference_image(const ImageRgb& a, const ImageRgb& b, double range) {
+    ImageRgb image(a.width(), a.height());
+    for (std::size_t i = 0; i < image.size(); ++i) {
         const double difference = luminance_difference(a, b, i);
         const Rgb color = std::isfinite(difference) ? diverging_color(difference / range) : Rgb(1, 0, 1);
-        picture[i] = {srgb_decode(color.r), srgb_decode(color.g), srgb_decode(color.b)};
+        image[i] = {srgb_decode(color.r), srgb_decode(color.g), srgb_decode(color.b)};
     }
-    return picture;
+    return image;
 }
 
 double difference_range(const ImageRgb& a, const ImageRgb& b) {

@@ -12,7 +12,7 @@ Rgb diverging_color(double value);
 
 /// Returns A − B in luminance, mapped by diverging_color over [−range, range], as linear values for
 /// write_image. Pixels that are not finite are magenta.
-ImageRgb difference_picture(const ImageRgb& a, const ImageRgb& b, double range);
+ImageRgb difference_image(const ImageRgb& a, const ImageRgb& b, double range);
 
 /// Returns a round number (1, 2 or 5 times a power of ten) just above the 99th percentile of |A − B| in
 /// luminance; at least 0.001.

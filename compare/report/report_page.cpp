@@ -27,7 +27,7 @@ std::string plane(const Image<Pixel>& image, int bytes, const Value& value_at) {
 json difference_planes(const ImageRgb& a, const ImageRgb& b) {
     ImageRgb difference(a.width(), a.height());
     for (std::size_t i = 0; i < a.size(); ++i) difference[i] = a[i] - b[i];
-    return encode_picture(difference);
+    return encode_image(difference);
 }
 
 /// Encodes the FLIP map in steps of 1/4095. Twelve bits exceed what the eye distinguishes. The code 4096 stands
@@ -81,27 +81,27 @@ json hits_of(const ReportHits& hits) {
 json rendering_json(const ReportRendering& rendering) {
     json stages = json::array(), skipped = json::array();
     for (const auto& [name, seconds] : rendering.statistics.seconds) stages.push_back({name, seconds});
-    for (const Skipped& s : rendering.statistics.skipped) skipped.push_back({s.what, s.why, s.count});
+    for (const SkippedWork& s : rendering.statistics.skipped) skipped.push_back({s.what, s.why, s.count});
     return {{"statistics", statistics_json(rendering.context, rendering.statistics)},
             {"stages", stages},
             {"skipped", skipped}};
 }
 
-json side_json(const ReportSide& side) {
+json side_json(const ReportImage& side) {
     return {{"name", side.name},
-            {"picture", encode_picture(side.picture)},
+            {"picture", encode_image(side.image)},
             {"rendering", side.rendering ? rendering_json(*side.rendering) : json(nullptr)}};
 }
 
 template <typename Pixel> void check_size(const Image<Pixel>& image, const ReportPage& page) {
-    DUET_CHECK_EQ(image.width(), page.a.picture.width());
-    DUET_CHECK_EQ(image.height(), page.a.picture.height());
+    DUET_CHECK_EQ(image.width(), page.a.image.width());
+    DUET_CHECK_EQ(image.height(), page.a.image.height());
 }
 
 } // namespace
 
 std::string report_page(const ReportPage& page) {
-    check_size(page.b.picture, page);
+    check_size(page.b.image, page);
     check_size(page.metrics.flip.map, page);
     if (page.hits) {
         check_size(page.hits->a, page);
@@ -109,12 +109,12 @@ std::string report_page(const ReportPage& page) {
         check_size(page.hits->agreement.verdicts, page);
     }
     const json data = {{"title", page.title},
-                       {"width", page.a.picture.width()},
-                       {"height", page.a.picture.height()},
+                       {"width", page.a.image.width()},
+                       {"height", page.a.image.height()},
                        {"eight_bit", page.encoding == Encoding::kEncoded},
                        {"sides", {side_json(page.a), side_json(page.b)}},
-                       {"difference", difference_planes(page.a.picture, page.b.picture)},
-                       {"difference_range", difference_range(page.a.picture, page.b.picture)},
+                       {"difference", difference_planes(page.a.image, page.b.image)},
+                       {"difference_range", difference_range(page.a.image, page.b.image)},
                        {"metrics", metrics_json(page.metrics, "A", "B")},
                        {"flip", flip_json(page)},
                        {"hits", page.hits ? hits_of(*page.hits) : json(nullptr)}};

@@ -19,9 +19,9 @@ struct ReportRendering {
 };
 
 /// One of the two images of the page.
-struct ReportSide {
+struct ReportImage {
     std::string name;                              ///< name on the page: "Rasterizer", or a file name
-    const ImageRgb& picture;                       ///< linear; stored on the page in half precision
+    const ImageRgb& image;                         ///< linear; stored on the page in half precision
     std::optional<ReportRendering> rendering = {}; ///< its times, approximations and skips
 };
 
@@ -36,7 +36,7 @@ struct ReportHits {
 /// have neither hits nor times.
 struct ReportPage {
     std::string title;
-    ReportSide a, b;                       ///< B is the reference
+    ReportImage a, b;                      ///< B is the reference
     const ImageMetrics& metrics;           ///< page/metrics.js describes each metric
     Encoding encoding = Encoding::kLinear; ///< encoding of the compared values; kEncoded: the page also shows 8-bit
                                            ///< values

@@ -1,6 +1,6 @@
 #include "compare/skip/bias_test.h"
 
-#include "compare/metrics/normal.h"
+#include "compare/metrics/normal_distribution.h"
 
 #include <algorithm>
 #include <limits>
@@ -17,13 +17,13 @@
 // is normal to the next order in 1/√R and increases with T. Its tails are heavier because s is estimated. The
 // test therefore uses S = g / √(1 + g²/R), which for γ = 0 is the sum of the differences over the root of the
 // sum of their squares. Beyond √3 its tails are lighter than the normal distribution's (S²/R has the Beta
-// distribution with parameters ½ and (R − 1)/2), so that false alarms are rarer than kFalseAlarm.
+// distribution with parameters ½ and (R − 1)/2), so that false alarms are rarer than kFalseAlarmProbability.
 //
-// A bias is found if |S| exceeds z, the quantile of kFalseAlarm for three channels. This happens if T is beyond
-// some T₀, taken for the sign for which the skewness makes it larger. A bias μ shifts T by √R μ / s. T deviates
-// from that by more than the quantile of kMiss with probability kMiss. So μ = (T₀ + z(kMiss)) s / √R is found
-// with probability 1 − kMiss. Since s is only estimated, the upper end of its band is used; its relative error
-// is 1/√(2(R − 1)).
+// A bias is found if |S| exceeds z, the quantile of kFalseAlarmProbability for three channels. This happens if T is
+// beyond some T₀, taken for the sign for which the skewness makes it larger. A bias μ shifts T by √R μ / s. T deviates
+// from that by more than the quantile of kMissProbability with probability kMissProbability. So μ = (T₀ +
+// z(kMissProbability)) s / √R is found with probability 1 − kMissProbability. Since s is only estimated, the upper end
+// of its band is used; its relative error is 1/√(2(R − 1)).
 
 namespace duet::compare {
 
@@ -31,7 +31,7 @@ namespace {
 
 constexpr double kChannels = 3;
 
-double threshold() { return upper_quantile(sidak_level(kFalseAlarm, kChannels) / 2); } // 2.93
+double threshold() { return upper_quantile(sidak_level(kFalseAlarmProbability, kChannels) / 2); } // 2.93
 
 /// Returns S as a function of T.
 double without_skewness(double t, double skewness, double count) {
@@ -41,7 +41,7 @@ double without_skewness(double t, double skewness, double count) {
 }
 
 /// Returns T₀, or infinity if no T suffices.
-double least_found(double skewness, double count) {
+double smallest_detected_t(double skewness, double count) {
     double low = 0, high = 1e3;
     for (int i = 0; i < 60; ++i) {
         const double t = (low + high) / 2;
@@ -80,13 +80,13 @@ Rgbd BiasTest::bias() const {
 }
 
 double BiasTest::detectable() const {
-    if (pairs() < kFewestPairs) return std::numeric_limits<double>::infinity();
-    const double count = pairs(), upper = 1 + upper_quantile(kMiss) / std::sqrt(2 * (count - 1));
+    if (pairs() < kMinPairs) return std::numeric_limits<double>::infinity();
+    const double count = pairs(), upper = 1 + upper_quantile(kMissProbability) / std::sqrt(2 * (count - 1));
     double largest = 0;
     for (std::size_t c = 0; c < 3; ++c) {
         const Moments m = moments(c);
         if (!(without_[c] > 0) || m.deviation == 0) continue; // any bias shows without noise
-        const double t = least_found(m.skewness, count) + upper_quantile(kMiss);
+        const double t = smallest_detected_t(m.skewness, count) + upper_quantile(kMissProbability);
         largest = std::max(largest, t * m.deviation * upper / std::sqrt(count) / (without_[c] / count));
     }
     return largest;
@@ -106,7 +106,7 @@ double BiasTest::p() const {
 
 double BiasTest::pairs_needed(double bias) const {
     const double now = detectable();
-    return std::isfinite(now) ? std::max<double>(kFewestPairs, pairs() * sqr(now / bias)) : kFewestPairs;
+    return std::isfinite(now) ? std::max<double>(kMinPairs, pairs() * sqr(now / bias)) : kMinPairs;
 }
 
 } // namespace duet::compare

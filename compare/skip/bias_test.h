@@ -8,9 +8,9 @@
 namespace duet::compare {
 
 /// Probabilities of a false alarm, and of missing a bias of the size that is reported as detectable.
-inline constexpr double kFalseAlarm = 0.01, kMiss = 0.01;
+inline constexpr double kFalseAlarmProbability = 0.01, kMissProbability = 0.01;
 /// With fewer pairs, the spread of the differences is not known well enough.
-inline constexpr int kFewestPairs = 64;
+inline constexpr int kMinPairs = 64;
 
 /// A paired test. A pair consists of the mean colors of two images rendered the two ways from the same seed.
 /// Their random numbers are the same wherever both ways use them. Common noise therefore cancels, and few pairs
@@ -23,11 +23,11 @@ public:
     int pairs() const { return static_cast<int>(differences_.size()); }
     /// Returns the mean of with − without, relative to without, per channel; 0 for a black channel.
     Rgbd bias() const;
-    /// Returns the relative bias that is found with probability 1 − kMiss, maximum over the channels. Infinite
-    /// for fewer than kFewestPairs pairs.
+    /// Returns the relative bias that is found with probability 1 − kMissProbability, maximum over the channels.
+    /// Infinite for fewer than kMinPairs pairs.
     double detectable() const;
     /// Returns the probability that two ways with the same expected mean differ at least this much, corrected
-    /// for the three channels. Below kFalseAlarm, they count as different.
+    /// for the three channels. Below kFalseAlarmProbability, they count as different.
     double p() const;
     /// Returns about how many pairs are needed for detectable() to be `bias`, given the noise so far.
     double pairs_needed(double bias) const;

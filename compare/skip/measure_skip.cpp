@@ -1,6 +1,6 @@
 #include "compare/skip/measure_skip.h"
 
-#include "common/image/same_bits.h"
+#include "common/image/bitwise_equal.h"
 #include "common/system/stopwatch.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 std::int64_t pixels_that_differ(const ImageRgb& a, const ImageRgb& b) {
     DUET_CHECK_EQ(a.size(), b.size());
     std::int64_t count = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) count += !same_bits(a[i], b[i]);
+    for (std::size_t i = 0; i < a.size(); ++i) count += !bitwise_equal(a[i], b[i]);
     return count;
 }
 
@@ -33,29 +33,29 @@ std::int64_t rays(const Rendering& rendering) {
 }
 
 std::string reason_of(const SkipCase& skip, const Rendering& rendering) {
-    for (const Skipped& s : rendering.statistics.skipped)
+    for (const SkippedWork& s : rendering.statistics.skipped)
         if (s.what == skip.statistic) return s.count < 0 ? s.why : message(s.count, ": ", s.why);
     return skip.statistic.empty() ? "" : "this scene has none to leave out";
 }
 
 /// Renders the repeats. The order alternates from pair to pair, so that neither way always benefits from warm caches.
-void render_repeats(SkipMeasurement& result, const SkipCase& skip, const View& view, const MeasureOptions& options,
+void render_repeats(SkipMeasurement& result, const SkipCase& skip, const View& view, const SkipMeasureSettings& options,
                     Control& control) {
     std::vector<double> seconds[2];
     for (int repeat = 0; repeat < options.repeats; ++repeat) {
-        Rendering pictures[2];
+        Rendering images[2];
         for (const int turn : {0, 1}) {
             const int with = (turn + repeat) % 2;
             const Stopwatch watch;
             Control inner{control.stop, {}};
-            pictures[with] = skip.render(view, options.seed + static_cast<std::uint64_t>(repeat), with == 1, inner);
+            images[with] = skip.render(view, options.seed + static_cast<std::uint64_t>(repeat), with == 1, inner);
             seconds[with].push_back(watch.seconds());
         }
         if (control.stopped()) return;
-        ++result.pictures;
-        result.pixels_differ += pixels_that_differ(pictures[0].radiance, pictures[1].radiance);
-        result.rays_saved += rays(pictures[0]) - rays(pictures[1]);
-        result.reason = reason_of(skip, pictures[1]);
+        ++result.image_pairs;
+        result.pixels_differ += pixels_that_differ(images[0].radiance, images[1].radiance);
+        result.rays_saved += rays(images[0]) - rays(images[1]);
+        result.reason = reason_of(skip, images[1]);
         control.report(0.2 * (repeat + 1) / options.repeats);
     }
     result.without = summary(seconds[0]);
@@ -64,7 +64,7 @@ void render_repeats(SkipMeasurement& result, const SkipCase& skip, const View& v
 
 /// Renders pairs until the bias would be detected or the time limit is reached. The number of pairs depends on
 /// the spread of the differences and not on their mean, so that stopping favors neither verdict.
-BiasTest find_bias(const SkipCase& skip, const View& view, const MeasureOptions& options, Control& control) {
+BiasTest find_bias(const SkipCase& skip, const View& view, const SkipMeasureSettings& options, Control& control) {
     constexpr int kBatch = 32;
     BiasTest test;
     const Stopwatch watch;
@@ -88,14 +88,15 @@ BiasTest find_bias(const SkipCase& skip, const View& view, const MeasureOptions&
 
 } // namespace
 
-SkipMeasurement measure_skip(const SkipCase& skip, const View& view, const MeasureOptions& options, Control& control) {
+SkipMeasurement measure_skip(const SkipCase& skip, const View& view, const SkipMeasureSettings& options,
+                             Control& control) {
     SkipMeasurement result;
     render_repeats(result, skip, view, options, control);
     if (control.stopped()) return result;
     result.proved = result.pixels_differ == 0;
     if (!result.proved && skip.proof == SkipProof::kNoBias) {
         result.bias = find_bias(skip, view, options, control);
-        result.proved = result.bias->detectable() <= options.bias && result.bias->p() >= kFalseAlarm;
+        result.proved = result.bias->detectable() <= options.bias && result.bias->p() >= kFalseAlarmProbability;
     }
     return result;
 }

@@ -13,7 +13,7 @@ struct SkipMeasurement {
         double median = 0, min = 0;
     };
     Seconds with, without;          ///< wall-clock times of render() alone, over the repeats
-    int pictures = 0;               ///< image pairs compared bit by bit: one per repeat, each with its own seed
+    int image_pairs = 0;            ///< image pairs compared bit by bit: one per repeat, each with its own seed
     std::int64_t pixels_differ = 0; ///< total over all pairs
     std::int64_t rays_saved = 0;    ///< indirect and shadow rays, total over all pairs
     std::string reason;             ///< what the pipeline reports about the skip: why, or how many; empty: nothing
@@ -21,7 +21,7 @@ struct SkipMeasurement {
     bool proved = false;
 };
 
-struct MeasureOptions {
+struct SkipMeasureSettings {
     int repeats = 5;
     std::uint64_t seed = 0;
     double bias = 0.001; ///< relative bias that must be detectable
@@ -29,6 +29,7 @@ struct MeasureOptions {
 };
 
 /// Renders the view with and without the skip in turns. If stopped by `control`, returns an incomplete result.
-SkipMeasurement measure_skip(const SkipCase& skip, const View& view, const MeasureOptions& options, Control& control);
+SkipMeasurement measure_skip(const SkipCase& skip, const View& view, const SkipMeasureSettings& options,
+                             Control& control);
 
 } // namespace duet::compare

@@ -42,7 +42,7 @@ std::vector<SkipCase> chosen(std::vector<SkipCase> all, const std::vector<std::s
     return all;
 }
 
-View view_of(const Scene& scene, PictureSize size) {
+View view_of(const Scene& scene, ImageSize size) {
     constexpr double kLongerSide = 128;
     const double scale = kLongerSide / std::max(scene.width, scene.height);
     const auto pixels = [&](int n) { return std::max(1, static_cast<int>(std::lround(n * scale))); };
@@ -64,11 +64,11 @@ std::string percent(double share) {
 /// Returns what was proved, or why nothing was.
 std::string verdict(const SkipMeasurement& m, double wanted) {
     if (m.pixels_differ == 0) return "same bits";
-    if (!m.bias) return message("NOT THE SAME: ", m.pixels_differ, " pixels of ", m.pictures, " pictures differ");
+    if (!m.bias) return message("NOT THE SAME: ", m.pixels_differ, " pixels of ", m.image_pairs, " pictures differ");
     const BiasTest& test = *m.bias;
     const std::string found =
         message(percent(largest_bias(test)), " in ", test.pairs(), " pairs, p = ", std::setprecision(2), test.p());
-    if (test.p() < kFalseAlarm) return "BIASED by " + found;
+    if (test.p() < kFalseAlarmProbability) return "BIASED by " + found;
     if (!std::isfinite(test.detectable()))
         return message("NOT PROVED: ", test.pairs(),
                        " pairs in the time given say nothing yet: a longer --budget is needed");
@@ -84,13 +84,13 @@ json row_json(const Row& row) {
     const auto seconds = [](const SkipMeasurement::Seconds& s) { return json{{"median", s.median}, {"min", s.min}}; };
     json result = {{"pipeline", row.skip.pipeline},
                    {"name", row.skip.name},
-                   {"left_out", row.skip.left_out},
+                   {"left_out", row.skip.omitted},
                    {"reason", m.reason},
                    {"seconds_with", seconds(m.with)},
                    {"seconds_without", seconds(m.without)},
                    {"saved", m.without.median > 0 ? json(1 - m.with.median / m.without.median) : json(nullptr)},
                    {"rays_saved", m.rays_saved},
-                   {"pictures", m.pictures},
+                   {"pictures", m.image_pairs},
                    {"pixels_differ", m.pixels_differ},
                    {"proof", m.pixels_differ == 0 ? "same bits"
                              : m.bias             ? "no bias"
@@ -144,7 +144,7 @@ void print_table(std::ostream& out, const SkipOptions& options, const View& view
         line(full_name(row.skip),
              {milliseconds(m.with.median), milliseconds(m.without.median), saved(m.with.median, m.without.median),
               saved(m.with.min, m.without.min)},
-             verdict(m, options.measure.bias) + "; " + row.skip.left_out +
+             verdict(m, options.measure.bias) + "; " + row.skip.omitted +
                  (m.reason.empty() ? "" : " (" + m.reason + ")") +
                  (m.rays_saved > 0 ? message(", ", m.rays_saved, " rays") : ""));
     }

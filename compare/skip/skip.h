@@ -1,7 +1,7 @@
 // `compare skip`: measures what each skip saves, and proves that the image stays the same.
 #pragma once
 
-#include "compare/pipeline.h"
+#include "compare/renderer.h"
 #include "compare/skip/measure_skip.h"
 
 #include <filesystem>
@@ -10,9 +10,9 @@ namespace duet::compare {
 
 struct SkipOptions {
     std::filesystem::path scene;
-    PictureSize size{0, 0}; ///< 0 × 0: the scene's aspect ratio, with a longer side of 128 pixels
+    ImageSize size{0, 0}; ///< 0 × 0: the scene's aspect ratio, with a longer side of 128 pixels
     SkipSettings settings;
-    MeasureOptions measure;
+    SkipMeasureSettings measure;
     std::vector<std::string> only; ///< PIPELINE/NAME, or NAME for both pipelines; empty: all
     std::string stats;             ///< file for the results as JSON; "-" for standard output; empty: none
     bool quiet = false;            ///< no progress bar, no table

@@ -28,14 +28,14 @@ Subcommand add_skip(CLI::App& app) {
     skip->add_option("--budget", options.measure.budget,
                      "Seconds at most for each skip whose pictures differ in bits: they are rendered in pairs until a "
                      "bias of 0.1 % would be found with 99 % power (default 120)")
-        ->check(number_within(0, 1e7, "a number from 0 to 1e7"));
+        ->check(number_in_range(0, 1e7, "a number from 0 to 1e7"));
     skip->add_option("--only", options.only,
                      "A skip by name (raster/back_faces, or lens for both pipelines'); may be given more than once")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     skip->add_option("--threads", options.settings.threads, "Threads (default: all)")->check(CLI::Range(1, 1024));
     skip->add_option("--seed", options.measure.seed, "The first seed; each repeat takes the next (default 0)")
-        ->check(whole_number());
+        ->check(unsigned_integer());
     skip->add_option("--stats", options.stats, "Write the rows as JSON to this file (-: standard output)");
     skip->add_flag("--quiet", options.quiet, "No table, no progress bar");
     skip->footer(std::string("Example:\n  compare skip models/cornell.json --only russian_roulette\n\n"
@@ -43,7 +43,7 @@ Subcommand add_skip(CLI::App& app) {
                              "bias is found by a test that would find one of 0.1 %; else the exit code is 1.") +
                  kExitCodes);
     return {skip, [all, size] {
-                all->size = size->empty() ? PictureSize{0, 0} : parse_picture_size(*size);
+                all->size = size->empty() ? ImageSize{0, 0} : parse_image_size(*size);
                 return compare::skip(*all);
             }};
 }

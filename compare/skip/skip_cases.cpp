@@ -11,11 +11,11 @@ namespace {
 constexpr AovSet kAllAovs{
     .depth = true, .normal = true, .albedo = true, .hit = true, .variance = false, .samples = true};
 
-/// A skip that is controlled by a member of Skips.
-struct Switch {
+/// A skip that is controlled by a member of SkipFlags.
+struct SkipSwitch {
     const char* name;
-    bool Skips::*member;
-    const char* left_out;
+    bool SkipFlags::*member;
+    const char* omitted;
     const char* statistic = "";
     SkipProof proof = SkipProof::kSameBits;
 };
@@ -24,35 +24,35 @@ struct Switch {
 // rounding decides which is nearer. Without culling, about one pixel in 100,000 of a dense mesh may therefore
 // show the back face, at the same position and distance. The bits are mostly the same; if not, the bias is
 // tested.
-constexpr Switch kRaster[] = {
-    {"frustum", &Skips::frustum, "objects and triangles that no pixel can see", "outside the frustum"},
-    {"back_faces", &Skips::back_faces, "back faces of closed, opaque meshes", "backfaces", SkipProof::kNoBias},
-    {"subpixel", &Skips::subpixel, "triangles between the samples", "sub-pixel"},
-    {"degenerate", &Skips::degenerate, "triangles of no area on the grid", "degenerate"},
-    {"lens", &Skips::lens, "a pass for each point of the lens", "lens"},
-    {"motion", &Skips::motion, "a pass for each moment", "motion"},
-    {"environment", &Skips::environment, "light of a black environment", "environment"},
+constexpr SkipSwitch kRaster[] = {
+    {"frustum", &SkipFlags::frustum, "objects and triangles that no pixel can see", "outside the frustum"},
+    {"back_faces", &SkipFlags::back_faces, "back faces of closed, opaque meshes", "backfaces", SkipProof::kNoBias},
+    {"subpixel", &SkipFlags::subpixel, "triangles between the samples", "sub-pixel"},
+    {"degenerate", &SkipFlags::degenerate, "triangles of no area on the grid", "degenerate"},
+    {"lens", &SkipFlags::lens, "a pass for each point of the lens", "lens"},
+    {"motion", &SkipFlags::motion, "a pass for each moment", "motion"},
+    {"environment", &SkipFlags::environment, "light of a black environment", "environment"},
 };
 
-constexpr Switch kRaytrace[] = {
-    {"textures", &Skips::textures, "making a material's BSDF anew at each hit", "textures"},
-    {"lens", &Skips::lens, "sampling the lens", "lens samples"},
-    {"motion", &Skips::motion, "sampling the time", "time samples"},
-    {"environment", &Skips::environment, "looking up a black environment", "environment"},
-    {"light_samples", &Skips::light_samples, "light samples that nothing sends or takes", "light samples"},
-    {"mirror_light", &Skips::mirror_light, "light samples at mirrors and glass"},
-    {"emission", &Skips::emission, "emission of surfaces where none emits"},
-    {"last_bounce", &Skips::last_bounce, "last rays that can find no light", "last bounce"},
-    {"shadow_rays", &Skips::shadow_rays, "shadow rays to light that is not reflected"},
+constexpr SkipSwitch kRaytrace[] = {
+    {"textures", &SkipFlags::textures, "making a material's BSDF anew at each hit", "textures"},
+    {"lens", &SkipFlags::lens, "sampling the lens", "lens samples"},
+    {"motion", &SkipFlags::motion, "sampling the time", "time samples"},
+    {"environment", &SkipFlags::environment, "looking up a black environment", "environment"},
+    {"light_samples", &SkipFlags::light_samples, "light samples that nothing sends or takes", "light samples"},
+    {"mirror_light", &SkipFlags::mirror_light, "light samples at mirrors and glass"},
+    {"emission", &SkipFlags::emission, "emission of surfaces where none emits"},
+    {"last_bounce", &SkipFlags::last_bounce, "last rays that can find no light", "last bounce"},
+    {"shadow_rays", &SkipFlags::shadow_rays, "shadow rays to light that is not reflected"},
 };
 
 /// Returns a case. set(settings, with) turns the skip on or off.
 template <typename Settings, typename Prepared, typename Set>
-SkipCase make_case(const char* pipeline, const Switch& s, const Prepared& prepared, const Settings& settings,
+SkipCase make_case(const char* pipeline, const SkipSwitch& s, const Prepared& prepared, const Settings& settings,
                    const Set& set) {
     return {pipeline,
             s.name,
-            s.left_out,
+            s.omitted,
             s.statistic,
             s.proof,
             [prepared, settings, set](const View& view, std::uint64_t seed, bool with, Control& control) {
@@ -65,12 +65,12 @@ SkipCase make_case(const char* pipeline, const Switch& s, const Prepared& prepar
 
 /// Adds the pipeline's switches and the AOVs, which are rendered only on request.
 template <typename Settings, typename Prepared, std::size_t N>
-void add_cases(std::vector<SkipCase>& cases, const char* pipeline, const Switch (&switches)[N],
+void add_cases(std::vector<SkipCase>& cases, const char* pipeline, const SkipSwitch (&switches)[N],
                const Prepared& prepared, const Settings& settings) {
-    for (const Switch& s : switches)
+    for (const SkipSwitch& s : switches)
         cases.push_back(make_case(pipeline, s, prepared, settings,
                                   [member = s.member](Settings& one, bool with) { one.skips.*member = with; }));
-    constexpr Switch kAuxiliary{"auxiliary", nullptr, "auxiliary pictures that are not asked for"};
+    constexpr SkipSwitch kAuxiliary{"auxiliary", nullptr, "auxiliary pictures that are not asked for"};
     cases.push_back(make_case(pipeline, kAuxiliary, prepared, settings,
                               [](Settings& one, bool with) { one.aovs = with ? AovSet{} : kAllAovs; }));
 }
@@ -79,19 +79,19 @@ void add_cases(std::vector<SkipCase>& cases, const char* pipeline, const Switch 
 
 std::vector<SkipCase> skip_cases(const Scene& scene, const SkipSettings& settings) {
     std::vector<SkipCase> cases;
-    raster::Settings raster;
+    raster::RasterSettings raster;
     raster.samples_per_pixel = settings.raster_spp;
     raster.threads = settings.threads;
     add_cases(cases, "raster", kRaster, raster::prepare(scene, raster), raster);
 
-    raytrace::Settings raytrace;
+    raytrace::PathTracerSettings raytrace;
     raytrace.samples_per_pixel = settings.raytrace_spp;
     raytrace.threads = settings.threads;
-    const raytrace::Prepared prepared = raytrace::prepare(scene, raytrace);
+    const raytrace::PathTracerScene prepared = raytrace::prepare(scene, raytrace);
     add_cases(cases, "raytrace", kRaytrace, prepared, raytrace);
-    constexpr Switch kRoulette{"russian_roulette", nullptr, "most of the dim paths", "", SkipProof::kNoBias};
+    constexpr SkipSwitch kRoulette{"russian_roulette", nullptr, "most of the dim paths", "", SkipProof::kNoBias};
     cases.push_back(make_case("raytrace", kRoulette, prepared, raytrace,
-                              [](raytrace::Settings& one, bool with) { one.russian_roulette = with; }));
+                              [](raytrace::PathTracerSettings& one, bool with) { one.russian_roulette = with; }));
     return cases;
 }
 

@@ -21,7 +21,7 @@ enum class SkipProof {
 /// A skip to be measured.
 struct SkipCase {
     std::string pipeline, name; ///< "raster" or "raytrace"; name on the command line and in JSON
-    std::string left_out;       ///< what it omits, in words
+    std::string omitted;        ///< what it omits, in words
     std::string statistic;      ///< name in RenderStatistics::skipped; empty: none
     SkipProof proof = SkipProof::kSameBits;
     /// Renders one image with or without the skip.

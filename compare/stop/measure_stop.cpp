@@ -2,7 +2,7 @@
 
 #include "common/system/stopwatch.h"
 #include "compare/bench/measure.h"
-#include "raytrace/schedule.h"
+#include "raytrace/sample_schedule.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,32 +34,32 @@ public:
         prepared_.emplace(raytrace::prepare(scene, base_));
     }
 
-    StopTrial to_error(double error, std::uint64_t seed, Control& control) {
+    StopTrial run_to_error(double error, std::uint64_t seed, Control& control) {
         StopTrial trial;
         trial.seed = seed;
-        raytrace::Settings adaptive = base_;
+        raytrace::PathTracerSettings adaptive = base_;
         adaptive.seed = seed;
         adaptive.error_limit = error;
         adaptive.adaptive = true;
         adaptive.aovs.samples = true;
         const auto [rendering, seconds] = rendered(adaptive, control);
         trial.seconds = seconds;
-        trial.stated = rendering.statistics.estimated_relmse;
+        trial.estimated_relmse = rendering.statistics.estimated_relmse;
         trial.samples = mean_samples(rendering);
         set_errors(rendering.radiance, trial.relmse, trial.mse);
         if (control.stopped()) return trial;
 
-        raytrace::Settings even = base_;
-        even.seed = seed;
-        even.samples_per_pixel = std::max(1, static_cast<int>(std::lround(trial.samples)));
-        const auto [plain, plain_seconds] = rendered(even, control);
-        trial.even_seconds = plain_seconds;
-        set_errors(plain.radiance, trial.even_relmse, trial.even_mse);
+        raytrace::PathTracerSettings uniform_settings = base_;
+        uniform_settings.seed = seed;
+        uniform_settings.samples_per_pixel = std::max(1, static_cast<int>(std::lround(trial.samples)));
+        const auto [uniform, uniform_seconds] = rendered(uniform_settings, control);
+        trial.uniform_seconds = uniform_seconds;
+        set_errors(uniform.radiance, trial.uniform_relmse, trial.uniform_mse);
         return trial;
     }
 
-    TimeTrial to_time(double time, std::uint64_t seed, Control& control) {
-        raytrace::Settings limited = base_;
+    TimeTrial run_to_time(double time, std::uint64_t seed, Control& control) {
+        raytrace::PathTracerSettings limited = base_;
         limited.seed = seed;
         limited.time_limit = time;
         limited.adaptive = true;
@@ -69,7 +69,7 @@ public:
     }
 
 private:
-    std::pair<Rendering, double> rendered(const raytrace::Settings& settings, Control& control) {
+    std::pair<Rendering, double> rendered(const raytrace::PathTracerSettings& settings, Control& control) {
         const Stopwatch watch;
         Control silent{control.stop, {}};
         Rendering rendering = raytrace::render(*prepared_, view_, settings, silent);
@@ -80,8 +80,8 @@ private:
         for (const std::uint32_t n : rendering.samples) sum += n;
         return sum / static_cast<double>(rendering.samples.size());
     }
-    void set_errors(const ImageRgb& picture, double& relmse, double& mse) const {
-        const PictureError error = picture_error(picture, reference_.mean, all_);
+    void set_errors(const ImageRgb& image, double& relmse, double& mse) const {
+        const ImageError error = image_error(image, reference_.mean, all_);
         relmse = error.relmse - own_relmse_;
         mse = error.mse - own_mse_;
     }
@@ -90,8 +90,8 @@ private:
     const Reference& reference_;
     double own_mse_, own_relmse_;
     Image<std::uint8_t> all_;
-    raytrace::Settings base_;
-    std::optional<raytrace::Prepared> prepared_;
+    raytrace::PathTracerSettings base_;
+    std::optional<raytrace::PathTracerScene> prepared_;
 };
 
 template <typename Figure> double mean(const std::vector<StopTrial>& trials, Figure figure) {
@@ -114,24 +114,24 @@ double StopResult::mean_samples() const {
     return mean(trials, [](const StopTrial& t) { return t.samples; });
 }
 
-bool StopResult::at_once() const {
+bool StopResult::stopped_at_minimum() const {
     const auto least = std::count_if(trials.begin(), trials.end(),
-                                     [](const StopTrial& t) { return t.samples <= raytrace::kMinForError; });
+                                     [](const StopTrial& t) { return t.samples <= raytrace::kMinSamplesForError; });
     return 2 * static_cast<std::size_t>(least) >= trials.size();
 }
 
-double StopResult::to_even_relmse() const {
+double StopResult::cost_ratio_relmse() const {
     return mean(trials, [](const StopTrial& t) { return t.relmse; }) *
            mean(trials, [](const StopTrial& t) { return t.seconds; }) /
-           (mean(trials, [](const StopTrial& t) { return t.even_relmse; }) *
-            mean(trials, [](const StopTrial& t) { return t.even_seconds; }));
+           (mean(trials, [](const StopTrial& t) { return t.uniform_relmse; }) *
+            mean(trials, [](const StopTrial& t) { return t.uniform_seconds; }));
 }
 
-double StopResult::to_even_mse() const {
+double StopResult::cost_ratio_mse() const {
     return mean(trials, [](const StopTrial& t) { return t.mse; }) *
            mean(trials, [](const StopTrial& t) { return t.seconds; }) /
-           (mean(trials, [](const StopTrial& t) { return t.even_mse; }) *
-            mean(trials, [](const StopTrial& t) { return t.even_seconds; }));
+           (mean(trials, [](const StopTrial& t) { return t.uniform_mse; }) *
+            mean(trials, [](const StopTrial& t) { return t.uniform_seconds; }));
 }
 
 bool has_caustics(const Scene& scene) { return scene.needs.specular && !scene.lights.empty(); }
@@ -149,10 +149,10 @@ std::optional<StopResult> measure_stop(const Scene& scene, const View& view, con
     };
     for (int i = 0; i < settings.seeds; ++i) {
         const std::uint64_t seed = kFirstSeed + static_cast<std::uint64_t>(i);
-        result.trials.push_back(trials.to_error(settings.error, seed, control));
+        result.trials.push_back(trials.run_to_error(settings.error, seed, control));
         if (!next()) return std::nullopt;
         if (settings.time <= 0) continue;
-        result.times.push_back(trials.to_time(settings.time, seed, control));
+        result.times.push_back(trials.run_to_time(settings.time, seed, control));
         if (!next()) return std::nullopt;
     }
     return result;

@@ -24,10 +24,10 @@ struct StopSettings {
 struct StopTrial {
     std::uint64_t seed = 0;
     double samples = 0;           ///< mean samples per pixel at the end
-    double seconds = 0, even_seconds = 0;
-    double stated = 0;            ///< relMSE as estimated by the render
+    double seconds = 0, uniform_seconds = 0;
+    double estimated_relmse = 0;  ///< relMSE as estimated by the render
     double relmse = 0, mse = 0;   ///< against the reference, minus the reference's own error
-    double even_relmse = 0, even_mse = 0;
+    double uniform_relmse = 0, uniform_mse = 0;
 };
 /// One render with a time limit.
 struct TimeTrial {
@@ -43,9 +43,9 @@ struct StopResult {
 
     double median_error() const;  ///< achieved relMSE, median over the seeds
     double mean_samples() const;
-    bool at_once() const; ///< whether at least half of the seeds stopped at the minimum sample count
-    double to_even_relmse() const; ///< adaptive over uniform sampling in relMSE × seconds; below 1, adaptivity pays
-    double to_even_mse() const;
+    bool stopped_at_minimum() const;  ///< whether at least half of the seeds stopped at the minimum sample count
+    double cost_ratio_relmse() const; ///< adaptive over uniform sampling in relMSE × seconds; below 1, adaptivity pays
+    double cost_ratio_mse() const;
 };
 
 /// Returns whether the scene may have caustics that camera paths seldom find: it has a specular surface (mirror

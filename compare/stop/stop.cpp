@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-View view_of(const Scene& scene, PictureSize size) {
+View view_of(const Scene& scene, ImageSize size) {
     if (size.width > 0) return {scene.camera, size.width, size.height};
     const double scale = std::min(1.0, 96.0 / std::max(scene.width, scene.height));
     const auto side = [&](int pixels) { return std::max(1, static_cast<int>(std::lround(pixels * scale))); };
@@ -30,12 +30,13 @@ struct WorstTime {
     double ratio = 1;
     bool missed = false;
 };
-WorstTime worst_time(const StopResult& result, double asked) {
+WorstTime worst_time(const StopResult& result, double requested) {
     WorstTime worst;
     for (const TimeTrial& trial : result.times) {
-        const double ratio = trial.seconds / asked;
+        const double ratio = trial.seconds / requested;
         if (std::abs(std::log(ratio)) > std::abs(std::log(worst.ratio))) worst.ratio = ratio;
-        if (std::abs(trial.seconds - asked) > std::max(kTimeTolerance * asked, trial.one_pass)) worst.missed = true;
+        if (std::abs(trial.seconds - requested) > std::max(kTimeTolerance * requested, trial.one_pass))
+            worst.missed = true;
     }
     return worst;
 }
@@ -50,7 +51,7 @@ struct Row {
     /// Returns whether the error is out of tolerance. A smaller error is acceptable if no render could have
     /// stopped sooner.
     bool missed_error() const {
-        if (result.caustics || (result.at_once() && error_ratio < 1)) return false;
+        if (result.caustics || (result.stopped_at_minimum() && error_ratio < 1)) return false;
         return !(std::abs(error_ratio - 1) <= kErrorTolerance); // true for NaN
     }
 };
@@ -58,13 +59,14 @@ struct Row {
 json as_json(const Row& row, const StopOptions& options) {
     json trials = json::array();
     for (const StopTrial& t : row.result.trials)
-        trials.push_back({{"seed", t.seed},
-                          {"samples_per_pixel", t.samples},
-                          {"seconds", t.seconds},
-                          {"stated_relmse", t.stated},
-                          {"relmse", t.relmse},
-                          {"mse", t.mse},
-                          {"even", {{"seconds", t.even_seconds}, {"relmse", t.even_relmse}, {"mse", t.even_mse}}}});
+        trials.push_back(
+            {{"seed", t.seed},
+             {"samples_per_pixel", t.samples},
+             {"seconds", t.seconds},
+             {"stated_relmse", t.estimated_relmse},
+             {"relmse", t.relmse},
+             {"mse", t.mse},
+             {"even", {{"seconds", t.uniform_seconds}, {"relmse", t.uniform_relmse}, {"mse", t.uniform_mse}}}});
     json times = json::array();
     for (const TimeTrial& t : row.result.times) times.push_back(t.seconds);
     return {{"scene", row.scene},
@@ -73,9 +75,9 @@ json as_json(const Row& row, const StopOptions& options) {
             {"asked_relmse", options.settings.error},
             {"median_relmse", row.result.median_error()},
             {"caustics", row.result.caustics},
-            {"at_once", row.result.at_once()},
+            {"at_once", row.result.stopped_at_minimum()},
             {"samples_per_pixel", row.result.mean_samples()},
-            {"adaptive_to_even", {{"relmse", row.result.to_even_relmse()}, {"mse", row.result.to_even_mse()}}},
+            {"adaptive_to_even", {{"relmse", row.result.cost_ratio_relmse()}, {"mse", row.result.cost_ratio_mse()}}},
             {"missed", row.missed_error() || row.time.missed},
             {"trials", trials},
             {"seconds_to_time", times}};
@@ -98,13 +100,14 @@ void print_row(const Row& row, const StopOptions& options) {
     double seconds = 0;
     for (const StopTrial& t : row.result.trials) seconds += t.seconds / static_cast<double>(row.result.trials.size());
     std::printf("%-24s %4dx%-4d  %9.2f  %9.0f  %8s%8s  %8.2f", row.scene.c_str(), row.view.width, row.view.height,
-                row.error_ratio, row.result.mean_samples(), ratio_text(row.result.to_even_relmse()).c_str(),
-                ratio_text(row.result.to_even_mse()).c_str(), seconds);
+                row.error_ratio, row.result.mean_samples(), ratio_text(row.result.cost_ratio_relmse()).c_str(),
+                ratio_text(row.result.cost_ratio_mse()).c_str(), seconds);
     if (options.settings.time > 0) std::printf("  %8.2f", row.time.ratio);
-    std::printf("%s%s%s\n", row.result.caustics  ? "  (caustics)"
-                    : row.result.at_once() ? "  (at once)"
-                                           : "", row.missed_error() ? "  MISSED" : "",
-                row.time.missed ? "  TIME MISSED" : "");
+    std::printf("%s%s%s\n",
+                row.result.caustics               ? "  (caustics)"
+                : row.result.stopped_at_minimum() ? "  (at once)"
+                                                  : "",
+                row.missed_error() ? "  MISSED" : "", row.time.missed ? "  TIME MISSED" : "");
     std::fflush(stdout);
 }
 
@@ -117,14 +120,14 @@ std::optional<Row> measured(const StopOptions& options, const std::filesystem::p
         Control control{&interrupt.flag(), [&](double fraction) { bar.update(fraction); }};
         return work(control);
     };
-    const KeptReference kept = with_bar(": reference", [&](Control& control) {
-        const ReferenceSettings settings{options.references, options.reference_spp, raytrace::Settings().max_depth,
-                                         options.settings.threads};
+    const CachedReference cached = with_bar(": reference", [&](Control& control) {
+        const ReferenceSettings settings{options.references, options.reference_spp,
+                                         raytrace::PathTracerSettings().max_depth, options.settings.threads};
         return reference_by("path", scene, row.view, settings, control);
     });
-    if (!kept) return std::nullopt;
+    if (!cached) return std::nullopt;
     std::optional<StopResult> result = with_bar(": measuring", [&](Control& control) {
-        return measure_stop(scene, row.view, kept.reference, options.settings, control);
+        return measure_stop(scene, row.view, cached.reference, options.settings, control);
     });
     if (!result) return std::nullopt;
     row.result = std::move(*result);

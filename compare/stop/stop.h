@@ -12,7 +12,7 @@ namespace duet::compare {
 
 struct StopOptions {
     std::vector<std::filesystem::path> scenes;
-    PictureSize size{0, 0}; ///< 0 × 0: the scene's aspect ratio, with a longer side of 96 pixels
+    ImageSize size{0, 0}; ///< 0 × 0: the scene's aspect ratio, with a longer side of 96 pixels
     StopSettings settings;
     int reference_spp = 4096;
     std::filesystem::path references; ///< cache of compare bench; empty: default_reference_folder()

@@ -39,7 +39,7 @@ Subcommand add_stop(CLI::App& app) {
                     "with mirrors or glass and lamps has caustics, and its error is reported only.") +
         kExitCodes);
     return {stop, [all, size] {
-                if (!size->empty()) all->size = parse_picture_size(*size);
+                if (!size->empty()) all->size = parse_image_size(*size);
                 return compare::stop(*all);
             }};
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/vec/vec.h"
-#include "compare/metrics/normal.h" // sidak_level, for several tests
+#include "compare/metrics/normal_distribution.h" // sidak_level, for several tests
 
 #include <cstdint>
 #include <functional>
@@ -18,7 +18,7 @@ double chi_squared_tail(double statistic, int degrees_of_freedom);
 
 struct ChiSquared {
     double p_value = 0; ///< probability of counts at least this unlikely
-    std::string account; ///< statistic, degrees of freedom and worst bin, for the failure message
+    std::string details; ///< statistic, degrees of freedom and worst bin, for the failure message
 };
 /// Compares two histograms of equal size. Bins with an expectation below 5 are pooled, including those with
 /// expectation 0.

@@ -1,8 +1,8 @@
 // This test renders a floor of many triangles that extends below and behind the eye. After clipping at the near plane
 // and the guard band it must have no gap and no overlap.
-#include "compare/stress/book_raster.h"
 #include "compare/stress/projection_runs.h"
 #include "compare/stress/projection_scenes.h"
+#include "compare/stress/textbook_rasterizer.h"
 
 namespace duet::compare {
 
@@ -21,7 +21,7 @@ Mesh random_floor(TrialRandom& random, float height, float extent) {
                 return i == 0 ? -extent : i == kCells ? extent : extent * (2.0f * static_cast<float>(i) / kCells - 1);
             };
             const bool inner = row % kCells != 0 && column % kCells != 0;
-            const float reach = random.magnitude(height, extent);
+            const float reach = random.log_uniform(height, extent);
             const float x = inner ? reach * random.uniform(-1, 1) : along(column);
             floor.positions.emplace_back(x, -height, inner ? reach * random.uniform(-1, 1) : along(row));
         }
@@ -55,10 +55,10 @@ private:
 };
 
 /// Counts how many of the triangles cover each sample.
-Image<int> count_careful(const Mesh& floor, const TrialView& v) {
+Image<int> count_library(const Mesh& floor, const TrialView& v) {
     Image<int> count(kSide, kSide, 0);
     CoverageProbe probe(v.window);
-    for (const raster::DrawTriangle& triangle : set_up(floor, v.view, v.window.offset).outlines) {
+    for (const raster::DrawTriangle& triangle : set_up_triangles(floor, v.view, v.window.offset).triangles) {
         probe.draw(triangle.corners);
         v.window.for_each(
             [&](int x, int y) { count(x - v.window.rect.x0, y - v.window.rect.y0) += probe.covers(x, y); });
@@ -69,11 +69,11 @@ Image<int> count_naive(const Mesh& floor, const TrialView& v) {
     Image<int> count(kSide, kSide, 0);
     const Mat4 matrix(v.pinhole.world_to_pixel);
     for (const auto& t : floor.triangles) {
-        const auto vertex = [&](std::size_t i) { return book_project(matrix, floor.positions[t[i]]); };
-        const BookTriangle triangle{vertex(0), vertex(1), vertex(2)};
+        const auto vertex = [&](std::size_t i) { return textbook_project(matrix, floor.positions[t[i]]); };
+        const TextbookTriangle triangle{vertex(0), vertex(1), vertex(2)};
         v.window.for_each([&](int x, int y) {
             count(x - v.window.rect.x0, y - v.window.rect.y0) +=
-                book_covers(triangle, Vec2(v.window.offset.position(x, y)));
+                textbook_covers(triangle, Vec2(v.window.offset.position(x, y)));
         });
     }
     return count;
@@ -87,12 +87,12 @@ StressResult clipped_floor(const StressTest& test, const StressSetting& setting)
         TrialView v = random_view(random, kSide);
         v.view.camera.look_at = v.view.camera.look_at - v.view.camera.eye;
         v.view.camera.eye = {0, 0, 0};
-        v.pinhole = CameraModel(v.view).through();
-        const float height = static_cast<float>(v.pinhole.near) * random.magnitude(0.1f, 1000);
-        const float extent = height * random.magnitude(10, 1e5f);
+        v.pinhole = CameraModel(v.view).pinhole();
+        const float height = static_cast<float>(v.pinhole.near) * random.log_uniform(0.1f, 1000);
+        const float extent = height * random.log_uniform(10, 1e5f);
         const Mesh floor = random_floor(random, height, extent);
         const Square square(v.pinhole, height, extent);
-        const Image<int> count = count_careful(floor, v), naive = count_naive(floor, v);
+        const Image<int> count = count_library(floor, v), naive = count_naive(floor, v);
         int wrong = 0, naive_wrong = 0;
         v.window.for_each([&](int x, int y) {
             const std::optional<bool> seen = square.sees(v.window.offset.position(x, y));
@@ -105,8 +105,8 @@ StressResult clipped_floor(const StressTest& test, const StressSetting& setting)
         trial.note("floor ", exact(height), " below the eye, to ", exact(extent), " on all sides; looking along ",
                    exact(Vec3(v.pinhole.forward)), ", near ", v.pinhole.near, ", ", v.view.width, "x", v.view.height,
                    " pixels from (", v.window.rect.x0, ", ", v.window.rect.y0, ")");
-        trial.careful(wrong);
-        trial.naive(naive_wrong);
+        trial.record(wrong);
+        trial.record_naive(naive_wrong);
     });
 }
 

@@ -5,17 +5,17 @@
 
 namespace duet::compare {
 
-using raster::FixedPoint, raster::kSubPixels;
+using raster::FixedPoint, raster::kSubpixels;
 
 namespace {
 
 constexpr int kPictureSide = 16384; // the largest side that the rasterizer accepts
 /// This is the greatest coordinate that the guard band allows for the largest image.
-constexpr std::int64_t kFarthest = (static_cast<std::int64_t>(raster::kGuardBand) + kPictureSide) * kSubPixels;
+constexpr std::int64_t kFarthest = (static_cast<std::int64_t>(raster::kGuardBand) + kPictureSide) * kSubpixels;
 
 std::int32_t within_guard(std::int64_t x) {
     return static_cast<std::int32_t>(
-        std::clamp<std::int64_t>(x, -static_cast<std::int64_t>(raster::kGuardBand) * kSubPixels, kFarthest));
+        std::clamp<std::int64_t>(x, -static_cast<std::int64_t>(raster::kGuardBand) * kSubpixels, kFarthest));
 }
 FixedPoint guarded(std::int64_t x, std::int64_t y) { return {within_guard(x), within_guard(y)}; }
 
@@ -28,7 +28,9 @@ FixedPoint near(TrialRandom& random, FixedPoint p, std::int64_t reach) {
     return guarded(p.x + dx, p.y + about(random, reach));
 }
 /// Returns a distance in grid points, of a random order of magnitude from 1 to the whole guard band.
-std::int64_t any_reach(TrialRandom& random) { return std::lround(random.magnitude(1, static_cast<float>(kFarthest))); }
+std::int64_t any_reach(TrialRandom& random) {
+    return std::lround(random.log_uniform(1, static_cast<float>(kFarthest)));
+}
 
 /// Returns a uniform point within the guard band.
 FixedPoint anywhere(TrialRandom& random) { return near(random, {kFarthest / 2, kFarthest / 2}, kFarthest); }
@@ -64,10 +66,10 @@ struct Border {
 Border around(TrialRandom& random, const Window& window) {
     const auto margin = [&] { return any_reach(random); };
     const raster::PixelRect& r = window.rect;
-    return {within_guard(std::int64_t{r.x0} * kSubPixels - margin()),
-            within_guard(std::int64_t{r.y0} * kSubPixels - margin()),
-            within_guard(std::int64_t{r.x1} * kSubPixels + margin()),
-            within_guard(std::int64_t{r.y1} * kSubPixels + margin())};
+    return {within_guard(std::int64_t{r.x0} * kSubpixels - margin()),
+            within_guard(std::int64_t{r.y0} * kSubpixels - margin()),
+            within_guard(std::int64_t{r.x1} * kSubpixels + margin()),
+            within_guard(std::int64_t{r.y1} * kSubpixels + margin())};
 }
 
 } // namespace
@@ -78,7 +80,7 @@ Window random_window(TrialRandom& random, int side) {
     };
     const int x = start(), y = start();
     Window window{.rect = {x, y, x + side, y + side}, .offset = {}};
-    const auto place = [&] { return static_cast<std::int32_t>(random.below(kSubPixels + 1)); };
+    const auto place = [&] { return static_cast<std::int32_t>(random.below(kSubpixels + 1)); };
     if (random.below(4) != 0) window.offset = {place(), place()};
     return window;
 }
@@ -87,7 +89,7 @@ FixedPoint point_in(TrialRandom& random, const Window& window) {
     const raster::PixelRect& r = window.rect;
     const auto pick = [&](int from, int to, std::int32_t offset, bool on_sample) {
         const int pixel = from + static_cast<int>(random.below(static_cast<std::uint32_t>(to - from)));
-        return pixel * kSubPixels + (on_sample ? offset : static_cast<std::int32_t>(random.below(kSubPixels)));
+        return pixel * kSubpixels + (on_sample ? offset : static_cast<std::int32_t>(random.below(kSubpixels)));
     };
     const bool on_sample = random.coin();
     const std::int32_t x = pick(r.x0, r.x1, window.offset.x, on_sample);
@@ -119,7 +121,7 @@ GridTriangle random_triangle(TrialRandom& random, const Window& window, std::uin
     case 6: { // with corners on samples
         const auto on_sample = [&] {
             const FixedPoint q = point_in(random, window);
-            return FixedPoint{(q.x & -kSubPixels) + window.offset.x, (q.y & -kSubPixels) + window.offset.y};
+            return FixedPoint{(q.x & -kSubpixels) + window.offset.x, (q.y & -kSubpixels) + window.offset.y};
         };
         return {on_sample(), on_sample(), on_sample()};
     }

@@ -1,14 +1,14 @@
 // This header declares random triangles and meshes on the subpixel grid that exercise the coverage rules.
 #pragma once
 
-#include "compare/stress/drawing.h"
+#include "compare/stress/raster_stages.h"
 #include "compare/stress/trials.h"
 
 #include <vector>
 
 namespace duet::compare {
 
-/// Returns a window of pixels at a random position in an image of up to kMaxPictureSide per side. The sample is at a
+/// Returns a window of pixels at a random position in an image of up to kMaxRenderSide per side. The sample is at a
 /// random offset in the pixel, and in one of four windows at its center.
 Window random_window(TrialRandom& random, int side);
 

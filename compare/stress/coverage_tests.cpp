@@ -1,18 +1,20 @@
 // These tests compare the coverage of single triangles, and of meshes whose triangles share every edge, with exact
 // integers.
-#include "compare/stress/book_raster.h"
 #include "compare/stress/coverage_meshes.h"
+#include "compare/stress/textbook_rasterizer.h"
 
 namespace duet::compare {
 
 namespace {
 
-using raster::kSubPixels;
+using raster::kSubpixels;
 
 constexpr int kSide = 12; // pixels per side of a trial's window
 
-BookTriangle as_book(const GridTriangle& t) {
-    const auto vertex = [](raster::FixedPoint p) { return BookVertex{Vec2(Vec2d(p.x, p.y) * (1.0 / kSubPixels)), 1}; };
+TextbookTriangle as_textbook(const GridTriangle& t) {
+    const auto vertex = [](raster::FixedPoint p) {
+        return TextbookVertex{Vec2(Vec2d(p.x, p.y) * (1.0 / kSubpixels)), 1};
+    };
     return {vertex(t[0]), vertex(t[1]), vertex(t[2])};
 }
 
@@ -32,42 +34,42 @@ StressResult exact_integers(const StressTest& test, const StressSetting& setting
         const GridTriangle triangle = random_triangle(trial.random, window, kind);
         CoverageProbe probe(window);
         probe.draw(triangle);
-        const BookTriangle book = as_book(triangle);
-        int wrong = 0, book_wrong = 0;
+        const TextbookTriangle textbook = as_textbook(triangle);
+        int wrong = 0, textbook_wrong = 0;
         window.for_each([&](int x, int y) {
             const bool covered = covers(triangle, window.grid_x(x), window.grid_y(y));
             wrong += probe.covers(x, y) != covered;
-            book_wrong += book_covers(book, Vec2(window.offset.position(x, y))) != covered;
+            textbook_wrong += textbook_covers(textbook, Vec2(window.offset.position(x, y))) != covered;
         });
         note_window(trial, window);
         trial.note("triangle of 1/256 pixel: ", describe(triangle));
-        trial.careful(wrong);
-        trial.naive(book_wrong);
+        trial.record(wrong);
+        trial.record_naive(textbook_wrong);
     });
 }
 
 /// Counts the samples of the window whose coverage by the mesh is not exactly one. Counter-clockwise triangles count
 /// as −1.
 struct NotOnce {
-    int careful = 0, naive = 0;
+    int library = 0, naive = 0;
 };
 NotOnce count_not_once(const std::vector<GridTriangle>& mesh, const Window& window) {
-    Image<int> sums(kSide, kSide, 0), book_sums(kSide, kSide, 0);
+    Image<int> sums(kSide, kSide, 0), textbook_sums(kSide, kSide, 0);
     CoverageProbe probe(window);
     for (const GridTriangle& triangle : mesh) {
         const int turn = winding(triangle);
         if (turn == 0) continue;
         probe.draw(triangle);
-        const BookTriangle book = as_book(triangle);
+        const TextbookTriangle textbook = as_textbook(triangle);
         window.for_each([&](int x, int y) {
             const int column = x - window.rect.x0, row = y - window.rect.y0;
             if (probe.covers(x, y)) sums(column, row) += turn;
-            if (book_covers(book, Vec2(window.offset.position(x, y)))) book_sums(column, row) += turn;
+            if (textbook_covers(textbook, Vec2(window.offset.position(x, y)))) textbook_sums(column, row) += turn;
         });
     }
     NotOnce result;
-    for (const int sum : sums) result.careful += sum != 1;
-    for (const int sum : book_sums) result.naive += sum != 1;
+    for (const int sum : sums) result.library += sum != 1;
+    for (const int sum : textbook_sums) result.naive += sum != 1;
     return result;
 }
 
@@ -79,12 +81,12 @@ StressResult covered_once(const StressTest& test, const StressSetting& setting) 
         const NotOnce wrong = count_not_once(mesh, window);
         note_window(trial, window);
         trial.note(mesh.size(), " triangles, the first of them ", describe(mesh.front()));
-        trial.careful(wrong.careful);
-        trial.naive(wrong.naive);
+        trial.record(wrong.library);
+        trial.record_naive(wrong.naive);
     });
 }
 
-constexpr std::string_view kBook = "barycentrics >= 0 in float, as tinyrenderer";
+constexpr std::string_view kTextbookMethod = "barycentrics >= 0 in float, as tinyrenderer";
 constexpr std::string_view kOnce = "the mesh's border runs around every sample once: so must the sum of its triangles";
 
 constexpr StressTest kTests[] = {
@@ -94,7 +96,7 @@ constexpr StressTest kTests[] = {
      .bound = 0,
      .unit = "wrong samples",
      .source = "the rule's definition in 128-bit integers: the sample moved right by an infinitely small step",
-     .naive = kBook,
+     .naive = kTextbookMethod,
      .trials = 1'000'000,
      .run = exact_integers},
     {.name = "coverage/once-fans",
@@ -102,7 +104,7 @@ constexpr StressTest kTests[] = {
      .bound = 0,
      .unit = "wrong samples",
      .source = kOnce,
-     .naive = kBook,
+     .naive = kTextbookMethod,
      .trials = 20'000,
      .run = covered_once<random_fan>},
     {.name = "coverage/once-strips",
@@ -110,7 +112,7 @@ constexpr StressTest kTests[] = {
      .bound = 0,
      .unit = "wrong samples",
      .source = kOnce,
-     .naive = kBook,
+     .naive = kTextbookMethod,
      .trials = 20'000,
      .run = covered_once<random_strip>},
     {.name = "coverage/once-grids",
@@ -118,7 +120,7 @@ constexpr StressTest kTests[] = {
      .bound = 0,
      .unit = "wrong samples",
      .source = kOnce,
-     .naive = kBook,
+     .naive = kTextbookMethod,
      .trials = 20'000,
      .run = covered_once<random_grid>},
 };

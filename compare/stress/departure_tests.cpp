@@ -1,9 +1,9 @@
 // These tests spawn rays from surfaces, at any scale and also from instances. The rays must neither hit their own
 // surface nor miss nearby ones.
 #include "common/vec/frame.h"
+#include "compare/stress/accelerated_scene.h"
 #include "compare/stress/errors.h"
 #include "compare/stress/naive.h"
-#include "compare/stress/stage.h"
 #include "compare/stress/trials.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace duet::compare {
 
 namespace {
 
-constexpr float kBooksTMin = 0.001f; ///< Ray Tracing in One Weekend, §9.3
+constexpr float kTextbookTMin = 0.001f; ///< Ray Tracing in One Weekend, §9.3
 
 Mat4 random_placement(TrialRandom& random, float scale) {
     const auto stretch = [&] { return static_cast<double>(random.sign() * random.uniform(0.3f, 1) * scale); };
@@ -43,7 +43,7 @@ Shape random_shape(TrialRandom& random, float scale) {
 /// Returns a random point of the shape, in object space.
 Vec3 point_of(const Shape& shape, TrialRandom& random) {
     if (const auto* sphere = std::get_if<Sphere>(&shape)) return sphere->center + random.direction() * sphere->radius;
-    const Corners c = primitive_corners(shape, 0);
+    const PrimitiveVertices c = primitive_vertices(shape, 0);
     const float u = random.uniform(), v = c.count == 4 ? random.uniform() : random.uniform(0, 1 - u);
     return c.p[0] + (c.p[1] - c.p[0]) * u + ((c.count == 4 ? c.p[3] : c.p[2]) - c.p[0]) * v;
 }
@@ -55,71 +55,71 @@ std::optional<float> naive_hit(const Scene& scene, Ray ray) {
     ray.direction = transform_vector(object.to_object, ray.direction);
     const Shape& shape = scene.shapes[object.shape];
     if (const auto* sphere = std::get_if<Sphere>(&shape)) return naive::intersect_sphere(ray, *sphere);
-    const Corners c = primitive_corners(shape, 0);
+    const PrimitiveVertices c = primitive_vertices(shape, 0);
     if (const auto t = naive::intersect_triangle(ray, c.p[0], c.p[1], c.p[2], 0)) return t;
     return c.count == 4 ? naive::intersect_triangle(ray, c.p[0], c.p[2], c.p[3], 0) : std::nullopt;
 }
 
 /// Returns a random direction away from the surface; every third one is grazing.
-Vec3 departing(Trial& trial, Vec3 n) {
+Vec3 direction_away(Trial& trial, Vec3 n) {
     Vec3 w = trial.random.direction();
-    if (trial.number() % 3 == 0) w = w - n * (dot(w, n) * (1 - trial.random.magnitude(1e-6f, 1e-1f)));
+    if (trial.number() % 3 == 0) w = w - n * (dot(w, n) * (1 - trial.random.log_uniform(1e-6f, 1e-1f)));
     return normalize(w);
 }
 
 /// Tests that rays leaving the scene's object, a shape or an instance, on either side do not hit it again.
-void judge_departure(Trial& trial, const Scene& built, Vec3 target, float scale) {
-    const Stage stage(built);
+void check_spawned_ray(Trial& trial, const Scene& built, Vec3 target, float scale) {
+    const AcceleratedScene accelerated(built);
     const Vec3 origin = target + trial.random.direction() * (scale * trial.random.uniform(0.5f, 20));
     const Ray ray{origin, normalize_scaled(target - origin)};
-    const Hit hit = stage.accelerator.closest(ray);
+    const Hit hit = accelerated.accelerator.closest(ray);
     if (!hit.valid()) return; // rounding moved the target off the silhouette
-    const SurfacePoint point = surface_point(*stage.scene, ray, hit);
-    Vec3 w = departing(trial, point.ng);
-    const bool sphere = std::holds_alternative<Sphere>(stage.scene->shapes[0]);
+    const SurfacePoint point = surface_point(*accelerated.scene, ray, hit);
+    Vec3 w = direction_away(trial, point.ng);
+    const bool sphere = std::holds_alternative<Sphere>(accelerated.scene->shapes[0]);
     if (sphere && dot(w, point.ng) < 0) w = -w; // an inward ray correctly hits the other side
     const Ray spawned{offset_origin(point, w), w};
-    const Hit again = stage.accelerator.closest(spawned);
+    const Hit again = accelerated.accelerator.closest(spawned);
     Hit end;
     end.t = std::numeric_limits<float>::max();
-    trial.note("scale ", exact(scale), ", hit of primitive kind ", stage.scene->shapes[0].index(), " at ",
+    trial.note("scale ", exact(scale), ", hit of primitive kind ", accelerated.scene->shapes[0].index(), " at ",
                exact(point.p), ", leaving along ", exact(w), ", again at ", exact(again.t));
-    trial.careful_wrong(again.valid() || stage.accelerator.occluded(spawned, end));
-    const auto t = naive_hit(*stage.scene, ray);
-    if (t) trial.naive_wrong(naive_hit(*stage.scene, {ray.at(*t), w, kBooksTMin}).has_value());
+    trial.record_failure_if(again.valid() || accelerated.accelerator.occluded(spawned, end));
+    const auto t = naive_hit(*accelerated.scene, ray);
+    if (t) trial.record_naive_failure_if(naive_hit(*accelerated.scene, {ray.at(*t), w, kTextbookTMin}).has_value());
 }
 
 StressResult self_hits(const StressTest& test, const StressSetting& setting) {
     return run_trials(test, setting, [](Trial& trial) {
-        const float scale = trial.random.magnitude(1e-8f, 1e8f);
+        const float scale = trial.random.log_uniform(1e-8f, 1e8f);
         const Shape shape = random_shape(trial.random, scale);
         const Vec3 target = point_of(shape, trial.random);
-        judge_departure(trial, make_scene({shape}), target, scale);
+        check_spawned_ray(trial, make_scene({shape}), target, scale);
     });
 }
 
 StressResult instance_self_hits(const StressTest& test, const StressSetting& setting) {
     return run_trials(test, setting, [](Trial& trial) {
-        const float scale = trial.random.magnitude(1e-8f, 1e8f), own = trial.random.magnitude(1e-3f, 1e3f);
+        const float scale = trial.random.log_uniform(1e-8f, 1e8f), own = trial.random.log_uniform(1e-3f, 1e3f);
         const Shape shape = random_shape(trial.random, own);
         const Mat4 to_world = random_placement(trial.random, scale / own);
         const Vec3 target = transform_point(to_world, point_of(shape, trial.random));
-        judge_departure(trial, make_scene(shape, {to_world, to_world}), target, scale);
+        check_spawned_ray(trial, make_scene(shape, {to_world, to_world}), target, scale);
     });
 }
 
 StressResult into_spheres(const StressTest& test, const StressSetting& setting) {
     return run_trials(test, setting, [](Trial& trial) {
         TrialRandom& random = trial.random;
-        const float scale = random.magnitude(1e-8f, 1e8f);
+        const float scale = random.log_uniform(1e-8f, 1e8f);
         const Sphere sphere{random.vector() * (3 * scale), scale * random.uniform(0.1f, 1)};
-        const Stage stage(make_scene({sphere}));
+        const AcceleratedScene accelerated(make_scene({sphere}));
         const Vec3 target = point_of(sphere, random), origin = target + random.direction() * (5 * scale);
         const Ray ray{origin, normalize_scaled(target - origin)};
-        const Hit hit = stage.accelerator.closest(ray);
+        const Hit hit = accelerated.accelerator.closest(ray);
         if (!hit.valid()) return;
-        const SurfacePoint point = surface_point(*stage.scene, ray, hit);
-        Vec3 w = departing(trial, point.ng);
+        const SurfacePoint point = surface_point(*accelerated.scene, ray, hit);
+        Vec3 w = direction_away(trial, point.ng);
         if (dot(w, point.ng) > 0) w = -w;
         const float cosine = -dot(w, point.ng), chord = 2 * sphere.radius * cosine;
         if (cosine < 1e-2f) return; // grazing: the chord is hardly longer than the offset
@@ -130,11 +130,11 @@ StressResult into_spheres(const StressTest& test, const StressSetting& setting) 
             if (!t) return std::numeric_limits<double>::infinity();
             return static_cast<double>(abs(*t - chord) * cosine / offset);
         };
-        const Hit across = stage.accelerator.closest({start, w});
+        const Hit across = accelerated.accelerator.closest({start, w});
         trial.note("radius ", exact(sphere.radius), " at ", exact(sphere.center), ", from ", exact(point.p), " along ",
                    exact(w), ": ", exact(across.t), ", the chord is ", exact(chord));
-        trial.careful(error(across.valid() ? std::optional(across.t) : std::nullopt));
-        trial.naive(error(naive::intersect_sphere({ray.at(hit.t), w, kBooksTMin}, sphere)));
+        trial.record(error(across.valid() ? std::optional(across.t) : std::nullopt));
+        trial.record_naive(error(naive::intersect_sphere({ray.at(hit.t), w, kTextbookTMin}, sphere)));
     });
 }
 
@@ -147,65 +147,67 @@ StressResult parallel_surfaces(const StressTest& test, const StressSetting& sett
         const Frame frame = frame_from_normal(random.direction());
         const Vec3 corner = random.vector() - (frame.s + frame.t) * 2.0f;
         const Quad lower{corner, frame.s * 4.0f, frame.t * 4.0f}, upper{corner + frame.n * kGap, lower.u, lower.v};
-        const Stage stage(make_scene({QuadList{{lower}}, QuadList{{upper}}}));
+        const AcceleratedScene accelerated(make_scene({QuadList{{lower}}, QuadList{{upper}}}));
         const Vec3 target = upper.corner + upper.u * random.uniform(0.2f, 0.8f) + upper.v * random.uniform(0.2f, 0.8f);
         const Vec3 from_above = frame.to_world({random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0.3f, 2)});
         const Ray ray{target + from_above, normalize(-from_above)};
-        const Hit hit = stage.accelerator.closest(ray);
-        const SurfacePoint point = surface_point(*stage.scene, ray, hit.valid() ? hit : Hit{1, 0, 0.5f, 0.5f, 1});
+        const Hit hit = accelerated.accelerator.closest(ray);
+        const SurfacePoint point = surface_point(*accelerated.scene, ray, hit.valid() ? hit : Hit{1, 0, 0.5f, 0.5f, 1});
         const bool outwards = random.coin();
         Vec3 w = frame.to_local(random.direction());
         w.z = std::copysign(std::max(std::abs(w.z), 0.05f), outwards ? 1.0f : -1.0f);
         w = normalize(frame.to_world(w));
-        const Hit next = stage.accelerator.closest({offset_origin(point, w), w});
+        const Hit next = accelerated.accelerator.closest({offset_origin(point, w), w});
         trial.note("n = ", exact(frame.n), ", corner ", exact(corner), ", ray from ", exact(ray.origin), " along ",
                    exact(ray.direction), " hits ", hit.object, "; leaving along ", exact(w), " hits ", next.object);
         const auto wrong = [&](std::uint32_t first, std::uint32_t second) {
             return first != 1 || second != (outwards ? kNoObject : 0u);
         };
-        trial.careful_wrong(wrong(hit.object, next.object));
-        Ray books{ray.at(hit.t), w, kBooksTMin};
-        trial.naive_wrong(wrong(hit.object, stage.accelerator.closest(books).object));
+        trial.record_failure_if(wrong(hit.object, next.object));
+        Ray textbook_ray{ray.at(hit.t), w, kTextbookTMin};
+        trial.record_naive_failure_if(wrong(hit.object, accelerated.accelerator.closest(textbook_ray).object));
     });
 }
 
 /// A point just above a surface 20 km wide must be distinguished from the surface.
 StressResult huge_ground(const StressTest& test, const StressSetting& setting) {
     constexpr float kHalf = 1e4f;
-    const Stage stage(make_scene({QuadList{{{{-kHalf, 0, kHalf}, {2 * kHalf, 0, 0}, {0, 0, -2 * kHalf}}}}}));
+    const AcceleratedScene accelerated(
+        make_scene({QuadList{{{{-kHalf, 0, kHalf}, {2 * kHalf, 0, 0}, {0, 0, -2 * kHalf}}}}}));
     return run_trials(test, setting, [&](Trial& trial) {
         TrialRandom& random = trial.random;
-        const float height = random.magnitude(1e-6f, 10);
+        const float height = random.log_uniform(1e-6f, 10);
         const Vec3 above(random.uniform(-0.9f, 0.9f) * kHalf, height, random.uniform(-0.9f, 0.9f) * kHalf);
         Vec3 down = random.direction();
         down = normalize(Vec3(down.x, -0.1f - std::abs(down.y), down.z));
         const Vec3 up(down.x, -down.y, down.z);
-        const Hit hit = stage.accelerator.closest({above, down});
+        const Hit hit = accelerated.accelerator.closest({above, down});
         trial.note("from ", exact(above), " along ", exact(down), ": t = ", exact(hit.t));
-        trial.naive_wrong(!stage.accelerator.closest({above, down, kBooksTMin}).valid());
-        if (!hit.valid()) return trial.careful_wrong(true);
-        const SurfacePoint point = surface_point(*stage.scene, {above, down}, hit);
+        trial.record_naive_failure_if(!accelerated.accelerator.closest({above, down, kTextbookTMin}).valid());
+        if (!hit.valid()) return trial.record_failure_if(true);
+        const SurfacePoint point = surface_point(*accelerated.scene, {above, down}, hit);
         const double truth = -static_cast<double>(above.y) / static_cast<double>(down.y);
         // Far from the surface's center a distance has the rounding error of its corners' distances.
-        trial.careful_wrong(!(std::abs(static_cast<double>(hit.t) - truth) <= 4e-3) ||
-                            stage.accelerator.closest({above, up}).valid() ||
-                            stage.accelerator.closest({offset_origin(point, up), up}).valid());
+        trial.record_failure_if(!(std::abs(static_cast<double>(hit.t) - truth) <= 4e-3) ||
+                                accelerated.accelerator.closest({above, up}).valid() ||
+                                accelerated.accelerator.closest({offset_origin(point, up), up}).valid());
     });
 }
 
 /// Inside a convex body every face is visible from every other.
 StressResult convex_shadows(const StressTest& test, const StressSetting& setting) {
-    std::vector<Stage> stages;
+    std::vector<AcceleratedScene> accelerated_scenes;
     std::vector<float> scales;
     for (int decade = -8; decade <= 8; decade += 2) {
         scales.push_back(std::pow(10.0f, static_cast<float>(decade)));
-        stages.emplace_back(make_scene({placed(ball(2), scales.back(), Vec3(1, -2, 3) * scales.back())}));
+        accelerated_scenes.emplace_back(
+            make_scene({scaled_and_moved(icosphere(2), scales.back(), Vec3(1, -2, 3) * scales.back())}));
     }
     return run_trials(test, setting, [&](Trial& trial) {
         TrialRandom& random = trial.random;
-        const std::size_t which = static_cast<std::size_t>(trial.number()) % stages.size();
-        const Stage& stage = stages[which];
-        const Mesh& mesh = std::get<Mesh>(stage.scene->shapes[0]);
+        const std::size_t which = static_cast<std::size_t>(trial.number()) % accelerated_scenes.size();
+        const AcceleratedScene& accelerated = accelerated_scenes[which];
+        const Mesh& mesh = std::get<Mesh>(accelerated.scene->shapes[0]);
         const Vec3 center = Vec3(1, -2, 3) * scales[which];
         const auto on_face = [&](std::uint32_t face) { // away from the edges, which neighboring faces share
             const float u = random.uniform(0.02f, 0.96f), v = random.uniform(0.02f, 0.98f - u);
@@ -216,27 +218,28 @@ StressResult convex_shadows(const StressTest& test, const StressSetting& setting
         const std::uint32_t from = random.below(count), to = (from + 1 + random.below(count - 1)) % count;
         const Vec3 start = on_face(from), goal = on_face(to);
         const Ray ray{center, normalize_scaled(start - center)};
-        const Hit hit = stage.accelerator.closest(ray);
-        if (!hit.valid() || hit.primitive != from) return trial.careful_wrong(true);
-        const SurfacePoint point = surface_point(*stage.scene, ray, hit);
+        const Hit hit = accelerated.accelerator.closest(ray);
+        if (!hit.valid() || hit.primitive != from) return trial.record_failure_if(true);
+        const SurfacePoint point = surface_point(*accelerated.scene, ray, hit);
         const Vec3 w = normalize_scaled(goal - point.p), origin = offset_origin(point, w);
         Hit end{0, to, 0, 0, length(goal - origin)};
-        const Hit seen = stage.accelerator.closest({origin, w});
+        const Hit seen = accelerated.accelerator.closest({origin, w});
         trial.note("size ", exact(scales[which]), ", from face ", from, " to ", to, ": ", exact(origin), " along ",
                    exact(w), " sees face ", seen.primitive, " at ", exact(seen.t));
-        trial.careful_wrong(seen.primitive != to || !seen.valid() || stage.accelerator.occluded({origin, w}, end));
-        const Ray books{ray.at(hit.t), w, kBooksTMin};
-        end.t = length(goal - books.origin) - kBooksTMin;
-        trial.naive_wrong(!(end.t > 0) || stage.accelerator.closest(books).primitive != to);
+        trial.record_failure_if(seen.primitive != to || !seen.valid() ||
+                                accelerated.accelerator.occluded({origin, w}, end));
+        const Ray textbook_ray{ray.at(hit.t), w, kTextbookTMin};
+        end.t = length(goal - textbook_ray.origin) - kTextbookTMin;
+        trial.record_naive_failure_if(!(end.t > 0) || accelerated.accelerator.closest(textbook_ray).primitive != to);
     });
 }
 
 // Instances ----------------------------------------------------------------------------------------------------------
 
 /// Returns the exact position of a triangle hit, computed in double from the same floats.
-Vec3d exact_place(const Scene& scene, const Hit& hit) {
+Vec3d exact_position(const Scene& scene, const Hit& hit) {
     const Object& object = scene.objects[hit.object];
-    const Corners c = primitive_corners(scene.shapes[object.shape], hit.primitive);
+    const PrimitiveVertices c = primitive_vertices(scene.shapes[object.shape], hit.primitive);
     const double u = static_cast<double>(hit.u), v = static_cast<double>(hit.v);
     const Vec3d a(c.p[0]), b(c.p[1]), d(c.p[2]);
     return transform_point(Mat4d(object.to_world), a + (b - a) * u + (d - a) * v);
@@ -246,15 +249,15 @@ double in_units_of(Vec3d off, Vec3 bound) {
     double worst = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const double error = std::abs(off[axis]), allowed = static_cast<double>(bound[axis]);
-        if (error != 0) worst = worse(allowed > 0 ? error / allowed : error / 1e-45, worst);
+        if (error != 0) worst = larger_error(allowed > 0 ? error / allowed : error / 1e-45, worst);
     }
     return worst;
 }
 
 StressResult error_bounds(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [mesh = ball(0)](Trial& trial) {
+    return run_trials(test, setting, [mesh = icosphere(0)](Trial& trial) {
         TrialRandom& random = trial.random;
-        const float scale = random.magnitude(1e-6f, 1e6f);
+        const float scale = random.log_uniform(1e-6f, 1e6f);
         const Mat4 to_world = random_placement(random, scale);
         const Scene scene = make_scene(mesh, {to_world, to_world});
         const float u = random.uniform();
@@ -263,24 +266,24 @@ StressResult error_bounds(const StressTest& test, const StressSetting& setting) 
         // This also transforms the point to object space, as a spawned ray's origin is, in float, and back to the
         // world.
         const Object& object = scene.objects[0];
-        const Vec3 back = transform_point_back(object.to_world, object.to_object, point.p);
+        const Vec3 back = transform_point_inverse(object.to_world, object.to_object, point.p);
         const Vec3d there = transform_point(Mat4d(to_world), Vec3d(back));
         trial.note("scale ", exact(scale), ", primitive ", hit.primitive, " at ", exact(point.p), " ± ",
                    exact(point.p_error));
-        trial.careful(in_units_of(Vec3d(point.p) - exact_place(scene, hit), point.p_error));
-        trial.careful(in_units_of(there - exact_place(scene, hit), point.p_error));
-        trial.naive(in_units_of(there - exact_place(scene, hit), Vec3(1, 1, 1) * kBooksTMin));
+        trial.record(in_units_of(Vec3d(point.p) - exact_position(scene, hit), point.p_error));
+        trial.record(in_units_of(there - exact_position(scene, hit), point.p_error));
+        trial.record_naive(in_units_of(there - exact_position(scene, hit), Vec3(1, 1, 1) * kTextbookTMin));
     });
 }
 
 StressResult instances_as_baked(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [mesh = ball(1)](Trial& trial) {
+    return run_trials(test, setting, [mesh = icosphere(1)](Trial& trial) {
         TrialRandom& random = trial.random;
-        const float scale = random.magnitude(1e-6f, 1e6f);
+        const float scale = random.log_uniform(1e-6f, 1e6f);
         const Mat4 to_world = random_placement(random, scale);
         Mesh moved = mesh;
         for (Vec3& p : moved.positions) p = Vec3(transform_point(Mat4d(to_world), Vec3d(p)));
-        const Stage instance(make_scene(mesh, {to_world, to_world})), baked(make_scene({moved}));
+        const AcceleratedScene instance(make_scene(mesh, {to_world, to_world})), baked(make_scene({moved}));
         for (int shot = 0; shot < 16; ++shot) {
             const Vec3 target = transform_point(to_world, random.vector() * 0.5f);
             const Vec3 origin = target + random.direction() * (scale * random.uniform(2, 5));
@@ -289,7 +292,7 @@ StressResult instances_as_baked(const StressTest& test, const StressSetting& set
             // Rounding chose different sides of an edge.
             if (a.valid() && b.valid() && a.primitive != b.primitive) continue;
             if (!a.valid() || !b.valid()) {
-                trial.careful(a.valid() == b.valid() ? 0 : std::numeric_limits<double>::infinity());
+                trial.record(a.valid() == b.valid() ? 0 : std::numeric_limits<double>::infinity());
                 continue;
             }
             const SurfacePoint point = surface_point(*instance.scene, ray, a);
@@ -298,7 +301,7 @@ StressResult instances_as_baked(const StressTest& test, const StressSetting& set
             const Vec3 reach = point.p_error + abs(ray.origin) * 4e-7f;
             trial.note("scale ", exact(scale), ", ray from ", exact(origin), " along ", exact(ray.direction), ": ",
                        exact(a.t), " as an instance, ", exact(b.t), " baked");
-            trial.careful(off / static_cast<double>(dot(abs(point.ng), reach)));
+            trial.record(off / static_cast<double>(dot(abs(point.ng), reach)));
         }
     });
 }

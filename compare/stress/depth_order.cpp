@@ -1,8 +1,8 @@
 // These tests check which of two surfaces is nearer: surfaces a few ulp apart, and surfaces at equal depth.
 #include "common/vec/robust.h"
-#include "compare/stress/book_raster.h"
 #include "compare/stress/projection_runs.h"
 #include "compare/stress/projection_scenes.h"
+#include "compare/stress/textbook_rasterizer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,7 @@ constexpr float kNear = 1e-3f, kFar = 1e5f;
 /// window's center.
 Mesh random_layer(TrialRandom& random, const TrialView& v, double depth) {
     const raster::PixelRect& r = v.window.rect;
-    const double margin = static_cast<double>(random.magnitude(1, 100));
+    const double margin = static_cast<double>(random.log_uniform(1, 100));
     const double tilt_x = 0.9 * static_cast<double>(random.uniform(-1, 1)) * random.coin(),
                  tilt_y = 0.9 * static_cast<double>(random.uniform(-1, 1)) * random.coin();
     const auto corner = [&](double x, double y) { // 1/depth is linear in screen space on a plane
@@ -53,7 +53,7 @@ std::optional<double> depth_at(const Mesh& layer, const Pinhole& pinhole, Vec2d 
 // Draw order ---------------------------------------------------------------------------------------------------------
 
 /// Returns triangles over the window, some duplicated and some at equal depth.
-Pile random_pile(TrialRandom& random, const TrialView& v) {
+SetupTriangles random_setup(TrialRandom& random, const TrialView& v) {
     Mesh mesh;
     const auto add = [&](const std::array<Vec3, 3>& corners) {
         const auto first = static_cast<std::uint32_t>(mesh.positions.size());
@@ -72,7 +72,7 @@ Pile random_pile(TrialRandom& random, const TrialView& v) {
         add({a, b, c});
         if (random.coin()) add({a, b, c});
     }
-    return set_up(mesh, v.view, v.window.offset);
+    return set_up_triangles(mesh, v.view, v.window.offset);
 }
 
 template <typename T> void shuffle(std::vector<T>& items, TrialRandom& random) {
@@ -80,25 +80,25 @@ template <typename T> void shuffle(std::vector<T>& items, TrialRandom& random) {
         std::swap(items[i - 1], items[random.below(static_cast<std::uint32_t>(i))]);
 }
 
-/// Stores the visible primitive of a sample by two rules for equal depth. `nearness` is reversed depth.
-struct Seen {
-    float nearness = 0;
+/// Stores the visible primitive of a sample by two rules for equal depth. `reversed_depth` is reversed depth.
+struct VisiblePrimitive {
+    float reversed_depth = 0;
     std::uint32_t lowest = kNoObject; ///< Duet's rule: the lowest ID wins
     std::uint32_t first = kNoObject; ///< the textbook rule: the first drawn wins
 };
 
 /// Renders each triangle alone and then selects the nearest.
-Image<Seen> choose_nearest(const Pile& pile, const TrialView& v) {
-    Image<Seen> seen(kSide, kSide);
-    for (const raster::DrawTriangle& outline : pile.outlines) {
-        const auto alone = draw(pile, {outline}, v.view, v.window);
+Image<VisiblePrimitive> resolve_by_hand(const SetupTriangles& setup, const TrialView& v) {
+    Image<VisiblePrimitive> seen(kSide, kSide);
+    for (const raster::DrawTriangle& setup_triangle : setup.triangles) {
+        const auto alone = draw(setup, {setup_triangle}, v.view, v.window);
         v.window.for_each([&](int x, int y) {
-            Seen& here = seen(x - v.window.rect.x0, y - v.window.rect.y0);
-            const float nearness = alone->nearness(x, y);
-            if (nearness > here.nearness)
-                here = {nearness, outline.id, outline.id};
-            else if (nearness > 0 && nearness == here.nearness)
-                here.lowest = min(here.lowest, outline.id);
+            VisiblePrimitive& here = seen(x - v.window.rect.x0, y - v.window.rect.y0);
+            const float reversed_depth = alone->reversed_depth(x, y);
+            if (reversed_depth > here.reversed_depth)
+                here = {reversed_depth, setup_triangle.id, setup_triangle.id};
+            else if (reversed_depth > 0 && reversed_depth == here.reversed_depth)
+                here.lowest = min(here.lowest, setup_triangle.id);
         });
     }
     return seen;
@@ -113,16 +113,16 @@ StressResult depth_order(const StressTest& test, const StressSetting& setting) {
         v.view.camera.eye = {0, 0, 0}; // the view is along −z from the origin, so a corner's z is its depth
         v.view.camera.look_at = {0, 0, -1};
         v.view.camera.up = {0, 1, 0};
-        v.pinhole = CameraModel(v.view).through();
-        const double depth = static_cast<double>(random.magnitude(4 * kNear, kFar / 4));
-        const int steps = static_cast<int>(random.magnitude(1, 64));
+        v.pinhole = CameraModel(v.view).pinhole();
+        const double depth = static_cast<double>(random.log_uniform(4 * kNear, kFar / 4));
+        const int steps = static_cast<int>(random.log_uniform(1, 64));
         // The layer behind has the lower ID and would win a tie.
         const Mesh behind = random_layer(random, v, depth), before = moved_nearer(behind, steps);
-        Pile pile = set_up(behind, v.view, v.window.offset);
-        const auto first_before = static_cast<std::uint32_t>(pile.wholes.size());
-        pile.append(set_up(before, v.view, v.window.offset));
-        if (random.coin()) std::reverse(pile.outlines.begin(), pile.outlines.end());
-        const auto tile = draw(pile, v.view, v.window);
+        SetupTriangles setup = set_up_triangles(behind, v.view, v.window.offset);
+        const auto first_before = static_cast<std::uint32_t>(setup.source_triangles.size());
+        setup.append(set_up_triangles(before, v.view, v.window.offset));
+        if (random.coin()) std::reverse(setup.triangles.begin(), setup.triangles.end());
+        const auto tile = draw(setup, v.view, v.window);
 
         trial.note("corners ", exact(behind.positions[0]), ", ", exact(behind.positions[1]), ", ",
                    exact(behind.positions[2]), "; others ", steps, " floats nearer");
@@ -133,9 +133,9 @@ StressResult depth_order(const StressTest& test, const StressSetting& setting) {
             constexpr double kResolved = 0x1p-23 * (1 + 1e-6);
             if (!far || !near || *far / *near - 1 < kResolved) return;
             const std::uint32_t seen = tile->id(x, y);
-            trial.careful_wrong(seen < first_before || seen == raster::kNoTriangle);
-            const auto z = [](double d) { return book_z(static_cast<float>(d), kNear, kFar); };
-            trial.naive_wrong(!(z(*near) < z(*far)));
+            trial.record_failure_if(seen < first_before || seen == raster::kNoTriangle);
+            const auto z = [](double d) { return textbook_z(static_cast<float>(d), kNear, kFar); };
+            trial.record_naive_failure_if(!(z(*near) < z(*far)));
         });
     });
 }
@@ -143,21 +143,21 @@ StressResult depth_order(const StressTest& test, const StressSetting& setting) {
 StressResult draw_order(const StressTest& test, const StressSetting& setting) {
     return run_trials(test, setting, [](Trial& trial) {
         const TrialView v = random_view(trial.random, kSide);
-        Pile pile = random_pile(trial.random, v);
-        shuffle(pile.outlines, trial.random);
-        const auto tile = draw(pile, v.view, v.window);
-        const Image<Seen> seen = choose_nearest(pile, v);
+        SetupTriangles setup = random_setup(trial.random, v);
+        shuffle(setup.triangles, trial.random);
+        const auto tile = draw(setup, v.view, v.window);
+        const Image<VisiblePrimitive> seen = resolve_by_hand(setup, v);
         int wrong = 0, naive_wrong = 0;
         v.window.for_each([&](int x, int y) {
-            const Seen& here = seen(x - v.window.rect.x0, y - v.window.rect.y0);
+            const VisiblePrimitive& here = seen(x - v.window.rect.x0, y - v.window.rect.y0);
             const std::uint32_t id = tile->id(x, y);
             wrong += (id == raster::kNoTriangle ? kNoObject : id) != here.lowest;
             naive_wrong += here.first != here.lowest;
         });
-        trial.note(pile.outlines.size(), " triangles in ", v.view.width, "x", v.view.height, " pixels from (",
+        trial.note(setup.triangles.size(), " triangles in ", v.view.width, "x", v.view.height, " pixels from (",
                    v.window.rect.x0, ", ", v.window.rect.y0, ')');
-        trial.careful(wrong);
-        trial.naive(naive_wrong);
+        trial.record(wrong);
+        trial.record_naive(naive_wrong);
     });
 }
 

@@ -10,7 +10,7 @@
 namespace duet::compare {
 
 /// Returns the larger of two errors; NaN counts as larger than all.
-inline double worse(double a, double b) { return std::isnan(a) || a > b ? a : b; }
+inline double larger_error(double a, double b) { return std::isnan(a) || a > b ? a : b; }
 
 /// Returns |value − exact| in ulp of T at `exact`: the spacing of T in that binade.
 template <typename T> double ulps(T value, long double exact) {

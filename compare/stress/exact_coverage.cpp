@@ -16,7 +16,7 @@ int sign(Int128 value) { return value > 0 ? 1 : value < 0 ? -1 : 0; }
 
 /// Returns the side on which the displaced point lies. If the point is on the line, the first displacement that
 /// leaves the line decides.
-int moved_side(raster::FixedPoint a, raster::FixedPoint b, std::int64_t x, std::int64_t y) {
+int displaced_side(raster::FixedPoint a, raster::FixedPoint b, std::int64_t x, std::int64_t y) {
     const Int128 here = side(a, b, x, y), step_right = Int128{a.y} - b.y, step_down = Int128{b.x} - a.x;
     return sign(here != 0 ? here : step_right != 0 ? step_right : step_down);
 }
@@ -29,7 +29,7 @@ bool covers(const GridTriangle& t, std::int64_t x, std::int64_t y) {
     const int turn = winding(t);
     if (turn == 0) return false;
     for (std::size_t i = 0; i < 3; ++i)
-        if (moved_side(t[i], t[(i + 1) % 3], x, y) != turn) return false;
+        if (displaced_side(t[i], t[(i + 1) % 3], x, y) != turn) return false;
     return true;
 }
 

@@ -1,9 +1,9 @@
 // These tests intersect spheres, slivers, triangles without area, duplicates, axis-parallel rays and invalid rays.
 #include "common/geometry/sphere.h"
 #include "common/geometry/triangle.h"
+#include "compare/stress/accelerated_scene.h"
 #include "compare/stress/errors.h"
 #include "compare/stress/naive.h"
-#include "compare/stress/stage.h"
 #include "compare/stress/trials.h"
 
 #include <algorithm>
@@ -51,15 +51,15 @@ void judge_sphere(Trial& trial, const Ray& ray, const Sphere& sphere) {
     };
     trial.note("sphere at ", exact(sphere.center), " of radius ", exact(sphere.radius), ", ray from ",
                exact(ray.origin), " along ", exact(ray.direction), truth.hit ? ": a hit" : ": none");
-    trial.careful(error(intersect_sphere(ray, sphere)));
-    trial.naive(error(naive::intersect_sphere(ray, sphere)));
+    trial.record(error(intersect_sphere(ray, sphere)));
+    trial.record_naive(error(naive::intersect_sphere(ray, sphere)));
 }
 
 StressResult far_spheres(const StressTest& test, const StressSetting& setting) {
     return run_trials(test, setting, [](Trial& trial) {
         TrialRandom& random = trial.random;
-        const float radius = random.magnitude(1e-3f, 1e3f);
-        const Vec3 away = random.direction() * (radius * random.magnitude(10, 1e6f));
+        const float radius = random.log_uniform(1e-3f, 1e3f);
+        const Vec3 away = random.direction() * (radius * random.log_uniform(10, 1e6f));
         const Vec3 eye = random.vector() * radius;
         const Sphere sphere{eye + away, radius};
         const Vec3 aim = sphere.center + random.vector() * (0.8f * radius);
@@ -70,8 +70,8 @@ StressResult far_spheres(const StressTest& test, const StressSetting& setting) {
 StressResult near_spheres(const StressTest& test, const StressSetting& setting) {
     return run_trials(test, setting, [](Trial& trial) {
         TrialRandom& random = trial.random;
-        const Sphere sphere{random.vector(), random.magnitude(1, 1e4f)};
-        const float height = random.sign() * random.magnitude(1e-7f, 0.5f); // above or below the surface, in radii
+        const Sphere sphere{random.vector(), random.log_uniform(1, 1e4f)};
+        const float height = random.sign() * random.log_uniform(1e-7f, 0.5f); // above or below the surface, in radii
         const Vec3 eye = sphere.center + random.direction() * (sphere.radius * (1 + height));
         judge_sphere(trial, {eye, random.direction()}, sphere);
     });
@@ -102,20 +102,20 @@ double triangle_error(const Ray& ray, const std::array<Vec3, 3>& p, std::optiona
 StressResult slivers(const StressTest& test, const StressSetting& setting) {
     return run_trials(test, setting, [](Trial& trial) {
         TrialRandom& random = trial.random;
-        const float scale = random.magnitude(1e-6f, 1e6f), thickness = random.magnitude(1e-6f, 1);
+        const float scale = random.log_uniform(1e-6f, 1e6f), thickness = random.log_uniform(1e-6f, 1);
         const Vec3 along = random.direction(), place = random.vector() * scale;
         const Vec3 across = normalize(cross(along, random.direction())) * (thickness * scale);
         const std::array<Vec3, 3> p{place, place + along * (scale * random.uniform(0.5f, 1)),
                                     place + along * (scale * random.uniform()) + across};
         const float u = random.uniform(), v = random.uniform(0, 1 - u);
         const Vec3 target = p[0] * (1 - u - v) + p[1] * u + p[2] * v;
-        const Vec3 origin = target + random.direction() * (scale * random.magnitude(1e-2f, 1e2f));
+        const Vec3 origin = target + random.direction() * (scale * random.log_uniform(1e-2f, 1e2f));
         const Ray ray{origin, normalize_scaled(target - origin)};
         const auto found = intersect_triangle(ShearedRay(ray), p[0], p[1], p[2]);
         trial.note("a, b, c = ", exact(p[0]), ", ", exact(p[1]), ", ", exact(p[2]), ", ray from ", exact(origin),
                    " along ", exact(ray.direction), ": t = ", found ? exact(found->t) : "none");
-        trial.careful(triangle_error(ray, p, found ? std::optional(found->t) : std::nullopt));
-        trial.naive(triangle_error(ray, p, naive::intersect_triangle(ray, p[0], p[1], p[2])));
+        trial.record(triangle_error(ray, p, found ? std::optional(found->t) : std::nullopt));
+        trial.record_naive(triangle_error(ray, p, naive::intersect_triangle(ray, p[0], p[1], p[2])));
     });
 }
 
@@ -135,8 +135,8 @@ StressResult zero_area(const StressTest& test, const StressSetting& setting) {
         const auto hit = intersect_triangle(ShearedRay(ray), a, b, c);
         const double thickness = 64 * 6e-8 * 3000 * static_cast<double>(scale);
         // A sheared sliver may have a width of one rounding error. A hit must then at least be on the line itself.
-        trial.careful_wrong(hit && !(std::isfinite(hit->t) && length(cross(Vec3d(ray.at(hit->t)) - Vec3d(a),
-                                                                           normalize(Vec3d(step)))) < thickness));
+        trial.record_failure_if(hit && !(std::isfinite(hit->t) && length(cross(Vec3d(ray.at(hit->t)) - Vec3d(a),
+                                                                               normalize(Vec3d(step)))) < thickness));
     });
 }
 
@@ -157,12 +157,12 @@ std::vector<Shape> duplicated(TrialRandom& random) {
 
 StressResult duplicates(const StressTest& test, const StressSetting& setting) {
     return run_trials(test, setting, [](Trial& trial) {
-        const Stage stage(make_scene(duplicated(trial.random)));
-        const Mesh& mesh = std::get<Mesh>(stage.scene->shapes[0]);
+        const AcceleratedScene accelerated(make_scene(duplicated(trial.random)));
+        const Mesh& mesh = std::get<Mesh>(accelerated.scene->shapes[0]);
         for (int shot = 0; shot < 32; ++shot) {
             const Ray ray{trial.random.direction() * 3.0f, trial.random.vector()};
-            const Hit found = stage.accelerator.closest(ray), expected = hit_by_testing_all(*stage.scene, ray);
-            trial.careful_wrong(!(found == expected));
+            const Hit found = accelerated.accelerator.closest(ray), expected = brute_force_hit(*accelerated.scene, ray);
+            trial.record_failure_if(!(found == expected));
             if (!(found == expected))
                 trial.note("object ", found.object, " primitive ", found.primitive, ", expected ", expected.object,
                            " and ", expected.primitive);
@@ -173,7 +173,7 @@ StressResult duplicates(const StressTest& test, const StressSetting& setting) {
                 const auto t = naive::intersect_triangle(ray, mesh.positions[a], mesh.positions[b], mesh.positions[c]);
                 if (t && *t <= nearest) nearest = *t, last = i;
             }
-            if (expected.valid()) trial.naive_wrong(last != expected.primitive);
+            if (expected.valid()) trial.record_naive_failure_if(last != expected.primitive);
         }
     });
 }
@@ -194,11 +194,11 @@ std::vector<Shape> coplanar(TrialRandom& random) {
 
 StressResult coplanar_faces(const StressTest& test, const StressSetting& setting) {
     return run_trials(test, setting, [](Trial& trial) {
-        const Stage stage(make_scene(coplanar(trial.random)));
+        const AcceleratedScene accelerated(make_scene(coplanar(trial.random)));
         for (int shot = 0; shot < 32; ++shot) {
             const Ray ray{trial.random.direction() * 3.0f, trial.random.vector()};
-            const Hit found = stage.accelerator.closest(ray), expected = hit_by_testing_all(*stage.scene, ray);
-            trial.careful_wrong(!(found == expected));
+            const Hit found = accelerated.accelerator.closest(ray), expected = brute_force_hit(*accelerated.scene, ray);
+            trial.record_failure_if(!(found == expected));
             if (!(found == expected))
                 trial.note("ray from ", exact(ray.origin), " along ", exact(ray.direction), ": primitive ",
                            found.primitive, " at ", exact(found.t), ", expected ", expected.primitive, " at ",
@@ -243,8 +243,8 @@ float whole_distance(const QuadList& boxes, Vec3 origin, std::size_t axis, float
 StressResult axis_parallel(const StressTest& test, const StressSetting& setting) {
     return run_trials(test, setting, [](Trial& trial) {
         TrialRandom& random = trial.random;
-        const Stage stage(make_scene({whole_boxes(random)}));
-        const QuadList& boxes = std::get<QuadList>(stage.scene->shapes[0]);
+        const AcceleratedScene accelerated(make_scene({whole_boxes(random)}));
+        const QuadList& boxes = std::get<QuadList>(accelerated.scene->shapes[0]);
         for (int shot = 0; shot < 32; ++shot) {
             const std::size_t axis = random.below(3);
             const float sign = random.sign(), half = random.coin() ? 0.5f : 0.0f;
@@ -257,8 +257,8 @@ StressResult axis_parallel(const StressTest& test, const StressSetting& setting)
             Ray other = ray; // zeros of the opposite sign
             other.direction = -ray.direction;
             other.direction[axis] = sign;
-            const Hit hit = stage.accelerator.closest(ray), same = stage.accelerator.closest(other);
-            double error = hit == same && hit == hit_by_testing_all(*stage.scene, ray) ? 0 : kWrong;
+            const Hit hit = accelerated.accelerator.closest(ray), same = accelerated.accelerator.closest(other);
+            double error = hit == same && hit == brute_force_hit(*accelerated.scene, ray) ? 0 : kWrong;
             if (half > 0) { // the ray passes through no edge, so the exact result is known
                 const float expected = whole_distance(boxes, ray.origin, axis, sign);
                 if (hit.valid() != std::isfinite(expected)) error = kWrong;
@@ -274,32 +274,32 @@ StressResult axis_parallel(const StressTest& test, const StressSetting& setting)
                             nearest = min(nearest, *t);
                 }
                 const bool both = std::isfinite(nearest) && std::isfinite(expected);
-                trial.naive(both                  ? ulps(nearest, static_cast<long double>(expected))
-                            : nearest == expected ? 0
-                                                  : kWrong);
+                trial.record_naive(both                  ? ulps(nearest, static_cast<long double>(expected))
+                                   : nearest == expected ? 0
+                                                         : kWrong);
             }
             if (error > 8)
                 trial.note("ray from ", exact(ray.origin), " along ", exact(ray.direction), ": t = ", exact(hit.t));
-            trial.careful(error);
+            trial.record(error);
         }
     });
 }
 
 // Rays that are none -------------------------------------------------------------------------------------------------
 
-Stage mixed_stage() {
-    std::vector<Shape> shapes{ball(2, 0.1f), Sphere{{0.5f, 0, 0}, 0.8f}, box_quads({-2, -2, -2}, {-0.5f, 2, 2})};
+AcceleratedScene mixed_scene() {
+    std::vector<Shape> shapes{icosphere(2, 0.1f), Sphere{{0.5f, 0, 0}, 0.8f}, box_quads({-2, -2, -2}, {-0.5f, 2, 2})};
     Scene scene = make_scene(std::move(shapes));
-    Scene instanced = make_scene(ball(1), {Mat4(scaling(Vec3(2, 1, 1))), Mat4(translation(Vec3(0, 3, 0)))});
+    Scene instanced = make_scene(icosphere(1), {Mat4(scaling(Vec3(2, 1, 1))), Mat4(translation(Vec3(0, 3, 0)))});
     for (Object& object : instanced.objects) object.shape = static_cast<std::uint32_t>(scene.shapes.size());
     scene.shapes.push_back(instanced.shapes[0]);
     scene.objects.insert(scene.objects.end(), instanced.objects.begin(), instanced.objects.end());
     finish_scene(scene);
-    return Stage(std::move(scene));
+    return AcceleratedScene(std::move(scene));
 }
 
 StressResult bad_rays(const StressTest& test, const StressSetting& setting) {
-    const Stage stage = mixed_stage();
+    const AcceleratedScene accelerated = mixed_scene();
     return run_trials(test, setting, [&](Trial& trial) {
         TrialRandom& random = trial.random;
         constexpr std::array<float, 3> kBad{std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity};
@@ -311,16 +311,16 @@ StressResult bad_rays(const StressTest& test, const StressSetting& setting) {
         if (kind == 3) ray.t_max = kBad[0];
         Hit end;
         end.t = 10;
-        const Hit hit = stage.accelerator.closest(ray);
+        const Hit hit = accelerated.accelerator.closest(ray);
         trial.note("ray from ", exact(ray.origin), " along ", exact(ray.direction), " to ", exact(ray.t_max),
                    ": object ", hit.object, " at ", exact(hit.t));
-        trial.careful_wrong(hit.valid() || (kind < 3 && stage.accelerator.occluded(ray, end)));
-        const Mesh& mesh = std::get<Mesh>(stage.scene->shapes[0]);
-        bool naive_hit = naive::intersect_sphere(ray, std::get<Sphere>(stage.scene->shapes[1])).has_value();
+        trial.record_failure_if(hit.valid() || (kind < 3 && accelerated.accelerator.occluded(ray, end)));
+        const Mesh& mesh = std::get<Mesh>(accelerated.scene->shapes[0]);
+        bool naive_hit = naive::intersect_sphere(ray, std::get<Sphere>(accelerated.scene->shapes[1])).has_value();
         for (const auto& [a, b, c] : mesh.triangles)
             naive_hit =
                 naive_hit || naive::intersect_triangle(ray, mesh.positions[a], mesh.positions[b], mesh.positions[c]);
-        trial.naive_wrong(naive_hit);
+        trial.record_naive_failure_if(naive_hit);
     });
 }
 

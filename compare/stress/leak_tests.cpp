@@ -1,28 +1,29 @@
 // These tests check that closed surfaces are watertight, for any ray, size and position.
 #include "common/geometry/triangle.h"
+#include "compare/stress/accelerated_scene.h"
 #include "compare/stress/naive.h"
-#include "compare/stress/stage.h"
 #include "compare/stress/trials.h"
 
 namespace duet::compare {
 
 namespace {
 
-/// A vessel is a closed mesh with its size and center.
-struct Vessel {
-    Stage stage;
+/// A closed mesh with its size and center.
+struct ClosedMesh {
+    AcceleratedScene accelerated;
     float scale;
     Vec3 center;
 
-    explicit Vessel(float scale_, Vec3 center_)
-        : stage(make_scene({placed(ball(2, 0.1f), scale_, center_)})), scale(scale_), center(center_) {}
-    const Mesh& mesh() const { return std::get<Mesh>(stage.scene->shapes[0]); }
+    explicit ClosedMesh(float scale_, Vec3 center_)
+        : accelerated(make_scene({scaled_and_moved(icosphere(2, 0.1f), scale_, center_)})), scale(scale_),
+          center(center_) {}
+    const Mesh& mesh() const { return std::get<Mesh>(accelerated.scene->shapes[0]); }
 };
 
 /// Returns meshes around the origin of sizes 1e-6 to 1e6, and of size 1 about 1e5 away, along the diagonal and along
 /// one axis.
-std::vector<Vessel> vessels() {
-    std::vector<Vessel> all;
+std::vector<ClosedMesh> closed_meshes() {
+    std::vector<ClosedMesh> all;
     for (const float scale : {1e-6f, 1e-4f, 1e-2f, 1.0f, 1e2f, 1e4f, 1e6f}) all.emplace_back(scale, Vec3());
     all.emplace_back(1.0f, Vec3(1e5f, -1e5f, 1e5f));
     all.emplace_back(1.0f, Vec3(0, 1e5f, 0));
@@ -36,61 +37,63 @@ bool hit_by_any(const Mesh& mesh, const Ray& ray) {
 }
 
 /// Tests that a ray from inside hits, and that the accelerator finds the same hit as testing all triangles.
-void judge(Trial& trial, const Vessel& vessel, const Ray& ray) {
-    const Hit expected = hit_by_testing_all(*vessel.stage.scene, ray), found = vessel.stage.accelerator.closest(ray);
-    trial.note("mesh of size ", exact(vessel.scale), " at ", exact(vessel.center), ", ray from ", exact(ray.origin),
-               " along ", exact(ray.direction), ": primitive ", found.primitive, " at ", exact(found.t),
-               ", testing all: ", expected.primitive, " at ", exact(expected.t));
-    trial.careful_wrong(!found.valid() || !(found == expected));
-    trial.naive_wrong(!hit_by_any(vessel.mesh(), ray));
+void check_ray(Trial& trial, const ClosedMesh& closed_mesh, const Ray& ray) {
+    const Hit expected = brute_force_hit(*closed_mesh.accelerated.scene, ray),
+              found = closed_mesh.accelerated.accelerator.closest(ray);
+    trial.note("mesh of size ", exact(closed_mesh.scale), " at ", exact(closed_mesh.center), ", ray from ",
+               exact(ray.origin), " along ", exact(ray.direction), ": primitive ", found.primitive, " at ",
+               exact(found.t), ", testing all: ", expected.primitive, " at ", exact(expected.t));
+    trial.record_failure_if(!found.valid() || !(found == expected));
+    trial.record_naive_failure_if(!hit_by_any(closed_mesh.mesh(), ray));
 }
 
-const Vessel& chosen(const std::vector<Vessel>& all, Trial& trial) {
+const ClosedMesh& chosen(const std::vector<ClosedMesh>& all, Trial& trial) {
     return all[static_cast<std::size_t>(trial.number()) % all.size()];
 }
 
-Vec3 inside(const Vessel& vessel, Trial& trial) {
-    return vessel.center + trial.random.vector() * (0.4f * vessel.scale);
+Vec3 inside(const ClosedMesh& closed_mesh, Trial& trial) {
+    return closed_mesh.center + trial.random.vector() * (0.4f * closed_mesh.scale);
 }
 
 StressResult leak_random(const StressTest& test, const StressSetting& setting) {
-    const std::vector<Vessel> all = vessels();
+    const std::vector<ClosedMesh> all = closed_meshes();
     return run_trials(test, setting, [&](Trial& trial) {
-        const Vessel& vessel = chosen(all, trial);
-        judge(trial, vessel, {inside(vessel, trial), trial.random.direction()});
+        const ClosedMesh& closed_mesh = chosen(all, trial);
+        check_ray(trial, closed_mesh, {inside(closed_mesh, trial), trial.random.direction()});
     });
 }
 
 Ray towards(Vec3 origin, Vec3 target) { return {origin, normalize_scaled(target - origin)}; }
 
 StressResult leak_edges(const StressTest& test, const StressSetting& setting) {
-    const std::vector<Vessel> all = vessels();
+    const std::vector<ClosedMesh> all = closed_meshes();
     return run_trials(test, setting, [&](Trial& trial) {
-        const Vessel& vessel = chosen(all, trial);
-        const Mesh& mesh = vessel.mesh();
+        const ClosedMesh& closed_mesh = chosen(all, trial);
+        const Mesh& mesh = closed_mesh.mesh();
         const auto& t = mesh.triangles[trial.random.below(static_cast<std::uint32_t>(mesh.triangles.size()))];
         const Vec3 target = lerp(mesh.positions[t[0]], mesh.positions[t[1]], trial.random.uniform());
-        judge(trial, vessel, towards(inside(vessel, trial), target));
+        check_ray(trial, closed_mesh, towards(inside(closed_mesh, trial), target));
     });
 }
 
 StressResult leak_vertices(const StressTest& test, const StressSetting& setting) {
-    const std::vector<Vessel> all = vessels();
+    const std::vector<ClosedMesh> all = closed_meshes();
     return run_trials(test, setting, [&](Trial& trial) {
-        const Vessel& vessel = chosen(all, trial);
-        const auto& positions = vessel.mesh().positions;
+        const ClosedMesh& closed_mesh = chosen(all, trial);
+        const auto& positions = closed_mesh.mesh().positions;
         const Vec3 vertex = positions[trial.random.below(static_cast<std::uint32_t>(positions.size()))];
-        judge(trial, vessel, towards(inside(vessel, trial), vertex));
+        check_ray(trial, closed_mesh, towards(inside(closed_mesh, trial), vertex));
     });
 }
 
 StressResult leak_from_outside(const StressTest& test, const StressSetting& setting) {
-    std::vector<Stage> stages;
+    std::vector<AcceleratedScene> accelerated_scenes;
     constexpr std::array<float, 5> kScales{1e-6f, 1e-3f, 1.0f, 1e3f, 1e6f};
-    for (const float scale : kScales) stages.emplace_back(make_scene({placed(ball(2), scale, {})}));
+    for (const float scale : kScales)
+        accelerated_scenes.emplace_back(make_scene({scaled_and_moved(icosphere(2), scale, {})}));
     return run_trials(test, setting, [&](Trial& trial) {
         const std::size_t which = static_cast<std::size_t>(trial.number()) % kScales.size();
-        const Mesh& mesh = std::get<Mesh>(stages[which].scene->shapes[0]);
+        const Mesh& mesh = std::get<Mesh>(accelerated_scenes[which].scene->shapes[0]);
         // The ray is aimed at vertices and edges that face the eye, so the first face that it hits must face the eye,
         // too.
         const auto& t = mesh.triangles[trial.random.below(static_cast<std::uint32_t>(mesh.triangles.size()))];
@@ -98,13 +101,13 @@ StressResult leak_from_outside(const StressTest& test, const StressSetting& sett
         const Vec3 target = lerp(mesh.positions[t[0]], mesh.positions[t[1]], along);
         const Vec3 outwards = normalize_scaled(target);
         const Vec3 side = normalize(outwards + trial.random.direction() * 0.6f);
-        const Ray ray = towards(target + side * (kScales[which] * trial.random.magnitude(0.1f, 1e3f)), target);
+        const Ray ray = towards(target + side * (kScales[which] * trial.random.log_uniform(0.1f, 1e3f)), target);
         const auto leaks = [&](std::optional<std::uint32_t> primitive) {
             if (!primitive) return true;
             const auto& [a, b, c] = mesh.triangles[*primitive];
             return dot(mesh.positions[a] + mesh.positions[b] + mesh.positions[c], ray.direction) > 0;
         };
-        const Hit hit = stages[which].accelerator.closest(ray);
+        const Hit hit = accelerated_scenes[which].accelerator.closest(ray);
         std::optional<std::uint32_t> naive_hit;
         float nearest = kInfinity;
         for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -114,8 +117,8 @@ StressResult leak_from_outside(const StressTest& test, const StressSetting& sett
         }
         trial.note("ball of size ", exact(kScales[which]), ", ray from ", exact(ray.origin), " along ",
                    exact(ray.direction), ": primitive ", hit.primitive, " at ", exact(hit.t));
-        trial.careful_wrong(leaks(hit.valid() ? std::optional(hit.primitive) : std::nullopt));
-        trial.naive_wrong(leaks(naive_hit));
+        trial.record_failure_if(leaks(hit.valid() ? std::optional(hit.primitive) : std::nullopt));
+        trial.record_naive_failure_if(leaks(naive_hit));
     });
 }
 
@@ -123,45 +126,45 @@ StressResult leak_from_outside(const StressTest& test, const StressSetting& sett
 StressResult leak_boxes(const StressTest& test, const StressSetting& setting) {
     return run_trials(test, setting, [](Trial& trial) {
         TrialRandom& random = trial.random;
-        const float scale = random.magnitude(1e-6f, 1e6f);
+        const float scale = random.log_uniform(1e-6f, 1e6f);
         const Vec3 middle = random.vector() * (scale * (trial.number() % 2 ? 1.0f : 100.0f));
         const Vec3 half = Vec3(random.uniform(0.1f, 1), random.uniform(0.1f, 1), random.uniform(0.1f, 1)) * scale;
         const Vec3 low = middle - half, high = middle + half;
-        const Stage stage(make_scene({box_quads(low, high)}));
+        const AcceleratedScene accelerated(make_scene({box_quads(low, high)}));
         for (int shot = 0; shot < 16; ++shot) {
             Vec3 target(random.coin() ? low.x : high.x, random.coin() ? low.y : high.y, random.coin() ? low.z : high.z);
             const std::uint32_t axis = random.below(4); // 3: a corner
             if (axis < 3) target[axis] = lerp(low[axis], high[axis], random.uniform());
             const Ray ray = towards(lerp(low, high, random.uniform(0.2f, 0.8f)), target);
-            const Hit hit = stage.accelerator.closest(ray);
+            const Hit hit = accelerated.accelerator.closest(ray);
             if (!hit.valid())
                 trial.note("box ", exact(low), " to ", exact(high), ", ray from ", exact(ray.origin), " along ",
                            exact(ray.direction));
-            trial.careful_wrong(!hit.valid());
+            trial.record_failure_if(!hit.valid());
         }
     });
 }
 
 StressResult leak_instances(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [mesh = ball(1, 0.1f)](Trial& trial) {
+    return run_trials(test, setting, [mesh = icosphere(1, 0.1f)](Trial& trial) {
         TrialRandom& random = trial.random;
-        const float scale = random.magnitude(1e-6f, 1e6f);
+        const float scale = random.log_uniform(1e-6f, 1e6f);
         const Mat4 to_world(
             translation(Vec3d(random.vector()) * static_cast<double>(scale) * 100.0) *
             rotation(normalize(Vec3d(random.direction())), static_cast<double>(random.uniform(0, 6))) *
             scaling(Vec3d(static_cast<double>(random.uniform(0.2f, 1)), -1, 2) * static_cast<double>(scale)));
-        const Stage stage(make_scene(mesh, {to_world, to_world * Mat4(scaling(Vec3(3, 3, 3)))}));
+        const AcceleratedScene accelerated(make_scene(mesh, {to_world, to_world * Mat4(scaling(Vec3(3, 3, 3)))}));
         for (int shot = 0; shot < 64; ++shot) {
             const auto& t = mesh.triangles[random.below(static_cast<std::uint32_t>(mesh.triangles.size()))];
             const Vec3 on_edge = lerp(mesh.positions[t[0]], mesh.positions[t[1]], random.coin() ? 0 : random.uniform());
             const Ray ray =
                 towards(transform_point(to_world, random.vector() * 0.3f), transform_point(to_world, on_edge));
-            const Hit hit = stage.accelerator.closest(ray), expected = hit_by_testing_all(*stage.scene, ray);
+            const Hit hit = accelerated.accelerator.closest(ray), expected = brute_force_hit(*accelerated.scene, ray);
             const bool wrong = hit.object != 0 || !(hit == expected);
             if (wrong)
                 trial.note("scale ", exact(scale), ", ray from ", exact(ray.origin), " along ", exact(ray.direction),
                            ": object ", hit.object, ", testing all: ", expected.object);
-            trial.careful_wrong(wrong);
+            trial.record_failure_if(wrong);
         }
     });
 }

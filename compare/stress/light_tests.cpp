@@ -2,7 +2,7 @@
 #include "common/light/solid_angle.h"
 #include "common/light/spherical_triangle.h"
 #include "compare/stress/errors.h"
-#include "compare/stress/odds.h"
+#include "compare/stress/log_p_value.h"
 #include "compare/stress/trials.h"
 
 #include <algorithm>
@@ -26,12 +26,12 @@ std::array<Vec3d, 4> corners_of(const Flat& flat) {
 /// Returns a shape of size 1, as thin as 1e-5.
 Flat random_flat(TrialRandom& random) {
     const Vec3 a = random.vector(), along = random.direction();
-    const Vec3 across = along * random.uniform() + random.direction() * random.magnitude(1e-5f, 1);
+    const Vec3 across = along * random.uniform() + random.direction() * random.log_uniform(1e-5f, 1);
     return random.coin() ? Flat(Triangle{a, a + along, a + across}) : Flat(Quad{a, along, across});
 }
 
 /// Returns a viewpoint in a random direction, 0.01 to 1e4 away.
-Vec3 viewpoint(TrialRandom& random) { return random.direction() * random.magnitude(1e-2f, 1e4f); }
+Vec3 viewpoint(TrialRandom& random) { return random.direction() * random.log_uniform(1e-2f, 1e4f); }
 
 /// Returns the solid angle Ω from |tan(Ω/2)| (Van Oosterom and Strackee 1983, eq. 8). It uses the corners themselves
 /// in long double, so no vector is rounded to unit length.
@@ -72,8 +72,9 @@ StressResult solid_angles(const StressTest& test, const StressSetting& setting) 
         };
         trial.note("corners ", exact(Vec3(corners[0])), ", ", exact(Vec3(corners[1])), ", ", exact(Vec3(corners[2])),
                    " seen from ", exact(Vec3(p)));
-        trial.careful(error(t.solid_angle()));
-        trial.naive(error(angle_at(t.a, t.b, t.c) + angle_at(t.b, t.c, t.a) + angle_at(t.c, t.a, t.b) - kPiDouble));
+        trial.record(error(t.solid_angle()));
+        trial.record_naive(
+            error(angle_at(t.a, t.b, t.c) + angle_at(t.b, t.c, t.a) + angle_at(t.c, t.a, t.b) - kPiDouble));
     });
 }
 
@@ -125,14 +126,14 @@ StressResult samples(const StressTest& test, const StressSetting& setting) {
         trial.note(flat.index() == 0 ? "triangle " : "quad ", exact(Vec3(corners[0])), ", ", exact(Vec3(corners[1])),
                    ", ", exact(Vec3(corners[2])), " seen from ", exact(Vec3(p)), ", u = (", u.x, ", ", u.y, "): pdf ",
                    s->pdf, " and ", pdf);
-        if (!(s->pdf > 0) || !std::isfinite(s->pdf)) return trial.careful(std::numeric_limits<double>::infinity());
+        if (!(s->pdf > 0) || !std::isfinite(s->pdf)) return trial.record(std::numeric_limits<double>::infinity());
         const bool by_solid_angle = pdf_of(corners[0]) == pdf && pdf_of(corners[1]) == pdf && pdf_of(corners[2]) == pdf;
         const double place = 1 + length(q) / s->distance; // the test itself rounds q
         const double turned = 1 + (by_solid_angle ? 1 / squared_room(corners, p) : 0);
         const double terms = place + turned / slant(corners, s->wi); // an error of wi moves the point by this factor
-        trial.careful(in_double_roundoffs(relative_error(s->pdf, pdf)) / place);
-        trial.careful(in_double_roundoffs(off_shape(flat, p, q)) / terms);
-        trial.careful(in_double_roundoffs(length(s->wi) - 1));
+        trial.record(in_double_roundoffs(relative_error(s->pdf, pdf)) / place);
+        trial.record(in_double_roundoffs(off_shape(flat, p, q)) / terms);
+        trial.record(in_double_roundoffs(length(s->wi) - 1));
     });
 }
 
@@ -157,15 +158,15 @@ StressResult densities(const StressTest& test, const StressSetting& setting) {
         const double error = std::sqrt(std::max(0.0, square - mean * mean) / kSamples) + 1e-6 * truth;
         if (error > 0.05 * truth) return; // too slanted for a normally distributed mean
         trial.note("solid angle ", truth, ", estimated ", mean, " ± ", error);
-        trial.careful(family_odds(two_sided_p(std::abs(mean - truth) / error), trial.count()));
+        trial.record(family_log_p_value(two_sided_p(std::abs(mean - truth) / error), trial.count()));
     });
 }
 
 StressResult far_spheres(const StressTest& test, const StressSetting& setting) {
     return run_trials(test, setting, [](Trial& trial) {
         TrialRandom& random = trial.random;
-        const Sphere sphere{random.vector(), random.magnitude(1e-3f, 1)};
-        const Vec3 p = sphere.center + random.direction() * (sphere.radius * random.magnitude(1.001f, 1e6f));
+        const Sphere sphere{random.vector(), random.log_uniform(1e-3f, 1)};
+        const Vec3 p = sphere.center + random.direction() * (sphere.radius * random.log_uniform(1.001f, 1e6f));
         using Wide = Vec3T<long double>;
         const long double d2 = length_squared(Wide(sphere.center) - Wide(p));
         const long double r2 = sqr(static_cast<long double>(sphere.radius));
@@ -178,16 +179,16 @@ StressResult far_spheres(const StressTest& test, const StressSetting& setting) {
         const auto density_error = [&](double pdf) { return in_double_roundoffs(relative_error(pdf, truth)) / terms; };
         const auto s = sample_solid_angle(sphere, Vec3d(p), Vec2d(random.uniform_2d()));
         trial.note("radius ", exact(sphere.radius), " at ", exact(sphere.center), " from ", exact(p));
-        if (!s) return trial.careful(std::numeric_limits<double>::infinity());
-        trial.careful(density_error(s->pdf));
-        trial.careful(density_error(solid_angle_pdf(sphere, Vec3d(p), Vec3d(sphere.center))));
+        if (!s) return trial.record(std::numeric_limits<double>::infinity());
+        trial.record(density_error(s->pdf));
+        trial.record(density_error(solid_angle_pdf(sphere, Vec3d(p), Vec3d(sphere.center))));
         // The point is on the sphere, up to the rounding of the center's distance.
         const double off = length(Vec3d(p) - Vec3d(sphere.center) + s->wi * s->distance) -
                            static_cast<double>(sphere.radius);
-        trial.careful(in_double_roundoffs(off) / std::sqrt(static_cast<double>(d2)));
+        trial.record(in_double_roundoffs(off) / std::sqrt(static_cast<double>(d2)));
         const Vec3 w = sphere.center - p;
         const float cosine = std::sqrt(1 - sphere.radius * sphere.radius / length_squared(w));
-        trial.naive(density_error(static_cast<double>(1 / (2 * kPi * (1 - cosine)))));
+        trial.record_naive(density_error(static_cast<double>(1 / (2 * kPi * (1 - cosine)))));
     });
 }
 

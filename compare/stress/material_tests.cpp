@@ -4,7 +4,7 @@
 #include "common/sampling/warp.h"
 #include "compare/stress/chi_squared.h"
 #include "compare/stress/errors.h"
-#include "compare/stress/odds.h"
+#include "compare/stress/log_p_value.h"
 #include "compare/stress/trials.h"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ Vec3 direction_of(float z, float phi) {
 
 /// Returns a direction on either side; every second one is grazing by a random order of magnitude.
 Vec3 outgoing(TrialRandom& random) {
-    const float z = random.coin() ? random.uniform(1e-3f, 1) : random.magnitude(1e-7f, 1e-1f);
+    const float z = random.coin() ? random.uniform(1e-3f, 1) : random.log_uniform(1e-7f, 1e-1f);
     return direction_of(random.sign() * z, 2 * kPi * random.uniform());
 }
 
@@ -38,11 +38,11 @@ struct Crossing {
 /// Returns a crossing at a random or grazing angle or, from inside, close to the critical angle by a random order of
 /// magnitude, on either side of it.
 Crossing crossing(TrialRandom& random) {
-    const float eta = random.coin() ? random.uniform(1, 4) : 1 + random.magnitude(1e-6f, 1);
+    const float eta = random.coin() ? random.uniform(1, 4) : 1 + random.log_uniform(1e-6f, 1);
     Vec3 wo = outgoing(random);
     if (random.coin() && eta > 1) {
         const float cosine = std::sqrt((eta - 1) * (eta + 1)) / eta; // sin = 1/η
-        const float off = cosine * (1 + random.sign() * random.magnitude(1e-7f, 1e-1f));
+        const float off = cosine * (1 + random.sign() * random.log_uniform(1e-7f, 1e-1f));
         wo = direction_of(-min(off, 1.0f), 2 * kPi * random.uniform());
     }
     return {eta, wo, wo.z > 0 ? eta : 1 / eta};
@@ -57,8 +57,8 @@ StressResult critical_angle(const StressTest& test, const StressSetting& setting
         const double size = (std::abs((eta - 1) * (eta + 1)) + z * z) / eta2; // size of the terms, without cancellation
         const auto error = [&](float cos2) { return in_roundoffs((static_cast<double>(cos2) - truth) / size); };
         trial.note("cos = ", exact(cosine), ", η = ", exact(c.relative));
-        trial.careful(error(cos2_refracted(cosine, c.relative)));
-        trial.naive(error(1 - (1 - cosine * cosine) / (c.relative * c.relative)));
+        trial.record(error(cos2_refracted(cosine, c.relative)));
+        trial.record_naive(error(1 - (1 - cosine * cosine) / (c.relative * c.relative)));
     });
 }
 
@@ -101,8 +101,8 @@ StressResult fresnel(const StressTest& test, const StressSetting& setting) {
         const Crossing c = crossing(trial.random);
         const float cosine = abs_cos_theta(c.wo);
         trial.note("cos = ", exact(cosine), ", η = ", exact(c.relative));
-        trial.careful(fresnel_error(fresnel_dielectric(cosine, c.relative), cosine, c.relative));
-        trial.naive(fresnel_error(textbook_fresnel(cosine, c.relative), cosine, c.relative));
+        trial.record(fresnel_error(fresnel_dielectric(cosine, c.relative), cosine, c.relative));
+        trial.record_naive(fresnel_error(textbook_fresnel(cosine, c.relative), cosine, c.relative));
     });
 }
 
@@ -117,11 +117,11 @@ double refraction_error(const Crossing& c, Vec3 wi) {
     const double x = static_cast<double>(wi.x) + wo.x / eta, y = static_cast<double>(wi.y) + wo.y / eta;
     const double terms =
         std::max(1.0, 1 / (eta * eta)); // bounds the squared sine on wi's side, as wo's length is uncertain
-    return in_roundoffs(worse(worse(std::abs(x), std::abs(y)), std::abs(z * z - cos2)) / terms);
+    return in_roundoffs(larger_error(larger_error(std::abs(x), std::abs(y)), std::abs(z * z - cos2)) / terms);
 }
 
 /// This is refract() of Ray Tracing in One Weekend, §11.2, with n on the side of wo.
-Vec3 books_refract(Vec3 wo, float relative) {
+Vec3 textbook_refract(Vec3 wo, float relative) {
     const Vec3 n(0, 0, wo.z > 0 ? 1.0f : -1.0f), uv = -wo;
     const float cos_theta = std::fmin(dot(-uv, n), 1.0f);
     const Vec3 across = (uv + n * cos_theta) * (1 / relative);
@@ -134,16 +134,16 @@ StressResult refraction(const StressTest& test, const StressSetting& setting) {
         const DielectricBsdf glass{c.eta, Rgb(1.0f)};
         const auto s = glass.sample(c.wo, kOneMinusEpsilon, {}, TransportMode::kRadiance);
         trial.note("wo = ", exact(c.wo), ", η = ", exact(c.eta));
-        if (!s) return trial.careful(kWrong);
+        if (!s) return trial.record(kWrong);
         // Total internal reflection, possibly early by one rounding; or all but 2^-24 is reflected.
         if (!s->transmitted) {
             const double eta = static_cast<double>(c.relative), z = static_cast<double>(abs_cos_theta(c.wo));
             const double cos2 = std::max(0.0, ((eta - 1) * (eta + 1) + z * z) / (eta * eta));
             const double refracted = 1 - reflectance_of(z, std::sqrt(cos2), eta);
-            return trial.careful(in_roundoffs(std::min(cos2 / std::max(1.0, 1 / (eta * eta)), refracted)));
+            return trial.record(in_roundoffs(std::min(cos2 / std::max(1.0, 1 / (eta * eta)), refracted)));
         }
-        trial.careful(refraction_error(c, s->wi));
-        trial.naive(refraction_error(c, books_refract(c.wo, c.relative)));
+        trial.record(refraction_error(c, s->wi));
+        trial.record_naive(refraction_error(c, textbook_refract(c.wo, c.relative)));
     });
 }
 
@@ -154,14 +154,14 @@ StressResult glass_energy(const StressTest& test, const StressSetting& setting) 
         trial.note("wo = ", exact(c.wo), ", η = ", exact(c.eta));
         const auto first = glass.sample(c.wo, 0, {}, TransportMode::kImportance);
         const auto last = glass.sample(c.wo, kOneMinusEpsilon, {}, TransportMode::kImportance);
-        if (!first || !last || !is_finite(first->wi) || !is_finite(last->wi)) return trial.careful(kWrong);
+        if (!first || !last || !is_finite(first->wi) || !is_finite(last->wi)) return trial.record(kWrong);
         double sum = static_cast<double>(first->pdf);
         if (last->transmitted != first->transmitted) sum += static_cast<double>(last->pdf);
         for (const BsdfSample& s : {*first, *last})
-            if (!(s.weight == Rgb(1.0f))) return trial.careful(kWrong);
-        trial.careful(in_roundoffs(sum - 1));
-        trial.naive(in_roundoffs(static_cast<double>(textbook_fresnel(abs_cos_theta(c.wo), c.relative)) +
-                                 (1 - static_cast<double>(first->pdf)) - 1));
+            if (!(s.weight == Rgb(1.0f))) return trial.record(kWrong);
+        trial.record(in_roundoffs(sum - 1));
+        trial.record_naive(in_roundoffs(static_cast<double>(textbook_fresnel(abs_cos_theta(c.wo), c.relative)) +
+                                        (1 - static_cast<double>(first->pdf)) - 1));
     });
 }
 
@@ -218,23 +218,23 @@ StressResult furnace(const StressTest& test, const StressSetting& setting) {
         const TransportMode mode = random.coin() ? TransportMode::kRadiance : TransportMode::kImportance;
         const auto s = sample(m.bsdf, wo, lobe, random.uniform_2d(), mode);
         trial.note(m.name, ", wo = ", exact(wo), mode == TransportMode::kRadiance ? ", radiance" : ", importance");
-        if (!s) return trial.careful(m.lossless ? kWrong : 0); // lost to a second bounce between microfacets
+        if (!s) return trial.record(m.lossless ? kWrong : 0); // lost to a second bounce between microfacets
         const double largest = static_cast<double>(max(max(s->weight.r, s->weight.g), s->weight.b)) /
                                radiance_spread(m.bsdf, wo, *s, mode);
-        if (!is_finite(s->weight) || !is_finite(s->wi) || !(s->pdf > 0)) return trial.careful(kWrong);
-        if (!(min(min(s->weight.r, s->weight.g), s->weight.b) >= 0)) return trial.careful(kWrong);
-        if (m.lossless) return trial.careful(in_roundoffs(largest - 1));
+        if (!is_finite(s->weight) || !is_finite(s->wi) || !(s->pdf > 0)) return trial.record(kWrong);
+        if (!(min(min(s->weight.r, s->weight.g), s->weight.b) >= 0)) return trial.record(kWrong);
+        if (m.lossless) return trial.record(in_roundoffs(largest - 1));
         // Where lobes share the samples, one may be sampled less often than its contribution requires; its weights
         // are still bounded.
         constexpr double kLargest = 10;
-        trial.careful(largest <= kLargest ? 0 : kWrong);
+        trial.record(largest <= kLargest ? 0 : kWrong);
     });
 }
 
 double unlike(Rgb a, Rgb b) {
     double worst = 0;
     for (std::size_t c = 0; c < 3; ++c) {
-        worst = worse(relative_error(static_cast<double>(a[c]), static_cast<double>(b[c])), worst);
+        worst = larger_error(relative_error(static_cast<double>(a[c]), static_cast<double>(b[c])), worst);
     }
     return in_roundoffs(worst);
 }
@@ -248,8 +248,8 @@ StressResult weights(const StressTest& test, const StressSetting& setting) {
         if (!s) return;
         const float density = pdf(m.bsdf, wo, s->wi);
         trial.note(m.name, ", wo = ", exact(wo), ", wi = ", exact(s->wi), ", pdf = ", exact(density));
-        if (!(density == s->pdf)) return trial.careful(kWrong);
-        trial.careful(unlike(eval(m.bsdf, wo, s->wi) * (abs_cos_theta(s->wi) / density), s->weight));
+        if (!(density == s->pdf)) return trial.record(kWrong);
+        trial.record(unlike(eval(m.bsdf, wo, s->wi) * (abs_cos_theta(s->wi) / density), s->weight));
     });
 }
 
@@ -260,13 +260,13 @@ StressResult reciprocity(const StressTest& test, const StressSetting& setting) {
         const Vec3 a = outgoing(random);
         Vec3 b = outgoing(random);
         if (random.coin()) // near the mirror direction, where narrow lobes lie
-            b = normalize(Vec3(-a.x, -a.y, a.z) + random.direction() * random.magnitude(1e-4f, 1e-1f));
+            b = normalize(Vec3(-a.x, -a.y, a.z) + random.direction() * random.log_uniform(1e-4f, 1e-1f));
         if (!same_hemisphere(a, b)) b.z = -b.z;
         const Rgb forth = eval(m.bsdf, a, b), back = eval(m.bsdf, b, a);
         const Rgb below = eval(m.bsdf, {a.x, a.y, -a.z}, {b.x, b.y, -b.z});
         trial.note(m.name, ", ", exact(a), " and ", exact(b));
-        if (!is_finite(forth) || !(below == forth)) return trial.careful(kWrong);
-        trial.careful(unlike(forth, back));
+        if (!is_finite(forth) || !(below == forth)) return trial.record(kWrong);
+        trial.record(unlike(forth, back));
     });
 }
 
@@ -290,9 +290,9 @@ StressResult chi_squared_test(const StressTest& test, const StressSetting& setti
                 return s ? std::optional(s->wi) : std::nullopt;
             },
             [&](Vec3 wi) { return static_cast<double>(pdf(m.bsdf, wo, wi)); });
-        trial.note(m.name, ", wo = ", exact(wo), ": ", result.chi_squared.account, ", integral ", result.integral);
+        trial.note(m.name, ", wo = ", exact(wo), ": ", result.chi_squared.details, ", integral ", result.integral);
         const bool complete = result.integral < 1.003 && result.integral > (is_diffuse(m.bsdf) ? 0.997 : 0.4);
-        trial.careful(complete ? family_odds(result.chi_squared.p_value, trial.count()) : kWrong);
+        trial.record(complete ? family_log_p_value(result.chi_squared.p_value, trial.count()) : kWrong);
     });
 }
 
@@ -315,7 +315,7 @@ StressResult albedo(const StressTest& test, const StressSetting& setting) {
         }
         const double error = std::sqrt((own2 - own * own + uniform2 - uniform * uniform) / kSamples);
         trial.note(m.name, ", wo = ", exact(wo), ": ", own, " and ", uniform, " ± ", error);
-        trial.careful(family_odds(two_sided_p((own - uniform) / error), trial.count()));
+        trial.record(family_log_p_value(two_sided_p((own - uniform) / error), trial.count()));
     });
 }
 

@@ -1,10 +1,10 @@
 // These tests run whole pipelines: both must find the same hits, and the images must be bitwise equal for any number
 // of threads.
-#include "common/image/same_bits.h"
+#include "common/image/bitwise_equal.h"
 #include "compare/hits/hit_agreement.h"
-#include "compare/pipeline.h"
-#include "compare/stress/book_trace.h"
+#include "compare/renderer.h"
 #include "compare/stress/random_scene.h"
+#include "compare/stress/textbook_tracer.h"
 #include "raster/render.h"
 #include "raytrace/render.h"
 
@@ -25,8 +25,8 @@ bool same_primitive(const Hit& a, const Hit& b) {
 
 /// Returns the reference with at most `most` of the differing pixels of `hits`, chosen at random. Judging a wrong
 /// pixel takes thousands of rays, and a trial with many wrong pixels has failed in any case.
-Image<Hit> some_differences(const Image<Hit>& hits, const Image<Hit>& reference, std::size_t most,
-                            TrialRandom& random) {
+Image<Hit> sample_differences(const Image<Hit>& hits, const Image<Hit>& reference, std::size_t most,
+                              TrialRandom& random) {
     std::vector<std::size_t> different;
     for (std::size_t i = 0; i < hits.size(); ++i)
         if (!same_primitive(hits[i], reference[i])) different.push_back(i);
@@ -38,12 +38,12 @@ Image<Hit> some_differences(const Image<Hit>& hits, const Image<Hit>& reference,
     return result;
 }
 
-Image<Hit> book_hits(const TrialScene& trial) {
-    const BookTracer book(trial.scene);
+Image<Hit> textbook_hits(const TrialScene& trial) {
+    const TextbookTracer textbook(trial.scene);
     const CameraModel camera(trial.view);
     Image<Hit> hits(kWidth, kHeight);
     for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < kWidth; ++x) hits(x, y) = book.nearest(camera.ray({x + 0.5, y + 0.5}));
+        for (int x = 0; x < kWidth; ++x) hits(x, y) = textbook.nearest(camera.ray({x + 0.5, y + 0.5}));
     return hits;
 }
 
@@ -57,7 +57,7 @@ std::string describe(const UnexplainedPixel& p) {
 /// one corner's rounding error. It is proportional to the distance of the farthest corner and to the primitive's
 /// aspect ratio. (A float ray-triangle test has this error; it is not proportional to the distance of the hit: Pharr,
 /// Jakob and Humphreys 2023, §6.8.7.)
-double plane_reach(const std::vector<Vec3d>& corners, Vec3d eye) {
+double plane_sensitivity(const std::vector<Vec3d>& corners, Vec3d eye) {
     if (corners.empty()) return 0; // a sphere
     double reach = 0, longest_squared = 0;
     for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -71,8 +71,8 @@ double plane_reach(const std::vector<Vec3d>& corners, Vec3d eye) {
 /// Counts the pixels in which both pipelines hit the same primitive at different distances.
 int count_distances_apart(Trial& trial, const TrialScene& random, const Image<Hit>& raster,
                           const Image<Hit>& raytrace) {
-    const ExactTracer tracer(random.scene, 0);
-    const Pinhole pinhole = CameraModel(random.view).through();
+    const ReferenceTracer tracer(random.scene, 0);
+    const Pinhole pinhole = CameraModel(random.view).pinhole();
     int apart = 0;
     for (int y = 0; y < kHeight; ++y)
         for (int x = 0; x < kWidth; ++x) {
@@ -81,7 +81,7 @@ int count_distances_apart(Trial& trial, const TrialScene& random, const Image<Hi
             const Rayd ray = pinhole.ray({x + 0.5, y + 0.5});
             const double ta = a.t, tb = b.t;
             const double error = std::abs(ta - tb) * tracer.cosine(ray, a.object, a.primitive, tb);
-            const double reach = plane_reach(tracer.corners(a.object, a.primitive), ray.origin);
+            const double reach = plane_sensitivity(tracer.corners(a.object, a.primitive), ray.origin);
             if (error <= kDepthTolerance * max(ta, reach)) continue;
             ++apart;
             trial.note("pixel (", x, ", ", y, "): object ", a.object, " primitive ", a.primitive,
@@ -90,34 +90,35 @@ int count_distances_apart(Trial& trial, const TrialScene& random, const Image<Hi
     return apart;
 }
 
-void judge_hits(Trial& trial, const TrialScene& random) {
+void check_hits(Trial& trial, const TrialScene& random) {
     Control control;
-    const PipelineSettings settings{.threads = 1}; // trials already run in parallel
-    const Image<Hit> raster = raster_pipeline(random.scene, settings).hits(random.view, control).hit;
-    const Image<Hit> raytrace = raytrace_pipeline(random.scene, settings).hits(random.view, control).hit;
+    const ComparisonSettings settings{.threads = 1}; // trials already run in parallel
+    const Image<Hit> raster = raster_renderer(random.scene, settings).render_hits(random.view, control).hit;
+    const Image<Hit> raytrace = raytrace_renderer(random.scene, settings).render_hits(random.view, control).hit;
     const auto judge = [&](const Image<Hit>& hits, std::size_t most) {
-        const Image<Hit> judged = some_differences(hits, raytrace, most, trial.random);
+        const Image<Hit> judged = sample_differences(hits, raytrace, most, trial.random);
         return compare_hits(random.scene, random.view, judged, raytrace, 1);
     };
-    const HitAgreement agreement = judge(raster, 16), book = judge(book_hits(random), 4);
+    const HitAgreement agreement = judge(raster, 16), textbook = judge(textbook_hits(random), 4);
     if (!agreement.listed.empty()) trial.note(describe(agreement.listed.front()));
     const int apart = count_distances_apart(trial, random, raster, raytrace);
-    trial.careful(static_cast<double>(agreement.unexplained + apart));
-    trial.naive(static_cast<double>(book.unexplained));
+    trial.record(static_cast<double>(agreement.unexplained + apart));
+    trial.record_naive(static_cast<double>(textbook.unexplained));
 }
 
-template <SceneParts parts> StressResult hits_of(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting,
-                      [](Trial& trial) { judge_hits(trial, random_scene(trial.random, parts, {}, kWidth, kHeight)); });
+template <SceneContents contents> StressResult hits_of(const StressTest& test, const StressSetting& setting) {
+    return run_trials(test, setting, [](Trial& trial) {
+        check_hits(trial, random_scene(trial.random, contents, {}, kWidth, kHeight));
+    });
 }
 
-constexpr SceneParts kAll{.soup = true, .meshes = true, .spheres = true, .quads = true, .instances = true};
+constexpr SceneContents kAll{.soup = true, .meshes = true, .spheres = true, .quads = true, .instances = true};
 
 StressResult hits_at_scales(const StressTest& test, const StressSetting& setting) {
     return run_trials(test, setting, [](Trial& trial) {
-        const Placement placement{.offset = {}, .scale = trial.random.magnitude(1e-6f, 1e6f)};
+        const Placement placement{.offset = {}, .scale = trial.random.log_uniform(1e-6f, 1e6f)};
         trial.note("scale ", exact(placement.scale));
-        judge_hits(trial, random_scene(trial.random, kAll, placement, kWidth, kHeight));
+        check_hits(trial, random_scene(trial.random, kAll, placement, kWidth, kHeight));
     });
 }
 
@@ -125,19 +126,19 @@ StressResult hits_far_away(const StressTest& test, const StressSetting& setting)
     return run_trials(test, setting, [](Trial& trial) {
         const Placement placement{.offset = trial.random.vector() * 1e5f, .scale = 1};
         trial.note("at ", exact(placement.offset));
-        judge_hits(trial, random_scene(trial.random, kAll, placement, kWidth, kHeight));
+        check_hits(trial, random_scene(trial.random, kAll, placement, kWidth, kHeight));
     });
 }
 
 // Threads ------------------------------------------------------------------------------------------------------------
 
-bool same_pictures(const Rendering& a, const Rendering& b) {
-    return same_bits(a.radiance, b.radiance) && same_bits(a.depth, b.depth) && same_bits(a.normal, b.normal) &&
-           same_bits(a.albedo, b.albedo) && same_bits(a.hit, b.hit) && same_bits(a.variance, b.variance) &&
-           same_bits(a.samples, b.samples);
+bool same_images(const Rendering& a, const Rendering& b) {
+    return bitwise_equal(a.radiance, b.radiance) && bitwise_equal(a.depth, b.depth) &&
+           bitwise_equal(a.normal, b.normal) && bitwise_equal(a.albedo, b.albedo) && bitwise_equal(a.hit, b.hit) &&
+           bitwise_equal(a.variance, b.variance) && bitwise_equal(a.samples, b.samples);
 }
 
-template <typename Settings> Settings with_everything(int threads) {
+template <typename Settings> Settings settings_with_all_aovs(int threads) {
     Settings settings;
     settings.threads = threads;
     settings.samples_per_pixel = 6;
@@ -146,37 +147,39 @@ template <typename Settings> Settings with_everything(int threads) {
 }
 Rendering render_raster(const TrialScene& trial, int threads) {
     Control control;
-    auto settings = with_everything<raster::Settings>(threads);
+    auto settings = settings_with_all_aovs<raster::RasterSettings>(threads);
     settings.shadow_map_side = 128;
     return raster::render(raster::prepare(trial.scene, settings), trial.view, settings, control);
 }
 Rendering render_raytrace(const TrialScene& trial, int threads) {
     Control control;
-    const auto settings = with_everything<raytrace::Settings>(threads);
+    const auto settings = settings_with_all_aovs<raytrace::PathTracerSettings>(threads);
     return raytrace::render(raytrace::prepare(trial.scene, settings), trial.view, settings, control);
 }
 
 template <Rendering (*render)(const TrialScene&, int)>
 StressResult threads(const StressTest& test, const StressSetting& setting) {
-    StressSetting one_by_one = setting;
-    one_by_one.threads = 1; // a trial uses its own threads
-    return run_trials(test, one_by_one, [](Trial& trial) {
+    StressSetting single_threaded = setting;
+    single_threaded.threads = 1; // a trial uses its own threads
+    return run_trials(test, single_threaded, [](Trial& trial) {
         const TrialScene random = random_lit_scene(trial.random, 100, 75);
         const Rendering one = render(random, 1);
         int different = 0;
-        for (const int count : {2, 3, 7}) different += !same_pictures(render(random, count), one);
-        trial.careful(different);
+        for (const int count : {2, 3, 7}) different += !same_images(render(random, count), one);
+        trial.record(different);
     });
 }
 
-constexpr std::string_view kJudge = "where they differ (16 such pixels a trial at most), rays in double precision "
-                                    "within 1/128 pixel see the one and the "
-                                    "other, or a tie (compare/hits); distances within 1e-5 of the primitive's reach";
-constexpr std::string_view kBook = "Moeller-Trumbore and t > 0.001 in float; four such pixels a trial at most";
+constexpr std::string_view kHitSource =
+    "where they differ (16 such pixels a trial at most), rays in double precision "
+    "within 1/128 pixel see the one and the "
+    "other, or a tie (compare/hits); distances within 1e-5 of the primitive's reach";
+constexpr std::string_view kTextbookMethod =
+    "Moeller-Trumbore and t > 0.001 in float; four such pixels a trial at most";
 
 constexpr StressTest row(std::string_view name, std::string_view what, std::int64_t trials,
                          StressResult (*run)(const StressTest&, const StressSetting&)) {
-    return {name, what, 0, "unexplained pixels", kJudge, kBook, trials, run};
+    return {name, what, 0, "unexplained pixels", kHitSource, kTextbookMethod, trials, run};
 }
 
 constexpr std::string_view kSameBits =
@@ -185,13 +188,13 @@ constexpr std::string_view kSameBits =
 constexpr StressTest kTests[] = {
     row("pipeline/hits-soup",
         "both pipelines see the same in a soup of triangles of all sizes, before the eye and behind", 2000,
-        hits_of<SceneParts{.soup = true}>),
+        hits_of<SceneContents{.soup = true}>),
     row("pipeline/hits-meshes", "both pipelines see the same of closed meshes, from outside and within", 500,
-        hits_of<SceneParts{.meshes = true}>),
+        hits_of<SceneContents{.meshes = true}>),
     row("pipeline/hits-spheres", "both pipelines see the same of spheres and ellipsoids, from outside and within", 1500,
-        hits_of<SceneParts{.spheres = true, .instances = true}>),
+        hits_of<SceneContents{.spheres = true, .instances = true}>),
     row("pipeline/hits-quads", "both pipelines see the same of boxes and walls", 1500,
-        hits_of<SceneParts{.quads = true}>),
+        hits_of<SceneContents{.quads = true}>),
     row("pipeline/hits-instances", "both pipelines see the same of all shapes turned, stretched and mirrored", 300,
         hits_of<kAll>),
     row("pipeline/hits-scales", "both pipelines see the same in scenes of all shapes at scales from 1e-6 to 1e6", 300,

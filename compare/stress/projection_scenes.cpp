@@ -4,8 +4,8 @@ namespace duet::compare {
 
 namespace {
 
-double magnitude(TrialRandom& random, float low, float high) {
-    return static_cast<double>(random.magnitude(low, high));
+double log_uniform(TrialRandom& random, float low, float high) {
+    return static_cast<double>(random.log_uniform(low, high));
 }
 double either_sign(TrialRandom& random, double x) { return random.coin() ? x : -x; }
 
@@ -17,7 +17,7 @@ Vec3 in_camera_space(const Pinhole& pinhole, double right, double up, double dep
 
 /// Returns a point in front of the eye, behind it, or exactly on the near plane or the eye's plane.
 Vec3 anywhere(TrialRandom& random, const Pinhole& pinhole) {
-    double depth = magnitude(random, 1e-3f, 1e3f);
+    double depth = log_uniform(random, 1e-3f, 1e3f);
     switch (random.below(8)) {
     case 0:
         depth = 0;
@@ -32,16 +32,16 @@ Vec3 anywhere(TrialRandom& random, const Pinhole& pinhole) {
     default:
         break;
     }
-    const double right = either_sign(random, magnitude(random, 1e-3f, 1e3f));
-    return in_camera_space(pinhole, right, either_sign(random, magnitude(random, 1e-3f, 1e3f)), depth);
+    const double right = either_sign(random, log_uniform(random, 1e-3f, 1e3f));
+    return in_camera_space(pinhole, right, either_sign(random, log_uniform(random, 1e-3f, 1e3f)), depth);
 }
 
 } // namespace
 
 TrialView random_view(TrialRandom& random, int window_side, double near) {
     View view;
-    view.width = static_cast<int>(random.magnitude(16, 4096));
-    view.height = static_cast<int>(random.magnitude(16, 4096));
+    view.width = static_cast<int>(random.log_uniform(16, 4096));
+    view.height = static_cast<int>(random.log_uniform(16, 4096));
     view.camera.fov_degrees = static_cast<double>(random.uniform(5, 150));
     view.camera.near = near;
     view.camera.eye = {0, 0, 0};
@@ -55,13 +55,13 @@ TrialView random_view(TrialRandom& random, int window_side, double near) {
         return static_cast<int>(random.below(static_cast<std::uint32_t>(size - window_side + 1)));
     };
     const int x = start(view.width), y = start(view.height);
-    const auto offset = [&] { return static_cast<std::int32_t>(random.below(raster::kSubPixels + 1)); };
+    const auto offset = [&] { return static_cast<std::int32_t>(random.below(raster::kSubpixels + 1)); };
     const std::int32_t offset_x = offset();
-    return {view, CameraModel(view).through(), {{x, y, x + window_side, y + window_side}, {offset_x, offset()}}};
+    return {view, CameraModel(view).pinhole(), {{x, y, x + window_side, y + window_side}, {offset_x, offset()}}};
 }
 
 TrialView random_view(TrialRandom& random, int window_side) {
-    return random_view(random, window_side, magnitude(random, 1e-5f, 0.1f));
+    return random_view(random, window_side, log_uniform(random, 1e-5f, 0.1f));
 }
 
 Vec3 point_at(const Pinhole& pinhole, Vec2d pixel, double depth) {
@@ -79,14 +79,15 @@ std::array<Vec3, 3> random_straddling(TrialRandom& random, const TrialView& v) {
     const Vec3 a = anywhere(random, v.pinhole), c = anywhere(random, v.pinhole);
     if (random.coin()) return {a, anywhere(random, v.pinhole), c};
     // The second corner is beyond a point visible in the window, so the edge passes through that point.
-    const Vec3 seen = point_at(v.pinhole, pixel_in(random, v.window), v.pinhole.near + magnitude(random, 1e-3f, 1e2f));
-    return {a, seen + (seen - a) * random.magnitude(1e-2f, 1e2f), random.coin() ? c : seen};
+    const Vec3 seen =
+        point_at(v.pinhole, pixel_in(random, v.window), v.pinhole.near + log_uniform(random, 1e-3f, 1e2f));
+    return {a, seen + (seen - a) * random.log_uniform(1e-2f, 1e2f), random.coin() ? c : seen};
 }
 
 std::array<Vec3, 3> random_beyond_guard(TrialRandom& random, const TrialView& v) {
-    const auto depth = [&] { return v.pinhole.near + magnitude(random, 1e-2f, 1e3f); };
+    const auto depth = [&] { return v.pinhole.near + log_uniform(random, 1e-2f, 1e3f); };
     const Vec2d p = pixel_in(random, v.window);
-    const auto far = [&](Vec2d direction) { return p + direction * magnitude(random, 1e4f, 1e7f); };
+    const auto far = [&](Vec2d direction) { return p + direction * log_uniform(random, 1e4f, 1e7f); };
     const auto direction = [&] {
         const double angle = 2 * kPiDouble * static_cast<double>(random.uniform());
         return Vec2d(std::cos(angle), std::sin(angle));
@@ -94,32 +95,32 @@ std::array<Vec3, 3> random_beyond_guard(TrialRandom& random, const TrialView& v)
     const Vec2d away = direction();
     const Vec3 a = point_at(v.pinhole, far(away), depth()), c = point_at(v.pinhole, far(direction()), depth());
     if (random.coin()) return {a, point_at(v.pinhole, far(away * -1.0), depth()), c}; // an edge exactly through p
-    return {a, point_at(v.pinhole, p + direction() * magnitude(random, 0.1f, 100), depth()), c};
+    return {a, point_at(v.pinhole, p + direction() * log_uniform(random, 0.1f, 100), depth()), c};
 }
 
-std::array<Vec3, 3> random_well_seen(TrialRandom& random, const TrialView& v) {
-    const double nearest = v.pinhole.near * 1.01 + magnitude(random, 1e-2f, 1e2f);
-    const double size = magnitude(random, 2, 2000);
+std::array<Vec3, 3> random_visible(TrialRandom& random, const TrialView& v) {
+    const double nearest = v.pinhole.near * 1.01 + log_uniform(random, 1e-2f, 1e2f);
+    const double size = log_uniform(random, 2, 2000);
     const Vec2d p = pixel_in(random, v.window);
     const auto corner = [&] {
         const Vec2d place = p + Vec2d(Vec2(random.uniform(-1, 1), random.uniform(-1, 1))) * size;
-        return point_at(v.pinhole, place, nearest * magnitude(random, 1, 1000));
+        return point_at(v.pinhole, place, nearest * log_uniform(random, 1, 1000));
     };
     const Vec3 a = corner(), b = corner();
     return {a, b, corner()};
 }
 
 std::array<Vec3, 3> random_sliver(TrialRandom& random, const TrialView& v) {
-    const double nearest = v.pinhole.near * 1.01 + magnitude(random, 1e-2f, 1e2f);
-    const auto depth = [&] { return nearest * magnitude(random, 1, 10); };
+    const double nearest = v.pinhole.near * 1.01 + log_uniform(random, 1e-2f, 1e2f);
+    const auto depth = [&] { return nearest * log_uniform(random, 1, 10); };
     const Vec2d within = pixel_in(random, v.window); // next to this pixel's sample
     const Vec2d p = v.window.offset.position(static_cast<int>(within.x), static_cast<int>(within.y)) +
                     Vec2d(Vec2(random.uniform(-1, 1), random.uniform(-1, 1))) * (1.0 / 256);
     const double angle = 2 * kPiDouble * static_cast<double>(random.uniform());
     const Vec2d along(std::cos(angle), std::sin(angle)), across(-along.y, along.x);
-    const double before = -magnitude(random, 0.01f, 100), after = magnitude(random, 0.01f, 100);
+    const double before = -log_uniform(random, 0.01f, 100), after = log_uniform(random, 0.01f, 100);
     const double third = lerp(before, after, static_cast<double>(random.uniform(-0.1f, 1.1f)));
-    const Vec2d aside = p + along * third + across * magnitude(random, 1e-5f, 0.1f);
+    const Vec2d aside = p + along * third + across * log_uniform(random, 1e-5f, 0.1f);
     const Vec3 a = point_at(v.pinhole, p + along * before, depth()),
                b = point_at(v.pinhole, p + along * after, depth());
     return {a, b, point_at(v.pinhole, aside, depth())};

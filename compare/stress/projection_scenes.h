@@ -2,8 +2,8 @@
 // of pixels.
 #pragma once
 
-#include "compare/stress/drawing.h"
 #include "compare/stress/projected_triangle.h"
+#include "compare/stress/raster_stages.h"
 #include "compare/stress/trials.h"
 
 namespace duet::compare {
@@ -33,7 +33,7 @@ std::array<Vec3, 3> random_straddling(TrialRandom& random, const TrialView& view
 /// Returns a triangle with one corner near the window and the others 1e4 to 1e7 pixels beyond it.
 std::array<Vec3, 3> random_beyond_guard(TrialRandom& random, const TrialView& view);
 /// Returns a triangle beyond the near plane, in and near the window, with corner depths up to 1000 times apart.
-std::array<Vec3, 3> random_well_seen(TrialRandom& random, const TrialView& view);
+std::array<Vec3, 3> random_visible(TrialRandom& random, const TrialView& view);
 /// Returns a sliver so thin in the image, 1e-5 to 0.1 pixels, that vertex snapping moves its edges across each other.
 /// Corner depths are up to 10 times apart.
 std::array<Vec3, 3> random_sliver(TrialRandom& random, const TrialView& view);

@@ -1,9 +1,9 @@
 // These tests compare the visibility and the attributes of triangles with the ray through each pixel in extended
 // precision.
-#include "compare/stress/book_raster.h"
 #include "compare/stress/errors.h"
 #include "compare/stress/projection_runs.h"
 #include "compare/stress/projection_scenes.h"
+#include "compare/stress/textbook_rasterizer.h"
 
 namespace duet::compare {
 
@@ -13,9 +13,10 @@ constexpr int kSide = 12; // pixels per side of a trial's window
 
 using MakeTriangle = std::array<Vec3, 3> (*)(TrialRandom&, const TrialView&);
 
-BookTriangle as_book(const Pinhole& pinhole, const std::array<Vec3, 3>& corners) {
+TextbookTriangle as_textbook(const Pinhole& pinhole, const std::array<Vec3, 3>& corners) {
     const Mat4 matrix(pinhole.world_to_pixel);
-    return {book_project(matrix, corners[0]), book_project(matrix, corners[1]), book_project(matrix, corners[2])};
+    return {textbook_project(matrix, corners[0]), textbook_project(matrix, corners[1]),
+            textbook_project(matrix, corners[2])};
 }
 
 void note_trial(Trial& trial, const TrialView& v, const std::array<Vec3, 3>& corners) {
@@ -40,19 +41,20 @@ template <MakeTriangle make> StressResult displaced(const StressTest& test, cons
         const ProjectedTriangle exact_triangle(v.pinhole, corners);
         if (exact_triangle.edge_on()) return;
         const raster::HitTile tile = draw(one_triangle(corners), v.view, v.window);
-        const BookTriangle book = as_book(v.pinhole, corners);
-        double worst = 0, book_worst = 0;
+        const TextbookTriangle textbook = as_textbook(v.pinhole, corners);
+        double worst = 0, textbook_worst = 0;
         v.window.for_each([&](int x, int y) {
             const Vec2d pixel = v.window.offset.position(x, y);
             const Hit& hit = tile.hit(x, y);
             worst = max(worst, displacement(exact_triangle, pixel, hit.valid()));
             if (hit.valid() && !possible(hit, tile.depth(x, y), v.pinhole.near))
                 worst = std::numeric_limits<double>::infinity();
-            book_worst = max(book_worst, displacement(exact_triangle, pixel, book_covers(book, Vec2(pixel))));
+            textbook_worst =
+                max(textbook_worst, displacement(exact_triangle, pixel, textbook_covers(textbook, Vec2(pixel))));
         });
         note_trial(trial, v, corners);
-        trial.careful(worst);
-        trial.naive(book_worst);
+        trial.record(worst);
+        trial.record_naive(textbook_worst);
     });
 }
 
@@ -65,8 +67,9 @@ void for_each_inside(const TrialView& v, const ProjectedTriangle& triangle, cons
                      const Judge& judge) {
     v.window.for_each([&](int x, int y) {
         const Vec2d pixel = v.window.offset.position(x, y);
-        constexpr double kWell = 1.0 / 16, kCondition = 1e5; // 1e5 · 2^-53 times a few = 0.001 · 2^-24
-        if (triangle.inside(pixel) >= kWell && triangle.condition(pixel) <= kCondition && tile.hit(x, y).valid())
+        constexpr double kInsideMargin = 1.0 / 16, kCondition = 1e5; // 1e5 · 2^-53 times a few = 0.001 · 2^-24
+        if (triangle.inside(pixel) >= kInsideMargin && triangle.condition(pixel) <= kCondition &&
+            tile.hit(x, y).valid())
             judge(x, y, pixel, triangle.at(pixel));
     });
 }
@@ -77,29 +80,29 @@ template <MakeTriangle make> StressResult barycentrics(const StressTest& test, c
         const std::array<Vec3, 3> corners = make(trial.random, v);
         const ProjectedTriangle exact_triangle(v.pinhole, corners);
         const raster::HitTile tile = draw(one_triangle(corners), v.view, v.window);
-        const BookTriangle book = as_book(v.pinhole, corners);
+        const TextbookTriangle textbook = as_textbook(v.pinhole, corners);
         note_trial(trial, v, corners);
         for_each_inside(v, exact_triangle, tile, [&](int x, int y, Vec2d pixel, const ProjectedPoint& truth) {
             const auto error = [&](float u, float w) {
-                return in_roundoffs(
-                    worse(std::abs(static_cast<double>(u) - truth.u), std::abs(static_cast<double>(w) - truth.v)));
+                return in_roundoffs(larger_error(std::abs(static_cast<double>(u) - truth.u),
+                                                 std::abs(static_cast<double>(w) - truth.v)));
             };
-            trial.careful(error(tile.hit(x, y).u, tile.hit(x, y).v));
-            const Vec3 affine = book_barycentrics(book, Vec2(pixel));
-            trial.naive(error(affine.y, affine.z));
+            trial.record(error(tile.hit(x, y).u, tile.hit(x, y).v));
+            const Vec3 affine = textbook_barycentrics(textbook, Vec2(pixel));
+            trial.record_naive(error(affine.y, affine.z));
         });
     });
 }
 
 /// Tests the distance of each hit point's projection from its sample, in pixels.
-StressResult points_aside(const StressTest& test, const StressSetting& setting) {
+StressResult point_errors(const StressTest& test, const StressSetting& setting) {
     return run_trials(test, setting, [](Trial& trial) {
         const TrialView v = random_view(trial.random, kSide);
         const std::array<Vec3, 3> corners = random_sliver(trial.random, v);
         const raster::HitTile tile = draw(one_triangle(corners), v.view, v.window);
-        const BookTriangle book = as_book(v.pinhole, corners);
+        const TextbookTriangle textbook = as_textbook(v.pinhole, corners);
         note_trial(trial, v, corners);
-        const auto aside = [&](Vec2d pixel, double u, double w) {
+        const auto pixel_error = [&](Vec2d pixel, double u, double w) {
             const Vec3d a(corners[0]), ab = Vec3d(corners[1]) - a, ac = Vec3d(corners[2]) - a;
             const Vec3d seen = v.pinhole.project(a + ab * u + ac * w);
             return std::hypot(seen.x - pixel.x, seen.y - pixel.y);
@@ -108,41 +111,41 @@ StressResult points_aside(const StressTest& test, const StressSetting& setting) 
             const Hit& hit = tile.hit(x, y);
             if (!hit.valid()) return;
             const Vec2d pixel = v.window.offset.position(x, y);
-            trial.careful(possible(hit, tile.depth(x, y), v.pinhole.near)
-                              ? aside(pixel, static_cast<double>(hit.u), static_cast<double>(hit.v))
-                              : std::numeric_limits<double>::infinity());
-            const Vec3 affine = book_barycentrics(book, Vec2(pixel));
-            trial.naive(aside(pixel, static_cast<double>(affine.y), static_cast<double>(affine.z)));
+            trial.record(possible(hit, tile.depth(x, y), v.pinhole.near)
+                             ? pixel_error(pixel, static_cast<double>(hit.u), static_cast<double>(hit.v))
+                             : std::numeric_limits<double>::infinity());
+            const Vec3 affine = textbook_barycentrics(textbook, Vec2(pixel));
+            trial.record_naive(pixel_error(pixel, static_cast<double>(affine.y), static_cast<double>(affine.z)));
         });
     });
 }
 
-constexpr float kBookNear = 0.1f, kBookFar = 1e5f;
+constexpr float kTextbookNear = 0.1f, kTextbookFar = 1e5f;
 
 /// Returns the textbook z-buffer's depth at a pixel: z/w is linear in screen space, from −1 at 0.1 m to 1 at 1e5 m.
-double book_depth(const BookTriangle& t, Vec2 pixel) {
-    const Vec3 b = book_barycentrics(t, pixel);
-    const auto z = [&](std::size_t i) { return book_z(t[i].depth, kBookNear, kBookFar); };
+double textbook_depth(const TextbookTriangle& t, Vec2 pixel) {
+    const Vec3 b = textbook_barycentrics(t, pixel);
+    const auto z = [&](std::size_t i) { return textbook_z(t[i].depth, kTextbookNear, kTextbookFar); };
     const float here = b.x * z(0) + b.y * z(1) + b.z * z(2);
-    return 2.0 * static_cast<double>(kBookFar * kBookNear) /
-           (static_cast<double>(kBookFar + kBookNear) -
-            static_cast<double>(here) * static_cast<double>(kBookFar - kBookNear));
+    return 2.0 * static_cast<double>(kTextbookFar * kTextbookNear) /
+           (static_cast<double>(kTextbookFar + kTextbookNear) -
+            static_cast<double>(here) * static_cast<double>(kTextbookFar - kTextbookNear));
 }
 
 template <MakeTriangle make> StressResult depths(const StressTest& test, const StressSetting& setting) {
     return run_trials(test, setting, [](Trial& trial) {
-        const TrialView v = random_view(trial.random, kSide, static_cast<double>(kBookNear));
+        const TrialView v = random_view(trial.random, kSide, static_cast<double>(kTextbookNear));
         const std::array<Vec3, 3> corners = make(trial.random, v);
         const ProjectedTriangle exact_triangle(v.pinhole, corners);
         const raster::HitTile tile = draw(one_triangle(corners), v.view, v.window);
-        const BookTriangle book = as_book(v.pinhole, corners);
+        const TextbookTriangle textbook = as_textbook(v.pinhole, corners);
         note_trial(trial, v, corners);
         for_each_inside(v, exact_triangle, tile, [&](int x, int y, Vec2d pixel, const ProjectedPoint& truth) {
             const double distance = truth.depth * v.pinhole.ray(pixel).t_min / v.pinhole.near;
-            trial.careful(in_roundoffs(relative_error(static_cast<double>(tile.hit(x, y).t), distance)));
-            trial.careful(
-                in_roundoffs(relative_error(static_cast<double>(tile.nearness(x, y)), v.pinhole.near / truth.depth)));
-            trial.naive(in_roundoffs(relative_error(book_depth(book, Vec2(pixel)), truth.depth)));
+            trial.record(in_roundoffs(relative_error(static_cast<double>(tile.hit(x, y).t), distance)));
+            trial.record(in_roundoffs(
+                relative_error(static_cast<double>(tile.reversed_depth(x, y)), v.pinhole.near / truth.depth)));
+            trial.record_naive(in_roundoffs(relative_error(textbook_depth(textbook, Vec2(pixel)), truth.depth)));
         });
     });
 }
@@ -187,8 +190,8 @@ constexpr StressTest kTests[] = {
      .source = kRounding,
      .naive = "affine: ratios of areas on the screen",
      .trials = 30'000,
-     .run = barycentrics<random_well_seen>,
-     .judged = 0.35},
+     .run = barycentrics<random_visible>,
+     .required_fraction = 0.35},
     {.name = "projection/barycentrics-straddling",
      .what = "u and v are perspective-correct on triangles that pass through the near plane and the eye's",
      .bound = 0.51,
@@ -197,7 +200,7 @@ constexpr StressTest kTests[] = {
      .naive = "affine: ratios of areas on the screen",
      .trials = 50'000,
      .run = barycentrics<random_straddling>,
-     .judged = 0.3},
+     .required_fraction = 0.3},
     {.name = "projection/slivers",
      .what = "a sample that only the snapped outline of a sliver covers gets a point of the sliver next to it",
      .bound = 0.0058,
@@ -206,18 +209,19 @@ constexpr StressTest kTests[] = {
                "all; u and v rounded to float: 0.0003",
      .naive = "affine: ratios of areas on the screen",
      .trials = 50'000,
-     .run = points_aside,
-     .judged = 0.15},
+     .run = point_errors,
+     .required_fraction = 0.15},
     {.name = "projection/depth",
-     .what = "distance and nearness (near/depth) are right on triangles whose corners are up to 1000 times as far as "
-             "others",
+     .what =
+         "distance and reversed_depth (near/depth) are right on triangles whose corners are up to 1000 times as far as "
+         "others",
      .bound = 1.01,
      .unit = "2^-24 of itself",
      .source = "one rounding to float; the volumes in extended precision; 0.01 for double's share",
      .naive = "a float z-buffer, z/w in [-1, 1] between 0.1 and 1e5 metres",
      .trials = 30'000,
-     .run = depths<random_well_seen>,
-     .judged = 0.35},
+     .run = depths<random_visible>,
+     .required_fraction = 0.35},
     {.name = "projection/depth-order",
      .what =
          "between 1e-3 and 1e5 metres, of two parallel surfaces a few floats apart the nearer is seen, whichever is "
@@ -228,12 +232,12 @@ constexpr StressTest kTests[] = {
      .naive = "a float z-buffer, z/w in [-1, 1]",
      .trials = 20'000,
      .run = depth_order,
-     .judged = 0.7},
+     .required_fraction = 0.7},
     {.name = "projection/draw-order",
      .what = "of triangles at the same place and depth the one of the lowest number is seen, in any order of drawing",
      .bound = 0,
      .unit = "wrong samples",
-     .source = "each triangle drawn by itself, and the rule applied by hand: of equal nearness the lower number",
+     .source = "each triangle drawn by itself, and the rule applied by hand: of equal reversed_depth the lower number",
      .naive = "nearer replaces, else whoever came first stays",
      .trials = 10'000,
      .run = draw_order},

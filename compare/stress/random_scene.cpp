@@ -22,25 +22,25 @@ Mesh soup(TrialRandom& random) {
     Mesh mesh;
     for (int i = 0; i < 40; ++i) {
         const Vec3 center = random.vector() * 2.0f;
-        const float size = random.magnitude(0.01f, 5);
+        const float size = random.log_uniform(0.01f, 5);
         const auto first = static_cast<std::uint32_t>(mesh.positions.size());
         for (int k = 0; k < 3; ++k) mesh.positions.push_back(center + random.vector() * size);
         if (i % 4 == 0)
             mesh.positions.back() =
-                lerp(mesh.positions[first], mesh.positions[first + 1], random.magnitude(1e-7f, 1)); // a sliver
+                lerp(mesh.positions[first], mesh.positions[first + 1], random.log_uniform(1e-7f, 1)); // a sliver
         mesh.triangles.push_back({first, first + 1, first + 2});
     }
     return mesh;
 }
 
 /// Returns a closed torus about y, counter-clockwise seen from outside.
-Mesh torus(std::uint32_t around, std::uint32_t across, double small) {
+Mesh torus(std::uint32_t around, std::uint32_t across, double tube_radius) {
     Mesh mesh;
     for (std::uint32_t i = 0; i < around; ++i)
         for (std::uint32_t k = 0; k < across; ++k) {
             const double u = 2 * kPiDouble * i / around, v = 2 * kPiDouble * k / across;
-            const double ring = 1 + small * std::cos(v);
-            mesh.positions.emplace_back(Vec3d(ring * std::cos(u), small * std::sin(v), -ring * std::sin(u)));
+            const double ring = 1 + tube_radius * std::cos(v);
+            mesh.positions.emplace_back(Vec3d(ring * std::cos(u), tube_radius * std::sin(v), -ring * std::sin(u)));
         }
     const auto vertex = [&](std::uint32_t i, std::uint32_t k) { return i % around * across + k % across; };
     for (std::uint32_t i = 0; i < around; ++i)
@@ -54,7 +54,7 @@ Mesh torus(std::uint32_t around, std::uint32_t across, double small) {
 QuadList walls(TrialRandom& random) {
     QuadList list;
     for (int i = 0; i < 6; ++i) {
-        const float size = random.magnitude(0.1f, 10);
+        const float size = random.log_uniform(0.1f, 10);
         const Vec3 corner = random.vector() * 2.0f, u = random.vector() * size;
         list.quads.push_back({corner, u, random.vector() * size});
     }
@@ -65,7 +65,7 @@ Mat4 random_turn(TrialRandom& random) { return rotation(random.direction(), rand
 
 /// Returns a scaling by factors of ±0.2 to ±2, which mirrors in half of the cases.
 Mat4 random_stretch(TrialRandom& random) {
-    const auto factor = [&] { return random.sign() * random.magnitude(0.2f, 2); };
+    const auto factor = [&] { return random.sign() * random.log_uniform(0.2f, 2); };
     const float x = factor(), y = factor();
     return random_turn(random) * scaling(Vec3(x, y, factor()));
 }
@@ -75,23 +75,23 @@ Mat4 place(const Placement& placement) {
     return translation(placement.offset) * scaling(Vec3(s, s, s));
 }
 
-void add_parts(Scene& scene, TrialRandom& random, const SceneParts& parts, const Mat4& placed) {
-    if (parts.soup) add(scene, soup(random), placed);
-    for (int i = 0; parts.meshes && i < 2; ++i) {
+void add_contents(Scene& scene, TrialRandom& random, const SceneContents& contents, const Mat4& placed) {
+    if (contents.soup) add(scene, soup(random), placed);
+    for (int i = 0; contents.meshes && i < 2; ++i) {
         const auto around = 3 + random.below(30), across = 3 + random.below(20);
         const Mat4 moved = placed * translation(random.vector()) * random_turn(random);
         add(scene, torus(around, across, static_cast<double>(random.uniform(0.1f, 0.9f))), moved);
     }
-    for (int i = 0; parts.spheres && i < 5; ++i) {
+    for (int i = 0; contents.spheres && i < 5; ++i) {
         const Vec3 center = random.vector() * 2.0f;
-        add(scene, Sphere{center, random.magnitude(0.01f, 1)}, placed);
+        add(scene, Sphere{center, random.log_uniform(0.01f, 1)}, placed);
     }
-    if (parts.quads) {
+    if (contents.quads) {
         add(scene, walls(random), placed);
         const Vec3 low = random.vector();
         add(scene, box_quads(low, low + abs(random.vector()) + Vec3(0.1f, 0.1f, 0.1f)), placed * random_turn(random));
     }
-    const std::size_t count = parts.instances ? scene.objects.size() : 0;
+    const std::size_t count = contents.instances ? scene.objects.size() : 0;
     for (std::size_t i = 0; i < count; ++i) {
         Object object = scene.objects[i];
         object.to_world = object.to_world_end = placed * translation(random.vector() * 2.0f) * random_stretch(random);
@@ -106,7 +106,7 @@ Camera random_camera(TrialRandom& random, const Placement& placement) {
         return Vec3d(placement.offset) + Vec3d(p) * static_cast<double>(placement.scale);
     };
     Camera camera;
-    camera.eye = there(random.vector() * random.magnitude(0.5f, 10));
+    camera.eye = there(random.vector() * random.log_uniform(0.5f, 10));
     camera.look_at = there(random.vector());
     camera.up = Vec3d(random.direction());
     camera.fov_degrees = static_cast<double>(random.uniform(10, 110));
@@ -132,10 +132,10 @@ TrialScene empty(TrialRandom& random, const Placement& placement, int width, int
 
 } // namespace
 
-TrialScene random_scene(TrialRandom& random, const SceneParts& parts, const Placement& placement, int width,
+TrialScene random_scene(TrialRandom& random, const SceneContents& contents, const Placement& placement, int width,
                         int height) {
     TrialScene result = empty(random, placement, width, height);
-    add_parts(result.scene, random, parts, place(placement));
+    add_contents(result.scene, random, contents, place(placement));
     finish_scene(result.scene);
     return result;
 }
@@ -145,7 +145,7 @@ TrialScene random_lit_scene(TrialRandom& random, int width, int height) {
     Scene& scene = result.scene;
     scene.materials = {Diffuse{}, Metal{{Rgb(0.9f, 0.8f, 0.7f)}, 0.3f}, Metal{}, Dielectric{}, Emissive{Rgb(3.0f)}};
     scene.material_names = {"grey", "brushed metal", "mirror", "glass", "lamp"};
-    add_parts(scene, random, {true, true, true, true, true}, Mat4());
+    add_contents(scene, random, {true, true, true, true, true}, Mat4());
     for (std::size_t i = 0; i < scene.objects.size(); ++i)
         scene.objects[i].materials = {static_cast<std::uint32_t>(i % scene.materials.size())};
     scene.objects.back().to_world_end = translation(Vec3(0.2f, 0.1f, 0)) * scene.objects.back().to_world;

@@ -7,8 +7,8 @@
 
 namespace duet::compare {
 
-/// Selects the parts of a scene, within a sphere of about 2 meters.
-struct SceneParts {
+/// Selects the contents of a scene, within a sphere of about 2 meters.
+struct SceneContents {
     bool soup = false; ///< intersecting triangles of all sizes, and slivers, in front of and behind the eye
     bool meshes = false; ///< closed tori with shared vertices, whose back faces may be culled
     bool spheres = false;   ///< of radii 0.01 to 1
@@ -29,10 +29,10 @@ struct TrialScene {
 };
 
 /// Returns a finished scene; all its objects have one gray material.
-TrialScene random_scene(TrialRandom& random, const SceneParts& parts, const Placement& placement, int width,
+TrialScene random_scene(TrialRandom& random, const SceneContents& contents, const Placement& placement, int width,
                         int height);
 
-/// Returns a random scene with all parts, all materials, all kinds of lights, a moving object and a thin lens.
+/// Returns a random scene with all contents, all materials, all kinds of lights, a moving object and a thin lens.
 TrialScene random_lit_scene(TrialRandom& random, int width, int height);
 
 } // namespace duet::compare

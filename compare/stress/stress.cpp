@@ -13,7 +13,7 @@ std::int64_t StressSetting::trials(std::int64_t by_default) const {
 }
 
 void StressOutcome::add(std::int64_t trial, double error, double bound) {
-    worst = worse(error, worst);
+    worst = larger_error(error, worst);
     if (error <= bound) return; // false for a NaN
     ++failures;
     if (first_failure < 0 || trial < first_failure) first_failure = trial;
@@ -21,7 +21,7 @@ void StressOutcome::add(std::int64_t trial, double error, double bound) {
 
 StressOutcome& StressOutcome::operator+=(const StressOutcome& other) {
     failures += other.failures;
-    worst = worse(other.worst, worst);
+    worst = larger_error(other.worst, worst);
     if (other.first_failure >= 0 && (first_failure < 0 || other.first_failure < first_failure))
         first_failure = other.first_failure;
     return *this;

@@ -35,13 +35,13 @@ struct StressOutcome {
 
 struct StressResult {
     std::int64_t trials = 0; ///< trials that judged something
-    std::int64_t least_trials = 1; ///< least number of such trials (StressTest::judged)
-    StressOutcome careful; ///< the library's implementation: any failure fails the suite
+    std::int64_t least_trials = 1;      ///< least number of such trials (StressTest::required_fraction)
+    StressOutcome library;              ///< the library's implementation: any failure fails the suite
     std::optional<StressOutcome> naive; ///< the textbook implementation on the same trials, for comparison
-    std::string account; ///< notes of the first failed trial of the library's implementation
+    std::string details;                ///< notes of the first failed trial of the library's implementation
 
     /// Returns whether the test failed: a trial failed, or too few trials judged anything.
-    bool failed() const { return careful.failures > 0 || trials < least_trials; }
+    bool failed() const { return library.failures > 0 || trials < least_trials; }
 };
 
 /// This is one row of the suite.
@@ -58,7 +58,7 @@ struct StressTest {
     StressResult (*run)(const StressTest& test, const StressSetting& setting);
     /// This fraction of the trials must judge something; the others meet a case that the row does not cover. It
     /// prevents an implementation that never answers from passing.
-    double judged = 0.99;
+    double required_fraction = 0.99;
 };
 
 // Each group has its own file (compare/stress/*_tests.cpp).

@@ -14,12 +14,12 @@ Subcommand add_stress(CLI::App& app) {
     const auto all = std::make_shared<StressOptions>();
     StressOptions& options = *all;
     stress->add_option("--trials", options.factor, "Times the default number of trials (default 1: about a minute)")
-        ->check(number_within(1e-6, 1e6, "a number from 1e-6 to 1e6"));
+        ->check(number_in_range(1e-6, 1e6, "a number from 1e-6 to 1e6"));
     stress->add_option("--only", options.only,
                        "A test, or how the names of some begin: intersection, departure/self-hits; may be given more "
                        "than once");
     stress->add_flag("--list", options.list, "Say what each test is, its bound and the bound's source; run none");
-    stress->add_option("--seed", options.seed, "Seed of all random numbers (default 0)")->check(whole_number());
+    stress->add_option("--seed", options.seed, "Seed of all random numbers (default 0)")->check(unsigned_integer());
     stress->add_option("--threads", options.threads, "Threads (default: all)")->check(CLI::Range(1, 1024));
     stress->add_option("--stats", options.stats, "Write the rows as JSON to this file (-: standard output)");
     stress->add_flag("--quiet", options.quiet, "No table, no progress bar; failures are still explained");

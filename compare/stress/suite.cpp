@@ -41,7 +41,7 @@ public:
     }
     void add(const StressTest& test, const StressResult& result) const {
         row({result.failed() ? "FAILED" : "ok", std::string(test.name), message(result.trials),
-             message(result.careful.failures), readable(result.careful.worst), bound_text(test),
+             message(result.library.failures), readable(result.library.worst), bound_text(test),
              result.naive ? message(result.naive->failures) : "", result.naive ? readable(result.naive->worst) : "",
              std::string(test.source) + (test.naive.empty() ? "" : ". Books: " + std::string(test.naive))});
     }
@@ -71,11 +71,11 @@ void explain(const StressTest& test, const StressResult& result, const StressOpt
     std::cerr << "compare: " << test.name << ": ";
     if (result.trials < result.least_trials)
         std::cerr << result.trials << " trials judged anything, expected " << result.least_trials << " at least"
-                  << (result.careful.failures > 0 ? "; " : "\n");
-    if (result.careful.failures == 0) return;
-    std::cerr << result.careful.failures << " of " << result.trials << " trials failed, the first being number "
-              << result.careful.first_failure << " of seed " << options.seed;
-    if (!result.account.empty()) std::cerr << ": " << result.account;
+                  << (result.library.failures > 0 ? "; " : "\n");
+    if (result.library.failures == 0) return;
+    std::cerr << result.library.failures << " of " << result.trials << " trials failed, the first being number "
+              << result.library.first_failure << " of seed " << options.seed;
+    if (!result.details.empty()) std::cerr << ": " << result.details;
     std::cerr << "\n  what must hold: " << test.what << "\n  the bound's source: " << test.source << '\n';
 }
 
@@ -87,14 +87,14 @@ json as_json(const StressTest& test, const StressResult& result) {
                 {"what", test.what},
                 {"trials", result.trials},
                 {"least_trials", result.least_trials},
-                {"failures", result.careful.failures},
-                {"worst", number(result.careful.worst)},
+                {"failures", result.library.failures},
+                {"worst", number(result.library.worst)},
                 {"bound", test.bound},
                 {"unit", test.unit},
                 {"source", test.source}};
-    if (result.careful.failures > 0) {
-        row["first_failure"] = result.careful.first_failure;
-        row["account"] = result.account;
+    if (result.library.failures > 0) {
+        row["first_failure"] = result.library.first_failure;
+        row["account"] = result.details;
     }
     if (result.naive)
         row["naive"] = {
@@ -151,7 +151,7 @@ int stress(const StressOptions& options) {
         write_json(options.stats, statistics);
     }
     if (!options.quiet)
-        std::cerr << tests.size() << " tests in " << readable_seconds(watch.seconds()) << ", " << failed << " failed\n";
+        std::cerr << tests.size() << " tests in " << format_duration(watch.seconds()) << ", " << failed << " failed\n";
     return failed > 0 ? kExitFailed : kExitOk;
 }
 

@@ -16,7 +16,7 @@ Vec2 TrialRandom::uniform_2d() {
     return {x, uniform()};
 }
 
-float TrialRandom::magnitude(float low, float high) {
+float TrialRandom::log_uniform(float low, float high) {
     return std::exp2(lerp(std::log2(low), std::log2(high), uniform()));
 }
 
@@ -38,9 +38,9 @@ std::uint64_t hash_name(std::string_view name) {
 
 /// Adds a trial's errors unless it judged nothing.
 void add(StressResult& result, const StressTest& test, const Trial& trial) {
-    if (!trial.careful_error()) return;
+    if (!trial.library_error()) return;
     ++result.trials;
-    result.careful.add(trial.number(), *trial.careful_error(), test.bound);
+    result.library.add(trial.number(), *trial.library_error(), test.bound);
     if (result.naive && trial.naive_error()) result.naive->add(trial.number(), *trial.naive_error(), test.bound);
 }
 
@@ -60,9 +60,9 @@ private:
 };
 
 /// Returns the required number of judging trials, less five standard deviations for random variation.
-std::int64_t least_trials(std::int64_t count, double judged) {
-    const double n = static_cast<double>(count), spread = std::sqrt(n * judged * (1 - judged));
-    return std::max<std::int64_t>(1, std::llround(std::floor(n * judged - 5 * spread)));
+std::int64_t least_trials(std::int64_t count, double required_fraction) {
+    const double n = static_cast<double>(count), spread = std::sqrt(n * required_fraction * (1 - required_fraction));
+    return std::max<std::int64_t>(1, std::llround(std::floor(n * required_fraction - 5 * spread)));
 }
 
 } // namespace
@@ -70,8 +70,8 @@ std::int64_t least_trials(std::int64_t count, double judged) {
 StressResult run_trials(const StressTest& test, const StressSetting& setting, const std::function<void(Trial&)>& body) {
     const std::int64_t count = setting.trials(test.trials);
     const std::uint64_t state = hash_combine(setting.seed, hash_name(test.name));
-    const auto run = [&](std::int64_t number, bool noting) {
-        Trial trial(hash_combine(state, static_cast<std::uint64_t>(number)), number, count, noting);
+    const auto run = [&](std::int64_t number, bool collects_notes) {
+        Trial trial(hash_combine(state, static_cast<std::uint64_t>(number)), number, count, collects_notes);
         body(trial);
         return trial;
     };
@@ -92,14 +92,14 @@ StressResult run_trials(const StressTest& test, const StressSetting& setting, co
     });
 
     StressResult all;
-    all.least_trials = least_trials(count, test.judged);
+    all.least_trials = least_trials(count, test.required_fraction);
     if (!test.naive.empty()) all.naive.emplace();
     for (const StressResult& result : parts) {
         all.trials += result.trials;
-        all.careful += result.careful;
+        all.library += result.library;
         if (all.naive && result.naive) *all.naive += *result.naive;
     }
-    if (all.careful.first_failure >= 0) all.account = run(all.careful.first_failure, true).account();
+    if (all.library.first_failure >= 0) all.details = run(all.library.first_failure, true).details();
     return all;
 }
 

@@ -22,7 +22,7 @@ public:
     float uniform(float low, float high) { return low + (high - low) * uniform(); }
     Vec2 uniform_2d();
     /// Returns a log-uniform value in [low, high]; both must be positive.
-    float magnitude(float low, float high);
+    float log_uniform(float low, float high);
     /// Returns a uniform integer in 0 … n − 1.
     std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>((bits() >> 32) * n >> 32); }
     bool coin() { return (bits() >> 63) != 0; }
@@ -39,8 +39,8 @@ private:
 /// A trial has a random number stream and collects the results.
 class Trial {
 public:
-    Trial(std::uint64_t state, std::int64_t number, std::int64_t count, bool noting)
-        : random(state), number_(number), count_(count), noting_(noting) {}
+    Trial(std::uint64_t state, std::int64_t number, std::int64_t count, bool collects_notes)
+        : random(state), number_(number), count_(count), collects_notes_(collects_notes) {}
 
     TrialRandom random;
 
@@ -49,31 +49,31 @@ public:
     /// Reports an error of the library's or of the textbook implementation. The largest of several errors counts,
     /// with NaN as the largest. A trial without an error of the library's implementation judged nothing and is not
     /// counted.
-    void careful(double error) { report(careful_, error); }
-    void naive(double error) { report(naive_, error); }
+    void record(double error) { report(library_error_, error); }
+    void record_naive(double error) { report(naive_, error); }
     /// Reports a trial that either holds or fails.
-    void careful_wrong(bool wrong) { careful(wrong ? 1 : 0); }
-    void naive_wrong(bool wrong) { naive(wrong ? 1 : 0); }
+    void record_failure_if(bool wrong) { record(wrong ? 1 : 0); }
+    void record_naive_failure_if(bool wrong) { record_naive(wrong ? 1 : 0); }
 
     /// Appends to the message that explains the trial. It is only used after a failure, when the trial runs again to
     /// collect it.
     template <typename... Parts> void note(const Parts&... parts) {
-        if (noting_) account_ += (account_.empty() ? "" : "; ") + message(parts...);
+        if (collects_notes_) details_ += (details_.empty() ? "" : "; ") + message(parts...);
     }
 
-    const std::optional<double>& careful_error() const { return careful_; }
+    const std::optional<double>& library_error() const { return library_error_; }
     const std::optional<double>& naive_error() const { return naive_; }
-    const std::string& account() const { return account_; }
+    const std::string& details() const { return details_; }
 
 private:
     static void report(std::optional<double>& worst, double error) {
         if (!worst || error > *worst || std::isnan(error)) worst = error;
     }
 
-    std::optional<double> careful_, naive_;
+    std::optional<double> library_error_, naive_;
     std::int64_t number_, count_;
-    bool noting_;
-    std::string account_;
+    bool collects_notes_;
+    std::string details_;
 };
 
 /// Runs `body` for each trial of the test on setting.threads threads and accumulates the results. The body may read

@@ -1,10 +1,10 @@
 #include "raster/gbuffer/gbuffer_pass.h"
 
 #include "raster/gbuffer/surface_lobes.h"
-#include "raster/shader/one_sample.h"
-#include "raster/shader/program.h"
-#include "raster/visibility/cover.h"
-#include "raster/visibility/strip_samples.h"
+#include "raster/shading/shader_program.h"
+#include "raster/shading/single_hit.h"
+#include "raster/visibility/hit_tile.h"
+#include "raster/visibility/packet_primitives.h"
 
 #include "common/system/control.h"
 #include "common/system/parallel.h"
@@ -24,14 +24,14 @@ struct AttributeShader : NormalVaryings {
 };
 
 /// Stores a packet's values, two rows of eight pixels, in a plane. The row below the image is left out.
-template <typename T> void store_packet(const StripOf<T>& packet, int x, int y, Plane<T>& plane) {
-    std::copy_n(packet.at(0), kStripWidth, plane.row(y) + x);
-    if (y + 1 < plane.height()) std::copy_n(packet.at(kStripWidth), kStripWidth, plane.row(y + 1) + x);
+template <typename T> void store_packet(const PacketOf<T>& packet, int x, int y, Plane<T>& plane) {
+    std::copy_n(packet.at(0), kPacketWidth, plane.row(y) + x);
+    if (y + 1 < plane.height()) std::copy_n(packet.at(kPacketWidth), kPacketWidth, plane.row(y + 1) + x);
 }
 
 /// Holds what all tiles share.
 struct Frame {
-    const PreparedData& data;
+    const RasterSceneData& data;
     const Geometry& geometry;
     const PassView& view;
     std::vector<std::optional<LobesOfColor>> of_color; ///< by material
@@ -49,23 +49,23 @@ public:
 
     void run() {
         const PixelRect& rect = tile_.rect();
-        for (int y = rect.y0; y < rect.y1; y += DepthTile::kStripRows)
-            for (int x = rect.x0; x < rect.x1; x += static_cast<int>(kStripWidth)) fill_packet(x, y);
+        for (int y = rect.y0; y < rect.y1; y += DepthTile::kPacketRows)
+            for (int x = rect.x0; x < rect.x1; x += static_cast<int>(kPacketWidth)) fill_packet(x, y);
     }
 
 private:
     void fill_packet(int x, int y) {
-        const StripPlace place = strip_place(tile_, x, y);
+        const SamplePacket place = sample_packet(tile_, x, y);
         reader_.read(place.ids, samples_);
-        if (samples_.seen == 0) return clear_packet(x, y);
+        if (samples_.visible == 0) return clear_packet(x, y);
         shader_.shade(place, shaded_);
         find_materials();
         store_packet(object_, x, y, gbuffer_.object);
         store_packet(material_, x, y, gbuffer_.material);
         clear_emission(x, y);
         store_depths_and_normals(place);
-        const auto of_packet = static_cast<std::uint32_t>(material_[static_cast<std::size_t>(
-            std::countr_zero(samples_.seen))]);
+        const auto of_packet =
+            static_cast<std::uint32_t>(material_[static_cast<std::size_t>(std::countr_zero(samples_.visible))]);
         if (one_material_ && of_color_[of_packet])
             fill_lobes(place, *of_color_[of_packet]);
         else
@@ -76,8 +76,8 @@ private:
 
     /// Marks a packet as background; its other attributes are not read.
     void clear_packet(int x, int y) {
-        static const StripOf<float> kZero{};
-        StripOf<std::int32_t> none;
+        static const PacketOf<float> kZero{};
+        PacketOf<std::int32_t> none;
         none.fill(-1);
         store_packet(kZero, x, y, gbuffer_.reversed_depth);
         store_packet(none, x, y, gbuffer_.object);
@@ -85,15 +85,16 @@ private:
         clear_emission(x, y);
     }
     void clear_emission(int x, int y) {
-        static const StripOf<float> kZero{};
+        static const PacketOf<float> kZero{};
         for (PlaneFloat* plane : {&emission_.x, &emission_.y, &emission_.z}) store_packet(kZero, x, y, *plane);
     }
 
-    template <typename Visit> void for_each_seen(const StripPlace& place, const Visit& visit) const {
+    template <typename Visit> void for_each_seen(const SamplePacket& place, const Visit& visit) const {
         const PixelRect& rect = tile_.rect();
-        for (std::uint32_t left = samples_.seen; left != 0; left &= left - 1) {
+        for (std::uint32_t left = samples_.visible; left != 0; left &= left - 1) {
             const auto i = static_cast<std::size_t>(std::countr_zero(left));
-            const int x = place.x + static_cast<int>(i % kStripWidth), y = place.y + static_cast<int>(i / kStripWidth);
+            const int x = place.x + static_cast<int>(i % kPacketWidth),
+                      y = place.y + static_cast<int>(i / kPacketWidth);
             if (x < rect.x1 && y < rect.y1) visit(x, y, i);
         }
     }
@@ -111,7 +112,7 @@ private:
         }
         object_.fill(-1), material_.fill(-1);
         std::int32_t first = -1;
-        for (std::uint32_t left = samples_.seen; left != 0; left &= left - 1) {
+        for (std::uint32_t left = samples_.visible; left != 0; left &= left - 1) {
             const auto i = static_cast<std::size_t>(std::countr_zero(left));
             const auto [object, primitive] = object_and_primitive(samples_.id(i));
             object_[i] = static_cast<std::int32_t>(object);
@@ -121,11 +122,12 @@ private:
         }
     }
 
-    void store_depths_and_normals(const StripPlace& place) {
-        StripOf<float> depth;
-        for (std::size_t i = 0; i < kStrip; i += Floats::size)
-            store(depth, i, xsimd::select(lanes_from<float>(samples_.seen >> i),
-                                          Floats::load_aligned(place.nearness + i), Floats(0.0f)));
+    void store_depths_and_normals(const SamplePacket& place) {
+        PacketOf<float> depth;
+        for (std::size_t i = 0; i < kPacketSize; i += Floats::size)
+            store(depth, i,
+                  xsimd::select(lanes_from<float>(samples_.visible >> i),
+                                Floats::load_aligned(place.reversed_depth + i), Floats(0.0f)));
         store_packet(depth, place.x, place.y, gbuffer_.reversed_depth);
         store_packet(shaded_.normal.x, place.x, place.y, gbuffer_.normal.x);
         store_packet(shaded_.normal.y, place.x, place.y, gbuffer_.normal.y);
@@ -133,11 +135,11 @@ private:
     }
 
     /// Fills the lobes of a packet of one material, in lanes.
-    void fill_lobes(const StripPlace& place, const LobesOfColor& lobes) {
-        StripColors diffuse, specular;
-        StripOf<float> constant;
-        for (std::size_t i = 0; i < kStrip; i += Floats::size) {
-            const StripColors& base = shaded_.color;
+    void fill_lobes(const SamplePacket& place, const LobesOfColor& lobes) {
+        ColorPacket diffuse, specular;
+        PacketOf<float> constant;
+        for (std::size_t i = 0; i < kPacketSize; i += Floats::size) {
+            const ColorPacket& base = shaded_.color;
             const RgbT<Floats> color{load(base.r, i), load(base.g, i), load(base.b, i)};
             const RgbT<Floats> d = lobes.diffuse(color, cosines(place, i)), s = lobes.specular(color);
             store(diffuse.r, i, d.r), store(diffuse.g, i, d.g), store(diffuse.b, i, d.b);
@@ -156,8 +158,8 @@ private:
     }
 
     /// Returns the cosines between shading normal and viewer.
-    Floats cosines(const StripPlace& place, std::size_t i) const {
-        const auto at = [&](const StripOf<float>& offsets, int start) {
+    Floats cosines(const SamplePacket& place, std::size_t i) const {
+        const auto at = [&](const PacketOf<float>& offsets, int start) {
             return load(offsets, i) + Floats(static_cast<float>(start));
         };
         const Vec3T<Floats> p = gbuffer_.projection.point(at(kColumns<float>, place.x), at(kRows<float>, place.y),
@@ -165,7 +167,7 @@ private:
         return dot(Vec3T<Floats>{load(shaded_.normal.x, i), load(shaded_.normal.y, i), load(shaded_.normal.z, i)}, gbuffer_.projection.to_viewer(p));
     }
 
-    void add_emission(int x, int y, std::size_t i, const StripPlace& place) {
+    void add_emission(int x, int y, std::size_t i, const SamplePacket& place) {
         if (!emits_[static_cast<std::size_t>(material_[i])]) return;
         const Vec2d pixel = place.position(i);
         const Hit hit = find_hit(geometry_, view_, samples_.id(i), pixel);
@@ -173,7 +175,7 @@ private:
     }
 
     /// Fills the lobes of one pixel, whose material has parameters that vary over the surface.
-    void fill_lobes(int x, int y, std::size_t i, const StripPlace& place) {
+    void fill_lobes(int x, int y, std::size_t i, const SamplePacket& place) {
         const Vec2d pixel = place.position(i);
         const Ray ray = rounded(view_.pinhole.ray(pixel), view_.time);
         const Hit hit = find_hit(geometry_, view_, samples_.id(i), pixel);
@@ -208,12 +210,12 @@ private:
     const DepthTile& tile_;
     GBuffer& gbuffer_;
     Planes3& emission_;
-    StripReader reader_;
-    ShadedStrips<AttributeShader> shader_;
+    PacketReader reader_;
+    TileShader<AttributeShader> shader_;
     // The current packet:
-    StripSamples samples_;
+    PacketPrimitives samples_;
     StripNormalsAndColors shaded_;
-    StripOf<std::int32_t> object_, material_;
+    PacketOf<std::int32_t> object_, material_;
     bool one_material_ = false;
 };
 
@@ -226,9 +228,9 @@ bool any_clear_coat(const Scene& scene) {
     });
 }
 
-void fill_gbuffer(const PreparedData& data, const Settings& settings, const Geometry& geometry, const PassView& view,
-                  const TileGrid& grid, SampleOffset offset, const Control& control, GBuffer& gbuffer,
-                  Planes3& emission) {
+void fill_gbuffer(const RasterSceneData& data, const RasterSettings& settings, const Geometry& geometry,
+                  const PassView& view, const TileGrid& grid, SampleOffset offset, const Control& control,
+                  GBuffer& gbuffer, Planes3& emission) {
     Frame frame{data, geometry, view, {}, {}};
     for (const Material& material : data.scene.materials) {
         frame.of_color.push_back(LobesOfColor::of(material));
@@ -237,7 +239,7 @@ void fill_gbuffer(const PreparedData& data, const Settings& settings, const Geom
     parallel_for(grid.size(), settings.threads, [&](std::size_t i) {
         if (control.stopped()) return;
         DepthTile tile;
-        cover(geometry, view, offset, grid.tile(i), i, tile);
+        rasterize_tile(geometry, view, offset, grid.tile(i), i, tile);
         TileFiller(frame, tile, gbuffer, emission).run();
     });
 }

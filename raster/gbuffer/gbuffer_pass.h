@@ -14,9 +14,9 @@ namespace duet::raster {
 /// Fills the G-buffer of a view whose samples lie at `offset` in their pixels. `emission` receives the radiance that
 /// the visible surfaces emit towards the viewer, 0 elsewhere. Every pixel is written, unless `control` stops
 /// the pass: then the tiles that are left out keep what they held.
-void fill_gbuffer(const PreparedData& data, const Settings& settings, const Geometry& geometry, const PassView& view,
-                  const TileGrid& grid, SampleOffset offset, const Control& control, GBuffer& gbuffer,
-                  Planes3& emission);
+void fill_gbuffer(const RasterSceneData& data, const RasterSettings& settings, const Geometry& geometry,
+                  const PassView& view, const TileGrid& grid, SampleOffset offset, const Control& control,
+                  GBuffer& gbuffer, Planes3& emission);
 
 /// Returns whether some material has a clear coat, which the G-buffer then needs planes for.
 bool any_clear_coat(const Scene& scene);

@@ -4,7 +4,7 @@
 #include "common/image/image.h"
 #include "common/image/rgb.h"
 #include "common/system/parallel.h"
-#include "raster/lanes.h"
+#include "raster/geometry/packet.h"
 
 #include <algorithm>
 
@@ -36,7 +36,7 @@ public:
 private:
     static constexpr int kPadding = 16;
     int width_ = 0, height_ = 0, stride_ = 0;
-    std::vector<T, CacheAligned<T>> values_;
+    std::vector<T, CacheAlignedAllocator<T>> values_;
 };
 
 using PlaneFloat = Plane<float>;

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "common/camera/camera.h"
-#include "raster/geometry/samples.h"
-#include "raster/lanes.h"
+#include "raster/geometry/packet.h"
+#include "raster/geometry/sample_positions.h"
 
 #include <array>
 

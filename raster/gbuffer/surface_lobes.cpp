@@ -10,13 +10,13 @@ struct LobesOf {
 
     SurfaceLobes operator()(const DiffuseBsdf& b) const { return {.diffuse = b.albedo, .specular = {}}; }
     /// The directional albedo is exact under uniform light, and close under light from an area.
-    SurfaceLobes operator()(const RoughDiffuseBsdf& b) const { return {.diffuse = b.reflected(cosine), .specular = {}}; }
+    SurfaceLobes operator()(const RoughDiffuseBsdf& b) const { return {.diffuse = b.directional_albedo(cosine), .specular = {}}; }
     SurfaceLobes operator()(const MetalBsdf& b) const {
         return {.diffuse = {}, .specular = b.reflectance, .alpha = b.alpha};
     }
     SurfaceLobes operator()(const LayeredBsdf& b) const {
         return {.diffuse = b.albedos(cosine).diffuse,
-                .specular = b.glossy.normal,
+                .specular = b.glossy.f0,
                 .alpha = b.glossy.alpha,
                 .coat = b.coat,
                 .coat_alpha = b.coat_alpha};
@@ -73,7 +73,7 @@ std::optional<LobesOfColor> LobesOfColor::of(const Material& material) {
         const LayeredBsdf layers = white.at(no_textures, SurfacePoint{});
         result.tabulate(layers);
         result.dielectric_ = layers.dielectric;
-        result.back_ = coated->back();
+        result.back_ = coated->internal_reflectance();
     } else if (const auto* glass = std::get_if<Dielectric>(&material)) {
         if (!glass->roughness.constant()) return std::nullopt;
         const SurfaceLobes lobes = surface_lobes(bsdf_at(material, no_textures, SurfacePoint{}), 1);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/material/material.h"
-#include "raster/lanes.h"
+#include "raster/geometry/packet.h"
 
 #include <optional>
 #include <vector>

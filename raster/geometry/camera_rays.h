@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/camera/camera.h"
-#include "raster/lanes.h"
+#include "raster/geometry/packet.h"
 
 namespace duet::raster {
 
@@ -21,11 +21,13 @@ struct CameraRays {
             return Vec3T<Doubles>{along(0), along(1), along(2)};
         };
         const Vec3T<Doubles> from = linear(pinhole.origin, pinhole.origin_dx, pinhole.origin_dy),
-                             way = linear(pinhole.direction, pinhole.direction_dx, pinhole.direction_dy);
-        per_depth = xsimd::sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
+                             unnormalized = linear(pinhole.direction, pinhole.direction_dx, pinhole.direction_dy);
+        per_depth = xsimd::sqrt(unnormalized.x * unnormalized.x + unnormalized.y * unnormalized.y +
+                                unnormalized.z * unnormalized.z);
         t_min = Doubles(pinhole.near) * per_depth;
-        origin = {as_floats(from.x), as_floats(from.y), as_floats(from.z)};
-        direction = {as_floats(way.x / per_depth), as_floats(way.y / per_depth), as_floats(way.z / per_depth)};
+        origin = {round_to_float(from.x), round_to_float(from.y), round_to_float(from.z)};
+        direction = {round_to_float(unnormalized.x / per_depth), round_to_float(unnormalized.y / per_depth),
+                     round_to_float(unnormalized.z / per_depth)};
     }
 
     /// Returns the ray of one lane.

@@ -13,10 +13,10 @@ namespace {
 
 /// The first two constants bound the number of triangles per run; the third is the target number of runs. There must
 /// be enough runs to balance the load between threads, and enough triangles per run to make its overhead negligible.
-constexpr std::uint32_t kMostInRun = 8192, kLeastInRun = 512, kRuns = 16;
+constexpr std::uint32_t kMaxRun = 8192, kMinRun = 512, kTargetRuns = 16;
 
 /// Returns the objects whose bounds overlap the frustum, and counts the primitives of the others as culled.
-std::vector<std::uint32_t> in_frustum(const PreparedData& data, const std::vector<std::uint32_t>& objects,
+std::vector<std::uint32_t> in_frustum(const RasterSceneData& data, const std::vector<std::uint32_t>& objects,
                                       const PassView& view, CullCounts& culled) {
     std::vector<std::uint32_t> result;
     for (const std::uint32_t object : objects) {
@@ -30,7 +30,7 @@ std::vector<std::uint32_t> in_frustum(const PreparedData& data, const std::vecto
 
 /// Returns the runs of the objects' triangles and of the spheres, in the order of objects, and assigns the spheres'
 /// ids.
-std::vector<Run> number_all(const Scene& scene, const std::vector<std::uint32_t>& polygonal,
+std::vector<Run> assign_ids(const Scene& scene, const std::vector<std::uint32_t>& polygonal,
                             std::vector<DrawSphere>& spheres) {
     const auto triangles = [&](std::uint32_t object) {
         const Shape& shape = scene.shapes[scene.objects[object].shape];
@@ -38,7 +38,7 @@ std::vector<Run> number_all(const Scene& scene, const std::vector<std::uint32_t>
     };
     std::uint64_t all = 0;
     for (const std::uint32_t object : polygonal) all += triangles(object);
-    const auto run = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(all / kRuns, kLeastInRun, kMostInRun));
+    const auto run = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(all / kTargetRuns, kMinRun, kMaxRun));
     std::vector<Run> runs;
     std::uint64_t id = 0;
     std::size_t sphere = 0;
@@ -62,9 +62,9 @@ std::vector<Run> number_all(const Scene& scene, const std::vector<std::uint32_t>
 }
 
 /// Provides a pool of assemblers for the threads of a parallel loop.
-class Lender {
+class AssemblerPool {
 public:
-    explicit Lender(std::vector<Assembler>& all) : all_(all) {}
+    explicit AssemblerPool(std::vector<Assembler>& all) : all_(all) {}
     Assembler take() {
         const std::lock_guard lock(mutex_);
         if (all_.empty()) return {};
@@ -82,10 +82,10 @@ private:
     std::mutex mutex_;
 };
 
-void assemble(const PreparedData& data, const AssemblyPlan& plan, int threads, Geometry& geometry) {
+void assemble(const RasterSceneData& data, const AssemblyPlan& plan, int threads, Geometry& geometry) {
     const Triangles& triangles = geometry.triangles;
     geometry.batches.resize(triangles.runs.size());
-    Lender lender(geometry.assemblers);
+    AssemblerPool pool(geometry.assemblers);
     parallel_for(triangles.runs.size(), threads, [&](std::size_t i) {
         const Run& run = triangles.runs[i];
         geometry.batches[i].clear();
@@ -93,9 +93,9 @@ void assemble(const PreparedData& data, const AssemblyPlan& plan, int threads, G
         const TransformedObject& object = triangles.objects[run.object];
         const bool cull = plan.front_faces_only ||
                           (plan.skips.back_faces && may_cull_backfaces(object, data.objects[object.object].solid));
-        Assembler assembler = lender.take();
+        Assembler assembler = pool.take();
         assembler.assemble(plan, triangles, run, cull, geometry.batches[i]);
-        lender.give_back(std::move(assembler));
+        pool.give_back(std::move(assembler));
     });
     for (const Batch& batch : geometry.batches) geometry.culled += batch.culled;
 }
@@ -123,8 +123,9 @@ std::size_t GeometryPool::memory_bytes() {
 }
 
 std::size_t Geometry::memory_bytes() const {
-    std::size_t bytes = spheres.size() * sizeof(DrawSphere) + sphere_bins.memory_bytes() + outlines.memory_bytes() +
-                        patches.memory_bytes() + fragments.memory_bytes() + triangles.runs.size() * sizeof(Run);
+    std::size_t bytes = spheres.size() * sizeof(DrawSphere) + sphere_bins.memory_bytes() +
+                        triangle_lists.memory_bytes() + mask_lists.memory_bytes() + fragment_lists.memory_bytes() +
+                        triangles.runs.size() * sizeof(Run);
     for (const TransformedObject& object : triangles.objects)
         bytes += object.vertices.size() * sizeof(SnappedVertex);
     for (const Batch& batch : batches) bytes += batch.memory_bytes();
@@ -136,9 +137,9 @@ namespace {
 /// Selects the sides of surfaces that are drawn.
 enum class Sides { kAsSettings, kBacks };
 
-void process(const PreparedData& data, const std::vector<std::uint32_t>& all_polygonal,
+void process(const RasterSceneData& data, const std::vector<std::uint32_t>& all_polygonal,
              const std::vector<std::uint32_t>& all_spheres, const TileGrid& grid, const PassView& view,
-             const Settings& settings, bool patches, Geometry& result, Sides sides = Sides::kAsSettings) {
+             const RasterSettings& settings, bool coverage_masks, Geometry& result, Sides sides = Sides::kAsSettings) {
     Stopwatch watch;
     result.culled = {};
     const auto visible = [&](const std::vector<std::uint32_t>& objects) {
@@ -152,29 +153,30 @@ void process(const PreparedData& data, const std::vector<std::uint32_t>& all_pol
     result.transform_seconds = watch.lap();
 
     result.spheres = set_up_spheres(data.scene, visible(all_spheres), view.pinhole, view.time, view.viewport);
-    result.triangles.runs = number_all(data.scene, polygonal, result.spheres);
+    result.triangles.runs = assign_ids(data.scene, polygonal, result.spheres);
     const bool backs = sides == Sides::kBacks; // drawn as front faces of an inverted object
     for (DrawSphere& sphere : result.spheres) sphere.far_side = backs;
-    const auto turn = [&] {
+    const auto flip = [&] {
         for (TransformedObject& object : result.triangles.objects) object.mirrored = object.mirrored != backs;
     };
-    turn();
-    assemble(data, {view.viewport, grid, view.samples, settings.skips, settings.front_faces_only || backs, patches},
+    flip();
+    assemble(data,
+             {view.viewport, grid, view.samples, settings.skips, settings.front_faces_only || backs, coverage_masks},
              settings.threads, result);
-    turn();
+    flip();
     result.setup_seconds = watch.lap();
 
-    result.outlines.gather(result.batches, &Batch::triangle_segments, grid.size());
-    result.patches.gather(result.batches, &Batch::patch_segments, grid.size());
-    result.fragments.gather(result.batches, &Batch::fragment_segments, grid.size());
+    result.triangle_lists.gather(result.batches, &Batch::triangle_segments, grid.size());
+    result.mask_lists.gather(result.batches, &Batch::mask_segments, grid.size());
+    result.fragment_lists.gather(result.batches, &Batch::fragment_segments, grid.size());
     result.sphere_bins = bin(grid, result.spheres);
     result.bin_seconds = watch.lap();
 }
 
 } // namespace
 
-void process_geometry(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
-                      Geometry& result) {
+void process_geometry(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
+                      const RasterSettings& settings, Geometry& result) {
     process(data, data.polygonal, data.spheres, grid, view, settings, true, result);
 }
 
@@ -183,59 +185,60 @@ namespace {
 using Objects = std::vector<std::uint32_t>;
 
 Objects without(const Objects& objects, const Objects& taken) {
-    Objects kept;
-    std::set_difference(objects.begin(), objects.end(), taken.begin(), taken.end(), std::back_inserter(kept));
-    return kept;
+    Objects selected;
+    std::set_difference(objects.begin(), objects.end(), taken.begin(), taken.end(), std::back_inserter(selected));
+    return selected;
 }
 Objects common_to(const Objects& objects, const Objects& others) {
-    Objects kept;
-    std::set_intersection(objects.begin(), objects.end(), others.begin(), others.end(), std::back_inserter(kept));
-    return kept;
+    Objects selected;
+    std::set_intersection(objects.begin(), objects.end(), others.begin(), others.end(), std::back_inserter(selected));
+    return selected;
 }
 
 } // namespace
 
-void process_without(const PreparedData& data, const std::vector<std::uint32_t>& excluded, const TileGrid& grid,
-                     const PassView& view, const Settings& settings, Geometry& result) {
+void process_without(const RasterSceneData& data, const std::vector<std::uint32_t>& excluded, const TileGrid& grid,
+                     const PassView& view, const RasterSettings& settings, Geometry& result) {
     process(data, without(data.polygonal, excluded), without(data.spheres, excluded), grid, view, settings, true,
             result);
 }
 
-void process_only(const PreparedData& data, const std::vector<std::uint32_t>& objects, const TileGrid& grid,
-                  const PassView& view, const Settings& settings, Geometry& result) {
+void process_only(const RasterSceneData& data, const std::vector<std::uint32_t>& objects, const TileGrid& grid,
+                  const PassView& view, const RasterSettings& settings, Geometry& result) {
     process(data, common_to(data.polygonal, objects), common_to(data.spheres, objects), grid, view, settings, true,
             result);
 }
 
-void process_without_glass(const PreparedData& data, const TileGrid& grid, const PassView& view,
-                           const Settings& settings, Geometry& result) {
+void process_without_glass(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
+                           const RasterSettings& settings, Geometry& result) {
     process_without(data, data.glass, grid, view, settings, result);
 }
 
-void process_glass(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
-                   Geometry& result) {
+void process_glass(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
+                   const RasterSettings& settings, Geometry& result) {
     process(data, common_to(data.polygonal, data.glass), common_to(data.spheres, data.glass), grid, view, settings,
             false, result);
 }
 
-void process_backs(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
-                   bool glass, Geometry& result) {
+void process_back_faces(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
+                        const RasterSettings& settings, bool glass, Geometry& result) {
     const auto closed = [&](const Objects& objects) {
-        Objects kept = glass ? objects : without(objects, data.glass);
-        std::erase_if(kept, [&](std::uint32_t object) { return !data.objects[object].closed; });
-        return kept;
+        Objects selected = glass ? objects : without(objects, data.glass);
+        std::erase_if(selected, [&](std::uint32_t object) { return !data.objects[object].closed; });
+        return selected;
     };
     process(data, closed(data.polygonal), closed(data.spheres), grid, view, settings, true, result, Sides::kBacks);
 }
 
-void process_backs_of_glass(const PreparedData& data, const TileGrid& grid, const PassView& view,
-                            const Settings& settings, bool patches, Geometry& result) {
-    process(data, common_to(data.polygonal, data.glass), {}, grid, view, settings, patches, result, Sides::kBacks);
+void process_glass_back_faces(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
+                              const RasterSettings& settings, bool coverage_masks, Geometry& result) {
+    process(data, common_to(data.polygonal, data.glass), {}, grid, view, settings, coverage_masks, result,
+            Sides::kBacks);
 }
 
-void process_layers(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
-                    Geometry& result) {
-    process(data, data.open_polygonal, data.open_spheres, grid, view, settings, false, result);
+void process_layers(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
+                    const RasterSettings& settings, Geometry& result) {
+    process(data, data.alpha_polygonal, data.alpha_spheres, grid, view, settings, false, result);
 }
 
 } // namespace duet::raster

@@ -3,15 +3,15 @@
 
 #include "raster/geometry/assemble.h"
 #include "raster/geometry/bin.h"
-#include "raster/geometry/samples.h"
-#include "raster/prepare.h"
+#include "raster/geometry/sample_positions.h"
+#include "raster/raster_scene.h"
 
 #include <memory>
 #include <mutex>
 
 namespace duet::raster {
 
-class Screen; // raster/screen/screen.h
+class ScreenGBuffer; // raster/gbuffer/screen_gbuffer.h
 
 /// Represents one view of the scene: a point on the lens, a time, and the sample positions in the pixel.
 struct PassView {
@@ -19,7 +19,7 @@ struct PassView {
     float time = 0;
     Viewport viewport;
     const std::vector<SampleOffset>& samples;
-    const Screen* screen = nullptr; ///< the depths that a screen-space effect reads; null if there is none
+    const ScreenGBuffer* gbuffer = nullptr; ///< the depths that a screen-space effect reads; null if there is none
 };
 
 /// Stores the primitives of a pass, ready to be rasterized tile by tile. They are rebuilt for each pass in the same
@@ -27,7 +27,7 @@ struct PassView {
 struct Geometry {
     Triangles triangles;
     std::vector<Batch> batches; ///< one per run
-    TileLists outlines, patches, fragments;
+    TileLists triangle_lists, mask_lists, fragment_lists;
     std::vector<DrawSphere> spheres;
     Bins sphere_bins;
     CullCounts culled;
@@ -39,31 +39,31 @@ struct Geometry {
 
 /// Processes all objects without alpha mask or alpha blending. The result is the same for any number of threads.
 /// Throws Error if there are more triangles in view than ids (2^31).
-void process_geometry(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
-                      Geometry& result);
+void process_geometry(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
+                      const RasterSettings& settings, Geometry& result);
 /// Processes the objects of process_geometry() except those listed, in order.
-void process_without(const PreparedData& data, const std::vector<std::uint32_t>& excluded, const TileGrid& grid,
-                     const PassView& view, const Settings& settings, Geometry& result);
+void process_without(const RasterSceneData& data, const std::vector<std::uint32_t>& excluded, const TileGrid& grid,
+                     const PassView& view, const RasterSettings& settings, Geometry& result);
 /// Processes those objects of process_geometry() that are listed, in order.
-void process_only(const PreparedData& data, const std::vector<std::uint32_t>& objects, const TileGrid& grid,
-                  const PassView& view, const Settings& settings, Geometry& result);
-/// Processes the objects of process_geometry() except PreparedData::glass.
-void process_without_glass(const PreparedData& data, const TileGrid& grid, const PassView& view,
-                           const Settings& settings, Geometry& result);
-/// Processes only PreparedData::glass, without coverage masks (Patch).
-void process_glass(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
-                   Geometry& result);
-/// Processes only the back faces of closed objects, which include the far sides of spheres. PreparedData::glass is
+void process_only(const RasterSceneData& data, const std::vector<std::uint32_t>& objects, const TileGrid& grid,
+                  const PassView& view, const RasterSettings& settings, Geometry& result);
+/// Processes the objects of process_geometry() except RasterSceneData::glass.
+void process_without_glass(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
+                           const RasterSettings& settings, Geometry& result);
+/// Processes only RasterSceneData::glass, without coverage masks (CoverageMask).
+void process_glass(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
+                   const RasterSettings& settings, Geometry& result);
+/// Processes only the back faces of closed objects, which include the far sides of spheres. RasterSceneData::glass is
 /// included if `glass` is true.
-void process_backs(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
-                   bool glass, Geometry& result);
-/// Processes only the back faces of the meshes and quads of PreparedData::glass. `patches` allows coverage masks
-/// (Patch).
-void process_backs_of_glass(const PreparedData& data, const TileGrid& grid, const PassView& view,
-                            const Settings& settings, bool patches, Geometry& result);
-/// Processes only the objects with alpha mask or alpha blending (PreparedData::open_polygonal and open_spheres).
-void process_layers(const PreparedData& data, const TileGrid& grid, const PassView& view, const Settings& settings,
-                    Geometry& result);
+void process_back_faces(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
+                        const RasterSettings& settings, bool glass, Geometry& result);
+/// Processes only the back faces of the meshes and quads of RasterSceneData::glass. `coverage_masks` allows coverage
+/// masks (CoverageMask).
+void process_glass_back_faces(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
+                              const RasterSettings& settings, bool coverage_masks, Geometry& result);
+/// Processes only the objects with alpha mask or alpha blending (RasterSceneData::alpha_polygonal and alpha_spheres).
+void process_layers(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
+                    const RasterSettings& settings, Geometry& result);
 
 /// Provides a pool of geometries whose memory is reused from frame to frame. There is one for each rendering that
 /// runs at the same time.
@@ -79,12 +79,12 @@ private:
 };
 
 /// Holds a geometry taken from a pool and returned to it by the destructor.
-class GeometryLoan {
+class PooledGeometry {
 public:
-    explicit GeometryLoan(GeometryPool& pool) : pool_(pool), geometry_(pool.take()) {}
-    ~GeometryLoan() { pool_.give_back(std::move(geometry_)); }
-    GeometryLoan(const GeometryLoan&) = delete;
-    GeometryLoan& operator=(const GeometryLoan&) = delete;
+    explicit PooledGeometry(GeometryPool& pool) : pool_(pool), geometry_(pool.take()) {}
+    ~PooledGeometry() { pool_.give_back(std::move(geometry_)); }
+    PooledGeometry(const PooledGeometry&) = delete;
+    PooledGeometry& operator=(const PooledGeometry&) = delete;
     Geometry& operator*() { return *geometry_; }
 
 private:

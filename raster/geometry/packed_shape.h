@@ -12,7 +12,7 @@
 namespace duet::raster {
 
 /// Selects how interpolated barycentrics map to Hit::u and Hit::v.
-enum class Piece : std::uint8_t {
+enum class TriangleKind : std::uint8_t {
     kTriangle,   ///< corners a, b, c
     kQuadFirst,  ///< corner, +u, +u+v
     kQuadSecond, ///< corner, +u+v, +v
@@ -43,8 +43,10 @@ struct PackedShape {
     bool quads() const { return !halves.empty(); }
     /// Returns the Hit::primitive index of a triangle.
     std::size_t primitive(std::size_t triangle) const { return quads() ? triangle / 2 : triangle; }
-    Piece piece(std::size_t triangle) const {
-        return !quads() ? Piece::kTriangle : triangle % 2 == 0 ? Piece::kQuadFirst : Piece::kQuadSecond;
+    TriangleKind triangle_kind(std::size_t triangle) const {
+        return !quads()            ? TriangleKind::kTriangle
+               : triangle % 2 == 0 ? TriangleKind::kQuadFirst
+                                   : TriangleKind::kQuadSecond;
     }
 
 private:

@@ -2,7 +2,7 @@
 // lane.
 #pragma once
 
-#include "raster/lanes.h"
+#include "raster/geometry/packet.h"
 
 #include "common/vec/scalar.h"
 

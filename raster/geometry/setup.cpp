@@ -31,7 +31,7 @@ Vec2d Interpolation::mirrored_inside(Vec2d p) const {
 // This handles samples that mirroring moves across another edge, because they lie at a corner or because the
 // triangle is thinner than the displacement by snapping. Clamping negative barycentrics to zero would be wrong: in
 // a sliver, it moves the point from one end to the other.
-Vec2d Interpolation::nearest_on_outline(Vec2d p) const {
+Vec2d Interpolation::nearest_on_boundary(Vec2d p) const {
     const auto value = [](const Vec3d& edge, Vec2d q) { return edge.x * q.x + edge.y * q.y + edge.z; };
     Vec2d nearest = p;
     double least = std::numeric_limits<double>::infinity();
@@ -56,14 +56,14 @@ namespace {
 
 /// Returns true if a sample lies in the other half of the quad, beyond the diagonal, which is not an edge of the
 /// quad.
-bool in_other_half(const Interpolated& at, Piece piece) {
+bool in_other_half(const Interpolated& at, TriangleKind triangle_kind) {
     const auto beyond = [](double across, double other1, double other2) {
         return other1 >= 0 && other2 >= 0 && across + other1 >= 0 && across + other2 >= 0;
     };
-    switch (piece) {
-    case Piece::kQuadFirst:
+    switch (triangle_kind) {
+    case TriangleKind::kQuadFirst:
         return beyond(at.b1, at.b0, at.b2);
-    case Piece::kQuadSecond:
+    case TriangleKind::kQuadSecond:
         return beyond(at.b2, at.b0, at.b1);
     default:
         return false;
@@ -72,16 +72,16 @@ bool in_other_half(const Interpolated& at, Piece piece) {
 
 } // namespace
 
-Interpolated Interpolation::at(Vec2d pixel, Piece piece) const {
+Interpolated Interpolation::at(Vec2d pixel, TriangleKind triangle_kind) const {
     Vec2d p(pixel.x - origin_x, pixel.y - origin_y);
     const auto value = [&](std::size_t i) { return e[i].x * p.x + e[i].y * p.y + e[i].z; };
     Interpolated result{value(0), value(1), value(2), 0, 0};
     const bool outside = result.b0 < 0 || result.b1 < 0 || result.b2 < 0;
-    if (outside && !in_other_half(result, piece)) {
+    if (outside && !in_other_half(result, triangle_kind)) {
         const Vec2d sample = p;
         p = mirrored_inside(p);
         const bool still_outside = value(0) < 0 || value(1) < 0 || value(2) < 0;
-        if (still_outside) p = nearest_on_outline(sample);
+        if (still_outside) p = nearest_on_boundary(sample);
         result = {std::max(0.0, value(0)), std::max(0.0, value(1)), std::max(0.0, value(2)), 0, 0};
     }
     result.sum = result.b0 + result.b1 + result.b2;
@@ -90,22 +90,22 @@ Interpolated Interpolation::at(Vec2d pixel, Piece piece) const {
     return result;
 }
 
-Interpolated interpolate(const WholeTriangle& whole, Vec2d pixel) {
-    const FixedPoint beside{static_cast<std::int32_t>(pixel.x) * kSubPixels,
-                            static_cast<std::int32_t>(pixel.y) * kSubPixels};
-    return Interpolation(whole.a, whole.b, whole.c, beside).at(pixel, whole.piece);
+Interpolated interpolate(const UnclippedTriangle& whole, Vec2d pixel) {
+    const FixedPoint beside{static_cast<std::int32_t>(pixel.x) * kSubpixels,
+                            static_cast<std::int32_t>(pixel.y) * kSubpixels};
+    return Interpolation(whole.a, whole.b, whole.c, beside).at(pixel, whole.triangle_kind);
 }
 
-Interpolation interpolation(const WholeTriangle& whole, const std::array<FixedPoint, 3>& corners,
+Interpolation interpolation(const UnclippedTriangle& whole, const std::array<FixedPoint, 3>& corners,
                             const Viewport& viewport) {
     const Origin from = origin(corners, viewport);
-    return {whole.a, whole.b, whole.c, {from.x * kSubPixels, from.y * kSubPixels}};
+    return {whole.a, whole.b, whole.c, {from.x * kSubpixels, from.y * kSubpixels}};
 }
 
 // Σeᵢ / Σ(eᵢ·depthᵢ) is the inverse of the depth. With w = depth (perspective), Σ eᵢ·(xᵢ, yᵢ, wᵢ)
 // = det · (x, y, 1), so the divisor is the determinant for every pixel. With w = 1 (orthographic), the dividend is
 // the determinant.
-DrawTriangle set_up(const WholeTriangle& whole, const std::array<FixedPoint, 3>& corners, std::uint32_t id,
+DrawTriangle set_up(const UnclippedTriangle& whole, const std::array<FixedPoint, 3>& corners, std::uint32_t id,
                     bool clipped, const Viewport& viewport) {
     const Origin from = origin(corners, viewport);
     const PixelVertex &a = whole.a, &b = whole.b, &c = whole.c;
@@ -121,11 +121,11 @@ DrawTriangle set_up(const WholeTriangle& whole, const std::array<FixedPoint, 3>&
     return result;
 }
 
-void set_plane(DrawTriangle& triangle, const NearnessPlane& plane, double least_depth, bool clipped, double near) {
-    triangle.sound = std::isfinite(plane.x) && std::isfinite(plane.y) && std::isfinite(plane.constant);
+void set_plane(DrawTriangle& triangle, const DepthPlane& plane, double min_depth, bool clipped, double near) {
+    triangle.plane_reliable = std::isfinite(plane.x) && std::isfinite(plane.y) && std::isfinite(plane.constant);
     triangle.clipped = clipped;
-    if (!clipped) triangle.nearest = static_cast<float>(near / least_depth) * (1 + 0x1p-22f);
-    triangle.nearness = plane;
+    if (!clipped) triangle.nearest = static_cast<float>(near / min_depth) * (1 + 0x1p-22f);
+    triangle.depth_plane = plane;
 }
 
 } // namespace duet::raster

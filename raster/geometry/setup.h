@@ -4,10 +4,10 @@
 #include "common/vec/scalar.h"
 #include "raster/geometry/cull.h"
 #include "raster/geometry/packed_shape.h"
-#include "raster/geometry/samples.h"
+#include "raster/geometry/packet.h"
+#include "raster/geometry/sample_positions.h"
 #include "raster/geometry/tiles.h"
 #include "raster/geometry/transform.h"
-#include "raster/lanes.h"
 
 #include <algorithm>
 #include <array>
@@ -16,8 +16,8 @@
 
 namespace duet::raster {
 
-inline int ceil_pixel(std::int32_t x) { return (x + kSubPixels - 1) >> kSubPixelBits; }
-inline int floor_pixel(std::int32_t x) { return x >> kSubPixelBits; }
+inline int ceil_pixel(std::int32_t x) { return (x + kSubpixels - 1) >> kSubpixelBits; }
+inline int floor_pixel(std::int32_t x) { return x >> kSubpixelBits; }
 
 /// Represents the edge function of two grid points, an integer function of the sample position: a·x + b·y + c >= 0
 /// where the sample is inside. The interior of a positive triangle (clockwise in the image) is where all three edge
@@ -41,7 +41,7 @@ struct EdgeFunction {
 };
 
 /// Converts a reversed depth to the precision in which a tile stores it.
-inline float kept_nearness(double nearness) { return static_cast<float>(nearness); }
+inline float to_stored_depth(double reversed_depth) { return static_cast<float>(reversed_depth); }
 
 /// Holds barycentrics and depth at a sample, in the unsnapped, unclipped triangle, or in the quad of which it is one
 /// half. A sample outside the triangle is moved to a point inside.
@@ -54,13 +54,13 @@ struct Interpolated {
 
     /// Returns the reversed depth, near / depth, clamped to 1. A point that was moved to the triangle's boundary
     /// may lie in front of the near plane at which the snapped triangle was clipped.
-    double nearness(double near) const { return depth_sum > near * sum ? near * sum / depth_sum : 1.0; }
+    double reversed_depth(double near) const { return depth_sum > near * sum ? near * sum / depth_sum : 1.0; }
 };
 
 /// Represents a linear function of the pixel that gives the reversed depth, near / depth. It is the reversed depth
 /// itself under perspective, and its inverse in an orthographic view. Pixel coordinates are relative to origin(). All
 /// is in double, so that only the final rounding to float matters.
-struct NearnessPlane {
+struct DepthPlane {
     double x = 0, y = 0, constant = 0;
 };
 
@@ -76,17 +76,17 @@ struct Interpolation {
 
     Interpolation() = default;
     Interpolation(const PixelVertex& a, const PixelVertex& b, const PixelVertex& c, FixedPoint beside);
-    Interpolated at(Vec2d pixel, Piece piece) const;
+    Interpolated at(Vec2d pixel, TriangleKind triangle_kind) const;
 
 private:
     Vec2d mirrored_inside(Vec2d p) const;
-    Vec2d nearest_on_outline(Vec2d p) const;
+    Vec2d nearest_on_boundary(Vec2d p) const;
 };
 
 /// Represents a triangle of a mesh, or one half of a quad, before clipping.
-struct WholeTriangle {
+struct UnclippedTriangle {
     PixelVertex a, b, c;
-    Piece piece = Piece::kTriangle;
+    TriangleKind triangle_kind = TriangleKind::kTriangle;
 };
 
 /// Represents a triangle that is ready to be rasterized. The snapped corners determine the covered samples, and the
@@ -94,49 +94,49 @@ struct WholeTriangle {
 /// triangle with this id.
 struct alignas(64) DrawTriangle { // one cache line
     std::array<FixedPoint, 3> corners; ///< of positive area
-    bool sound = false;    ///< the depth plane is reliable; false for a triangle seen edge-on
+    bool plane_reliable = false;       ///< the depth plane is reliable; false for a triangle seen edge-on
     bool clipped = false;  ///< the corners are those of a clipped part of the triangle
     std::uint32_t id = 0;  ///< in the order of (object, primitive)
     float nearest = 1;     ///< upper bound of the reversed depth of its samples
-    NearnessPlane nearness{};
+    DepthPlane depth_plane{};
 };
 
 /// Returns the minimum corner of the points' bounding box. (Nested std::min calls compile without branches;
 /// std::min of a list does not.)
-inline FixedPoint least(const std::array<FixedPoint, 3>& p) {
+inline FixedPoint min_corner(const std::array<FixedPoint, 3>& p) {
     return {std::min(std::min(p[0].x, p[1].x), p[2].x), std::min(std::min(p[0].y, p[1].y), p[2].y)};
 }
 /// Returns the maximum corner of the points' bounding box.
-inline FixedPoint most(const std::array<FixedPoint, 3>& p) {
+inline FixedPoint max_corner(const std::array<FixedPoint, 3>& p) {
     return {std::max(std::max(p[0].x, p[1].x), p[2].x), std::max(std::max(p[0].y, p[1].y), p[2].y)};
 }
 
 /// Represents the pixel at the lower corner of the triangle's bounding box, clamped to the image. Interpolation and
-/// NearnessPlane count pixels from it.
+/// DepthPlane count pixels from it.
 struct Origin {
     int x, y;
 };
 inline Origin origin(const std::array<FixedPoint, 3>& p, const Viewport& viewport) {
-    const FixedPoint low = least(p);
-    return {floor_pixel(std::clamp(low.x, 0, viewport.width * kSubPixels)),
-            floor_pixel(std::clamp(low.y, 0, viewport.height * kSubPixels))};
+    const FixedPoint low = min_corner(p);
+    return {floor_pixel(std::clamp(low.x, 0, viewport.width * kSubpixels)),
+            floor_pixel(std::clamp(low.y, 0, viewport.height * kSubpixels))};
 }
 /// Interpolates at one sample without a precomputed setup. It is the reference for the faster paths.
-Interpolated interpolate(const WholeTriangle& whole, Vec2d pixel);
+Interpolated interpolate(const UnclippedTriangle& whole, Vec2d pixel);
 /// Returns the interpolation relative to origin(corners, viewport).
-Interpolation interpolation(const WholeTriangle& whole, const std::array<FixedPoint, 3>& corners,
+Interpolation interpolation(const UnclippedTriangle& whole, const std::array<FixedPoint, 3>& corners,
                             const Viewport& viewport);
-/// Sets the depth plane and the fields that follow from it. `least_depth` is the minimum over the corners of the
+/// Sets the depth plane and the fields that follow from it. `min_depth` is the minimum over the corners of the
 /// whole triangle, in meters. `clipped`: the corners are those of a clipped part.
-void set_plane(DrawTriangle& triangle, const NearnessPlane& plane, double least_depth, bool clipped, double near);
+void set_plane(DrawTriangle& triangle, const DepthPlane& plane, double min_depth, bool clipped, double near);
 /// Sets up a triangle. `corners`, of positive area, are the snapped corners of the whole triangle or of a clipped
 /// part.
-DrawTriangle set_up(const WholeTriangle& whole, const std::array<FixedPoint, 3>& corners, std::uint32_t id,
+DrawTriangle set_up(const UnclippedTriangle& whole, const std::array<FixedPoint, 3>& corners, std::uint32_t id,
                     bool clipped, const Viewport& viewport);
 
 /// Returns the pixels whose sample at `offset` lies within the closed bounding box of three grid points.
 inline PixelRect pixels_within(const std::array<FixedPoint, 3>& p, SampleOffset offset) {
-    const FixedPoint low = least(p), high = most(p);
+    const FixedPoint low = min_corner(p), high = max_corner(p);
     return {ceil_pixel(low.x - offset.x), ceil_pixel(low.y - offset.y), floor_pixel(high.x - offset.x) + 1,
             floor_pixel(high.y - offset.y) + 1};
 }
@@ -158,9 +158,9 @@ template <typename T> std::array<T, 3> edge_margins(const std::array<T, 3>& leng
     using xsimd::select, duet::select;
     const T circumference = lengths[0] + lengths[1] + lengths[2];
     const auto sliver = doubled_area < circumference * T(4);
-    const T of_sliver = (circumference >> 1) + T(1);
+    const T sliver_margin = (circumference >> 1) + T(1);
     std::array<T, 3> margins;
-    for (std::size_t k = 0; k < 3; ++k) margins[k] = select(sliver, of_sliver, T((lengths[k] * T(5) >> 3) + T(2)));
+    for (std::size_t k = 0; k < 3; ++k) margins[k] = select(sliver, sliver_margin, T((lengths[k] * T(5) >> 3) + T(2)));
     return margins;
 }
 inline std::array<std::int64_t, 3> edge_margins(const DrawTriangle& triangle) {
@@ -171,7 +171,7 @@ inline std::array<std::int64_t, 3> edge_margins(const DrawTriangle& triangle) {
         lengths[k] = std::abs(std::int64_t{b.x} - a.x) + std::abs(std::int64_t{b.y} - a.y);
     }
     if (triangle.clipped) {
-        const std::int64_t size = (lengths[0] + lengths[1] + lengths[2]) / 2, margin = size + 1 + size * kSubPixels;
+        const std::int64_t size = (lengths[0] + lengths[1] + lengths[2]) / 2, margin = size + 1 + size * kSubpixels;
         return {margin, margin, margin};
     }
     return edge_margins(lengths, doubled_area(p[0], p[1], p[2]));

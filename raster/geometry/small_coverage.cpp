@@ -16,8 +16,8 @@ struct SmallEdge {
         at = dx * (sample_y - from_y) - dy * (sample_x - from_x);
         at = at + xsimd::select(left_or_top, zero, Ints(-1));
         length = abs(dx) + abs(dy);
-        step_x = zero - dy * Ints(kSubPixels);
-        step_y = dx * Ints(kSubPixels);
+        step_x = zero - dy * Ints(kSubpixels);
+        step_y = dx * Ints(kSubpixels);
     }
 };
 
@@ -25,7 +25,7 @@ struct SmallEdge {
 /// one axis. Arguments are in grid points.
 std::int32_t samples_across(const Ints& a, const Ints& b, const Ints& c, const Ints& first) {
     const Ints widths = max(max(a, b), c) - first; // small, so exact as floats
-    return (static_cast<std::int32_t>(highest(xsimd::to_float(widths))) >> kSubPixelBits) + 1;
+    return (static_cast<std::int32_t>(reduce_max(xsimd::to_float(widths))) >> kSubpixelBits) + 1;
 }
 
 } // namespace
@@ -35,15 +35,15 @@ std::int32_t samples_across(const Ints& a, const Ints& b, const Ints& c, const I
 void Assembler::cover_candidates() {
     Candidates& c = candidates_;
     constexpr std::int32_t kWordRows = 32 / kSmallSide, kWords = kSmallRows / kWordRows;
-    std::array<StripOf<std::int32_t>, kWords> covered, well_inside;
+    std::array<PacketOf<std::int32_t>, kWords> covered, well_inside;
     const Ints zero(0);
     for (std::size_t i = 0; i < c.count; i += Ints::size) {
         const Ints ax = load(c.x[0], i), ay = load(c.y[0], i);
         Ints bx = load(c.x[1], i), by = load(c.y[1], i), cx = load(c.x[2], i), cy = load(c.y[2], i);
         const Ints area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
         const auto negative = area < zero; // winding is reversed for these
-        const Ints sx = (load(c.sample_x, i) << kSubPixelBits) + Ints(least_.x),
-                   sy = (load(c.sample_y, i) << kSubPixelBits) + Ints(least_.y);
+        const Ints sx = (load(c.sample_x, i) << kSubpixelBits) + Ints(min_offset_.x),
+                   sy = (load(c.sample_y, i) << kSubpixelBits) + Ints(min_offset_.y);
         const Ints px = xsimd::select(negative, cx, bx), py = xsimd::select(negative, cy, by);
         cx = xsimd::select(negative, bx, cx), cy = xsimd::select(negative, by, cy);
         const SmallEdge ab(ax, ay, px, py, sx, sy), bc(px, py, cx, cy, sx, sy), ca(cx, cy, ax, ay, sx, sy);
@@ -71,12 +71,13 @@ void Assembler::cover_candidates() {
     for (std::size_t i = 0; i < c.count; ++i) {
         std::uint64_t any = 0;
         for (std::size_t box = 0; box < 2; ++box) {
-            const auto bits = [&](const std::array<StripOf<std::int32_t>, kWords>& words) {
+            const auto bits = [&](const std::array<PacketOf<std::int32_t>, kWords>& words) {
                 return std::uint64_t{static_cast<std::uint32_t>(words[2 * box][i])} |
                        std::uint64_t{static_cast<std::uint32_t>(words[2 * box + 1][i])} << 32;
             };
             any |= bits(covered);
-            add_small(i, c.sample_y[i] + static_cast<std::int32_t>(box) * kSmallSide, bits(covered), bits(well_inside));
+            add_small_triangle(i, c.sample_y[i] + static_cast<std::int32_t>(box) * kSmallSide, bits(covered),
+                               bits(well_inside));
         }
         if (any == 0) batch_->culled.subpixel += plan_->skips.subpixel;
     }
@@ -84,17 +85,17 @@ void Assembler::cover_candidates() {
 }
 
 /// Appends the samples of the i-th candidate in the box whose first row is `top`, clipped to the region.
-void Assembler::add_small(std::size_t i, std::int32_t top, std::uint64_t covered, std::uint64_t well_inside) {
+void Assembler::add_small_triangle(std::size_t i, std::int32_t top, std::uint64_t covered, std::uint64_t well_inside) {
     if (covered == 0) return;
     const Candidates& c = candidates_;
-    Small small{c.index[i], c.sample_x[i], top, covered, well_inside};
+    SmallTriangle small{c.index[i], c.sample_x[i], top, covered, well_inside};
     const PixelRect& r = plan_->grid.region;
     if (small.x < r.x0 || small.x + kSmallSide > r.x1 || small.y < r.y0 || small.y + kSmallSide > r.y1)
         for (int bit = 0; bit < kSmallSide * kSmallSide; ++bit) {
             const int x = small.x + bit % kSmallSide, y = small.y + bit / kSmallSide;
             if (x < r.x0 || x >= r.x1 || y < r.y0 || y >= r.y1) small.covered &= ~(std::uint64_t{1} << bit);
         }
-    if (small.covered != 0) small_.push_back(small);
+    if (small.covered != 0) small_triangles_.push_back(small);
 }
 
 } // namespace duet::raster

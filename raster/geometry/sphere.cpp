@@ -11,11 +11,11 @@ namespace {
 
 /// Represents a linear function over the solid unit sphere, g·n + offset with |n| <= 1. A matrix row restricted to a
 /// sphere has this form.
-struct BallFunction {
+struct SphereFunction {
     Vec3d g;
     double offset;
 };
-BallFunction row_over_ball(const std::array<double, 4>& row, const Sphere& sphere) {
+SphereFunction row_over_sphere(const std::array<double, 4>& row, const Sphere& sphere) {
     const Vec3d g(row[0], row[1], row[2]);
     return {g * static_cast<double>(sphere.radius), dot(g, Vec3d(sphere.center)) + row[3]};
 }
@@ -32,7 +32,7 @@ struct Interval {
 /// Returns the extremes of x/w over the part of the sphere with w >= near > 0. They lie where a plane x = s·w is
 /// tangent to the sphere, if that point is beyond the near plane, or on the circle in which the near plane
 /// intersects the sphere.
-Interval perspective_extremes(BallFunction x, const BallFunction& w, double near) {
+Interval perspective_extremes(SphereFunction x, const SphereFunction& w, double near) {
     Interval result;
     const double gw = length(w.g);
     // Measure relative to the projected center, if there is one: then no two terms of the discriminant cancel.
@@ -49,8 +49,8 @@ Interval perspective_extremes(BallFunction x, const BallFunction& w, double near
         for (const double s : {q / a, c / q}) {
             const Vec3d normal = x.g - w.g * s;
             const double size = length_squared(normal);
-            const Vec3d touch = normal * (-(x.offset - s * w.offset) / size);
-            if (dot(touch, w.g) + w.offset >= near * (1 - 1e-9)) result.add(s + shift);
+            const Vec3d overlap = normal * (-(x.offset - s * w.offset) / size);
+            if (dot(overlap, w.g) + w.offset >= near * (1 - 1e-9)) result.add(s + shift);
         }
     }
     const double height = (near - w.offset) / gw; // of the near plane above the center, in radii
@@ -104,22 +104,23 @@ Doubles DrawSphere::intersect(const CameraRays& rays) const {
     };
     const Vec3T<Doubles> to{to_center(sphere.center.x, rays.origin.x), to_center(sphere.center.y, rays.origin.y),
                             to_center(sphere.center.z, rays.origin.z)};
-    const SphereTest<Doubles> test(to, SphereLine<Doubles>(rays.direction),
+    const SphereTest<Doubles> test(to, SphereTestLine<Doubles>(rays.direction),
                                    Doubles(static_cast<double>(sphere.radius)));
     const auto met = test.discriminant >= Doubles(0.0);
     if (!xsimd::any(met)) return none;
     const auto roots = test.roots();
-    const Doubles near = as_floats(roots.near), far = as_floats(roots.far), t_min = as_floats(rays.t_min);
+    const Doubles near = round_to_float(roots.near), far = round_to_float(roots.far),
+                  t_min = round_to_float(rays.t_min);
     const Doubles beyond = xsimd::select((far > t_min) & (far < none), far, none);
     const Doubles first = xsimd::select((near > t_min) & (near < none), near, beyond);
     return xsimd::select(met, far_side ? max(first, beyond) : first, none);
 }
 
 PixelRect sphere_bounds(const Sphere& sphere, const Mat4d& to_pixel, const Viewport& viewport) {
-    const BallFunction x = row_over_ball(to_pixel[0], sphere), y = row_over_ball(to_pixel[1], sphere);
-    const BallFunction depth = row_over_ball(to_pixel[2], sphere), w = row_over_ball(to_pixel[3], sphere);
+    const SphereFunction x = row_over_sphere(to_pixel[0], sphere), y = row_over_sphere(to_pixel[1], sphere);
+    const SphereFunction depth = row_over_sphere(to_pixel[2], sphere), w = row_over_sphere(to_pixel[3], sphere);
     if (depth.offset + length(depth.g) < viewport.near) return {};
-    const auto extremes = [&](const BallFunction& f) {
+    const auto extremes = [&](const SphereFunction& f) {
         if (length_squared(w.g) > 0) return perspective_extremes(f, w, viewport.near);
         return Interval{f.offset - length(f.g), f.offset + length(f.g)}; // orthographic: w is 1
     };

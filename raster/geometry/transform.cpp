@@ -1,7 +1,7 @@
 #include "raster/geometry/transform.h"
 
 #include "common/system/parallel.h"
-#include "raster/lanes.h"
+#include "raster/geometry/packet.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +23,7 @@ std::size_t vertex_count(const Shape& shape) {
 
 Vec3 vertex_position(const Shape& shape, std::size_t index) {
     if (const Mesh* mesh = std::get_if<Mesh>(&shape)) return mesh->positions[index];
-    return primitive_corners(shape, static_cast<std::uint32_t>(index / 4)).p[index % 4];
+    return primitive_vertices(shape, static_cast<std::uint32_t>(index / 4)).p[index % 4];
 }
 
 /// Represents a homogeneous pixel position. T is a number or a SIMD batch.
@@ -50,42 +50,42 @@ template <typename T> T outcode_number(const HomogeneousPoint<T>& v, const Viewp
 }
 
 /// Stores sixteen vertex positions, one array per axis.
-using VertexStrip = std::array<StripOf<float>, 3>;
+using VertexPacket = std::array<PacketOf<float>, 3>;
 /// Stores sixteen snapped vertices with their outcodes.
-struct SnappedStrip {
-    StripOf<std::int32_t> x, y, outcode;
+struct SnappedPacket {
+    PacketOf<std::int32_t> x, y, outcode;
 };
 
 /// Loads sixteen vertices from `first` on. If fewer are left before `end`, the last one is repeated.
-void gather(const Shape& shape, std::size_t first, std::size_t end, VertexStrip& p) {
-    const std::size_t last = std::min(kStrip, end - first) - 1;
+void gather(const Shape& shape, std::size_t first, std::size_t end, VertexPacket& p) {
+    const std::size_t last = std::min(kPacketSize, end - first) - 1;
     if (const Mesh* mesh = std::get_if<Mesh>(&shape)) {
         static_assert(sizeof(Vec3) == 3 * sizeof(float));
-        constexpr std::size_t kAhead = 16 * kStrip; // the hardware prefetcher does not follow gather instructions
-        if (first + kAhead + kStrip <= end)
-            for (std::size_t i = 0; i < kStrip; i += 5) prefetch(&mesh->positions[first + kAhead + i]);
-        for (std::size_t i = 0; i < kStrip; i += Ints::size) {
-            const Ints place = min(load(kLanes, i), Ints(static_cast<std::int32_t>(last))) * Ints(3);
+        constexpr std::size_t kAhead = 16 * kPacketSize; // the hardware prefetcher does not follow gather instructions
+        if (first + kAhead + kPacketSize <= end)
+            for (std::size_t i = 0; i < kPacketSize; i += 5) prefetch(&mesh->positions[first + kAhead + i]);
+        for (std::size_t i = 0; i < kPacketSize; i += Ints::size) {
+            const Ints index = min(load(kLanes, i), Ints(static_cast<std::int32_t>(last))) * Ints(3);
             for (std::size_t axis = 0; axis < 3; ++axis)
-                store(p[axis], i, raster::gather(&mesh->positions[first].x + axis, place));
+                store(p[axis], i, raster::gather(&mesh->positions[first].x + axis, index));
         }
         return;
     }
-    for (std::size_t i = 0; i < kStrip; ++i) {
+    for (std::size_t i = 0; i < kPacketSize; ++i) {
         const Vec3 vertex = vertex_position(shape, first + std::min(i, last));
         for (std::size_t axis = 0; axis < 3; ++axis) p[axis][i] = vertex[axis];
     }
 }
 
-void transform_strip(const VertexStrip& p, const Mat4d& m, const Viewport& viewport, SnappedStrip& out) {
-    for (std::size_t i = 0; i < kStrip; i += Doubles::size) {
+void transform_packet(const VertexPacket& p, const Mat4d& m, const Viewport& viewport, SnappedPacket& out) {
+    for (std::size_t i = 0; i < kPacketSize; i += Doubles::size) {
         const HomogeneousPoint<Doubles> v =
             to_pixel(m, load_doubles(p[0].at(i)), load_doubles(p[1].at(i)), load_doubles(p[2].at(i)));
         const Doubles code = outcode_number(v, viewport);
         // A vertex that must be clipped is not snapped: its position is unbounded and its w may be zero.
         const auto usable = code < Doubles(kNear); // all bits from kNear on belong to kMustClip
         const auto snapped = [&](Doubles coordinate) {
-            return xsimd::select(usable, xsimd::nearbyint(coordinate / v.w * Doubles(kSubPixels)), Doubles(0.0));
+            return xsimd::select(usable, xsimd::nearbyint(coordinate / v.w * Doubles(kSubpixels)), Doubles(0.0));
         };
         store_ints(snapped(v.xw), out.x.at(i));
         store_ints(snapped(v.yw), out.y.at(i));
@@ -96,13 +96,13 @@ static_assert(kNear == 16 && kGuard == 32 && (kLeft | kRight | kTop | kBottom) <
 
 /// Transforms a chunk and returns the bitwise or of its outcodes.
 unsigned transform_chunk(const Shape& shape, const Viewport& viewport, const Chunk& chunk, TransformedObject& out) {
-    VertexStrip p;
-    SnappedStrip snapped;
+    VertexPacket p;
+    SnappedPacket snapped;
     unsigned any = 0;
-    for (std::size_t first = chunk.first; first < chunk.last; first += kStrip) {
+    for (std::size_t first = chunk.first; first < chunk.last; first += kPacketSize) {
         gather(shape, first, chunk.last, p);
-        transform_strip(p, out.to_pixel, viewport, snapped);
-        for (std::size_t i = 0; i < std::min(kStrip, chunk.last - first); ++i) {
+        transform_packet(p, out.to_pixel, viewport, snapped);
+        for (std::size_t i = 0; i < std::min(kPacketSize, chunk.last - first); ++i) {
             const auto outcode = static_cast<std::uint32_t>(snapped.outcode[i]);
             out.vertices[first + i] = {{snapped.x[i], snapped.y[i]}, outcode};
             any |= outcode;
@@ -123,8 +123,8 @@ std::uint8_t outcode(const PixelVertex& v, const Viewport& viewport) {
 }
 
 FixedPoint snap(const PixelVertex& v) {
-    return {static_cast<std::int32_t>(std::lrint(v.xw / v.w * kSubPixels)),
-            static_cast<std::int32_t>(std::lrint(v.yw / v.w * kSubPixels))};
+    return {static_cast<std::int32_t>(std::lrint(v.xw / v.w * kSubpixels)),
+            static_cast<std::int32_t>(std::lrint(v.yw / v.w * kSubpixels))};
 }
 
 Mat4d object_to_pixel(const Object& object, const Pinhole& pinhole, float time) {
@@ -142,7 +142,7 @@ void transform(const Scene& scene, const std::vector<std::uint32_t>& objects, co
         result[i].object = objects[i];
         result[i].mirrored = !object.identity && determinant3(object_transform(object, time).to_world) < 0;
         result[i].to_pixel = object_to_pixel(object, pinhole, time);
-        result[i].to_pixel_columns = transpose(result[i].to_pixel);
+        result[i].to_pixel_transposed = transpose(result[i].to_pixel);
         result[i].vertices.resize(count);
         result[i].any_outside = 0;
         for (std::size_t first = 0; first < count; first += kChunk)

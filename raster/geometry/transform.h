@@ -3,7 +3,7 @@
 
 #include "common/camera/camera.h"
 #include "common/scene/scene.h"
-#include "raster/geometry/samples.h"
+#include "raster/geometry/sample_positions.h"
 
 #include <array>
 #include <cstdint>
@@ -32,7 +32,7 @@ struct Viewport {
 Viewport viewport_of(const View& view, const Pinhole& pinhole);
 
 /// The guard band is how far beyond the image edges a vertex may lie before its primitives are clipped, in pixels.
-/// With images of up to kMaxPictureSide = 2^14 pixels per side, fixed-point coordinates stay below 2^24.4 and edge
+/// With images of up to kMaxRenderSide = 2^14 pixels per side, fixed-point coordinates stay below 2^24.4 and edge
 /// functions below 2^52, which is exact in 64 bits.
 inline constexpr double kGuardBand = 65536;
 
@@ -64,7 +64,7 @@ struct TransformedObject {
     std::uint32_t object = 0; ///< index into Scene::objects
     bool mirrored = false;    ///< the transform has a negative determinant, so windings are flipped
     Mat4d to_pixel;           ///< object_to_pixel
-    Mat4d to_pixel_columns;   ///< transpose of `to_pixel`: its columns are contiguous
+    Mat4d to_pixel_transposed; ///< transpose of `to_pixel`: its columns are contiguous
     std::vector<SnappedVertex> vertices;
     unsigned any_outside = 0; ///< bitwise or of all outcodes
 };
@@ -75,7 +75,7 @@ Mat4d object_to_pixel(const Object& object, const Pinhole& pinhole, float time);
 /// Transforms a vertex by the object's matrix. Recomputing it where it is needed is cheaper than storing it. The
 /// loop over the four rows vectorizes.
 inline PixelVertex pixel_vertex(const TransformedObject& object, Vec3 p) {
-    const auto& m = object.to_pixel_columns.m;
+    const auto& m = object.to_pixel_transposed.m;
     const double x = static_cast<double>(p.x), y = static_cast<double>(p.y), z = static_cast<double>(p.z);
     std::array<double, 4> v;
     for (std::size_t r = 0; r < 4; ++r) v[r] = m[0][r] * x + m[1][r] * y + m[2][r] * z + m[3][r];

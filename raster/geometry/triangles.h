@@ -2,7 +2,7 @@
 #pragma once
 
 #include "raster/geometry/setup.h"
-#include "raster/prepare.h"
+#include "raster/raster_scene.h"
 
 #include "common/scene/scene.h"
 
@@ -24,16 +24,16 @@ struct Run {
 };
 
 /// Gives access to the unclipped, unsnapped triangles by id.
-class WholeTriangles {
+class UnclippedTriangles {
 public:
-    virtual ~WholeTriangles() = default;
-    virtual WholeTriangle whole(std::uint32_t id) const = 0;
+    virtual ~UnclippedTriangles() = default;
+    virtual UnclippedTriangle unclipped(std::uint32_t id) const = 0;
 };
 
 /// Ids are in the order of (object, primitive), so that the lower id wins a depth tie.
-struct Triangles : WholeTriangles {
-    const PreparedData* prepared = nullptr;
-    const Scene* scene = nullptr; ///< PreparedData::scene
+struct Triangles : UnclippedTriangles {
+    const RasterSceneData* prepared = nullptr;
+    const Scene* scene = nullptr;           ///< RasterSceneData::scene
     std::vector<TransformedObject> objects; ///< meshes and quads
     std::vector<Run> runs;
 
@@ -46,16 +46,16 @@ struct Triangles : WholeTriangles {
     }
 
     /// `index` counts the triangles of the object, as Run::first does.
-    WholeTriangle whole(const Run& run, std::uint32_t index) const;
-    WholeTriangle whole(std::uint32_t id) const override {
+    UnclippedTriangle unclipped(const Run& run, std::uint32_t index) const;
+    UnclippedTriangle unclipped(std::uint32_t id) const override {
         const Run& run = run_of(id);
-        return whole(run, run.first + id - run.first_id);
+        return unclipped(run, run.first + id - run.first_id);
     }
     /// Stores the half-open range of the ids of an object's triangles.
-    struct Numbers {
+    struct IdRange {
         std::uint32_t first, end;
     };
-    Numbers of_object(const Run& run) const {
+    IdRange ids_of_object(const Run& run) const {
         const std::uint32_t first = run.first_id - run.first;
         return {first, first + (run.sphere ? 1 : static_cast<std::uint32_t>(packed(run).triangles.size()))};
     }

@@ -1,12 +1,13 @@
 #include "raster/lighting/background.h"
 
-#include "raster/light/environment_light.h"
+#include "raster/lighting/environment_light.h"
 
 #include <bit>
 
 namespace duet::raster {
 
-void draw_background(const PreparedData& data, const Settings& settings, const GBuffer& gbuffer, Planes3& radiance) {
+void draw_background(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
+                     Planes3& radiance) {
     const std::optional<Rgb> constant = constant_background(data, settings);
     if (constant && is_black(*constant)) return;
     for_each_batch(gbuffer.width(), gbuffer.height(), settings.threads, [&](int x, int y) {

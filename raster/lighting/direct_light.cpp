@@ -135,13 +135,13 @@ private:
 
 } // namespace
 
-DirectLight direct_light(const PreparedData& data, const Settings& settings, const GBuffer& gbuffer,
+DirectLight direct_light(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
                          const ShadowLookup* shadows) {
     const int width = gbuffer.width(), height = gbuffer.height();
     DirectLight result;
     result.unshadowed = Planes3(width, height);
     if (shadows != nullptr) result.shadowed = Planes3(width, height);
-    if (!settings.parts.direct) return result;
+    if (!settings.components.direct) return result;
     const std::vector<FrameLight> lights = frame_lights(data.scene.lights, gbuffer.projection);
     if (lights.empty()) return result;
     const LightSet light_set(lights, shadows);

@@ -13,7 +13,8 @@ Floats with_bounces(const Floats& visible, const Floats& albedo) {
 
 /// Adds albedo/π times what irradiance(x, y, lanes) returns for each batch.
 template <typename Irradiance>
-void add_reflected(const Settings& settings, const GBuffer& gbuffer, Planes3& radiance, const Irradiance& irradiance) {
+void add_reflected(const RasterSettings& settings, const GBuffer& gbuffer, Planes3& radiance,
+                   const Irradiance& irradiance) {
     for_each_batch(gbuffer.width(), gbuffer.height(), settings.threads, [&](int x, int y) {
         const RgbT<Floats> albedo = gbuffer.diffuse.color(x, y);
         const auto lit = gbuffer.visible(x, y) & (albedo.r + albedo.g + albedo.b > Floats(0.0f));
@@ -25,14 +26,14 @@ void add_reflected(const Settings& settings, const GBuffer& gbuffer, Planes3& ra
 
 } // namespace
 
-void add_indirect_light(const Settings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
+void add_indirect_light(const RasterSettings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
                         Planes3& radiance) {
     add_reflected(settings, gbuffer, radiance, [&](int x, int y, const RgbT<Floats>&, const auto& lit) {
         return probes.irradiance(gbuffer.projection.eye(), gbuffer.points(x, y), gbuffer.normal.vector(x, y), lit);
     });
 }
 
-void add_indirect_light(const Settings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
+void add_indirect_light(const RasterSettings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
                         GtaoImage& half, Planes3& radiance) {
     half.add_irradiance(settings.threads, [&](const Vec3T<Floats>& p, const Vec3T<Floats>& n, const auto& lanes) {
         return probes.irradiance(gbuffer.projection.eye(), p, n, lanes);

@@ -3,17 +3,17 @@
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"
-#include "raster/prepare.h"
 #include "raster/probes/irradiance_probes.h"
+#include "raster/raster_scene.h"
 #include "raster/screen_space/gtao.h"
 
 namespace duet::raster {
 
 /// Adds the light of the probes that diffuse surfaces reflect, at every pixel and without occlusion.
-void add_indirect_light(const Settings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
+void add_indirect_light(const RasterSettings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
                         Planes3& radiance);
 /// The same at half resolution, with the occlusion that `half` holds; it receives the irradiance.
-void add_indirect_light(const Settings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
+void add_indirect_light(const RasterSettings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
                         GtaoImage& half, Planes3& radiance);
 
 } // namespace duet::raster

@@ -1,7 +1,7 @@
 // Math for templates whose number type is a single float or a batch of lanes.
 #pragma once
 
-#include "raster/lanes.h"
+#include "raster/geometry/packet.h"
 
 namespace duet::raster {
 
@@ -14,7 +14,7 @@ inline bool any_lane(const xsimd::batch_bool<float>& lanes) { return lane_bits(l
 /// Returns Σ c[i] xⁱ.
 template <typename T, std::size_t N> T polynomial(const std::array<float, N>& c, T x) {
     T sum(c[N - 1]);
-    for (std::size_t i = N - 1; i-- > 0;) sum = fused(sum, x, T(c[i]));
+    for (std::size_t i = N - 1; i-- > 0;) sum = multiply_add(sum, x, T(c[i]));
     return sum;
 }
 

@@ -17,8 +17,8 @@ struct Box {
     void extend(const Vec3T<Floats>& v, const Lanes& lanes) {
         low = select(lanes, min(low, v), low), high = select(lanes, max(high, v), high);
     }
-    Vec3 lowest() const { return {duet::lowest(low.x), duet::lowest(low.y), duet::lowest(low.z)}; }
-    Vec3 highest() const { return {duet::highest(high.x), duet::highest(high.y), duet::highest(high.z)}; }
+    Vec3 lowest() const { return {reduce_min(low.x), reduce_min(low.y), reduce_min(low.z)}; }
+    Vec3 highest() const { return {reduce_max(high.x), reduce_max(high.y), reduce_max(high.z)}; }
 };
 
 } // namespace
@@ -59,7 +59,7 @@ std::size_t slices_of_depth(const GBuffer& gbuffer, const Cluster& cluster, std:
         nearest = max(nearest, xsimd::select(lanes, depth, kNone));
         farthest = min(farthest, xsimd::select(lanes, depth, Floats(kHuge)));
     });
-    const float most = highest(nearest), least = lowest(farthest);
+    const float most = reduce_max(nearest), least = reduce_min(farthest);
     if (!(most > 0)) return 0;
     constexpr float kOneSlice = 1.2f; // ratio of depths up to which there is only one
     const std::size_t count = most < kOneSlice * least ? 1 : kDepthSlices;

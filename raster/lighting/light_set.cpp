@@ -102,7 +102,7 @@ LightSet::LightSet(std::span<const FrameLight> lights, const ShadowLookup* shado
 void LightSet::reach(const SurfaceBounds& surfaces, float other_irradiance, LightsOfCluster& result) const {
     result.near.clear(), result.far.clear();
     result.error.resize(stride_), result.distant.resize(stride_);
-    const auto wide = [](Vec3 v) { return spread<Floats>(v); };
+    const auto wide = [](Vec3 v) { return broadcast<Floats>(v); };
     const Vec3T<Floats> p_low = wide(surfaces.p_low), p_high = wide(surfaces.p_high), n_low = wide(surfaces.n_low),
                         n_high = wide(surfaces.n_high), p = wide(surfaces.center()), n = wide(surfaces.mean_normal());
     const Floats radius(length(surfaces.extent()));
@@ -156,7 +156,7 @@ LightField LightSet::sum(const SurfaceBounds& surfaces, std::span<const float> d
     LightField field;
     field.center = surfaces.center(), field.inverse_extent = Vec3(1 / extent.x, 1 / extent.y, 1 / extent.z);
     for (const Vec3 corner : kCorners) {
-        const Vec3T<Floats> p = spread<Floats>(field.center + extent * corner), none(kNone, kNone, kNone);
+        const Vec3T<Floats> p = broadcast<Floats>(field.center + extent * corner), none(kNone, kNone, kNone);
         std::array<Vec3T<Floats>, 3> sums{none, none, none};
         for (std::size_t i = 0; i < stride_; i += kBatch) {
             const Floats far = Floats::load_aligned(distant.data() + i);

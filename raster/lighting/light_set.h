@@ -16,10 +16,10 @@ struct LightField {
     std::array<std::array<Vec3, 4>, 3> colors{}; ///< per color the vector at the center, and its change per extent
 
     template <typename T> RgbT<T> irradiance(const Vec3T<T>& p, const Vec3T<T>& n) const {
-        const Vec3T<T> q = (p - spread<T>(center)) * spread<T>(inverse_extent);
+        const Vec3T<T> q = (p - broadcast<T>(center)) * broadcast<T>(inverse_extent);
         const auto channel = [&](const std::array<Vec3, 4>& v) {
             const auto axis = [&](float Vec3::*c) {
-                return fused(T(v[1].*c), q.x, fused(T(v[2].*c), q.y, fused(T(v[3].*c), q.z, T(v[0].*c))));
+                return multiply_add(T(v[1].*c), q.x, multiply_add(T(v[2].*c), q.y, multiply_add(T(v[3].*c), q.z, T(v[0].*c))));
             };
             return max(T(dot(Vec3T<T>(axis(&Vec3::x), axis(&Vec3::y), axis(&Vec3::z)), n)), T(0));
         };

@@ -20,10 +20,10 @@ Color black_outside(const Lanes& lanes, const Color& c) {
     return {xsimd::select(lanes, c.r, kNone), xsimd::select(lanes, c.g, kNone), xsimd::select(lanes, c.b, kNone)};
 }
 
-/// Returns ggx_multiple(…)·lost(wo): the BRDF of the light that leaves after several reflections between microfacets,
+/// Returns ggx_multiple_scattering(…)·lost(wo): the BRDF of the light that leaves after several reflections between microfacets,
 /// over lost(wi). `normal` is the reflectance at normal incidence.
 Color several_reflections(const Color& normal, const LobeTables& tables) {
-    constexpr float kLeast = 0.004f; // as in ggx_multiple: what narrow lobes lose is neglected
+    constexpr float kLeast = 0.004f; // as in ggx_multiple_scattering: what narrow lobes lose is neglected
     const Floats mean = max(tables.mean_lost, Floats(kLeast));
     const Floats lost = xsimd::select(tables.mean_lost < Floats(kLeast), kNone, kOne - tables.energy);
     if (lane_bits(lost > kNone) == 0) return Color(kNone);
@@ -63,7 +63,7 @@ LitBatch::LitBatch(const GBuffer& gbuffer, int x, int y, const Lanes& lanes, Tab
     if (!gbuffer.coat.empty()) coat = load(gbuffer.coat, x, y);
     if (const Lanes coated = lanes_ & (coat > kNone); lane_bits(coated) != 0) {
         const Floats width = load(gbuffer.coat_alpha, x, y);
-        const Lobe& lobe = add_lobe(tables.coat, Color(Floats(LayeredBsdf::kCoatNormal)), width, coat, coated);
+        const Lobe& lobe = add_lobe(tables.coat, Color(Floats(LayeredBsdf::kCoatF0)), width, coat, coated);
         under = kOne - (lobe.albedo.r + lobe.several.r * lobe.mean_lost) * Floats(kPi);
     }
     if (lane_bits(specular) != 0) add_lobe(tables.specular, normal, alpha, under, specular);
@@ -84,11 +84,11 @@ const LitBatch::Lobe& LitBatch::add_lobe(LobeLookup& lookup, const Color& normal
 }
 
 template <std::size_t N> Color LitBatch::from_polygon(const FrameLight& light, const Lanes& diffuse_lanes) const {
-    const Vec3T<Floats> corner = spread<Floats>(light.position) - p_;
-    const Floats behind = dot(corner, spread<Floats>(light.axis));
+    const Vec3T<Floats> corner = broadcast<Floats>(light.position) - p_;
+    const Floats behind = dot(corner, broadcast<Floats>(light.axis));
     Lanes lanes = lanes_ & ((light.two_sided ? abs(behind) : -behind) > rounding_);
     if (lane_bits(lanes) == 0) return Color(kNone);
-    const PolygonT<Floats> polygon{local(corner), local(spread<Floats>(light.u)), local(spread<Floats>(light.v))};
+    const PolygonT<Floats> polygon{local(corner), local(broadcast<Floats>(light.u)), local(broadcast<Floats>(light.v))};
     const Floats& u = polygon.u.z;
     const Floats& v = polygon.v.z;
     const Floats highest = polygon.corner.z + max(max(u, v), max(kNone, N == 4 ? u + v : kNone));
@@ -112,7 +112,7 @@ template <std::size_t N> Color LitBatch::from_polygon(const FrameLight& light, c
 }
 
 Color LitBatch::from_sphere(const FrameLight& light, const Lanes& diffuse_lanes) const {
-    const Vec3T<Floats> way = spread<Floats>(light.position) - p_;
+    const Vec3T<Floats> way = broadcast<Floats>(light.position) - p_;
     const Floats squared = dot(way, way), radius2 = Floats(sqr(light.radius)), height = dot(way, z_);
     const Lanes outside = squared > radius2;
     // Inside a two-sided sphere all directions are lit, but not on its own surface.
@@ -153,12 +153,12 @@ Color LitBatch::from_direction(const Vec3T<Floats>& wi, const Floats& irradiance
 }
 
 Color LitBatch::from_position(const FrameLight& light, const Lanes& diffuse_lanes) const {
-    const Vec3T<Floats> way = spread<Floats>(light.position) - p_;
+    const Vec3T<Floats> way = broadcast<Floats>(light.position) - p_;
     const Floats inverse = inverse_sqrt(max(dot(way, way), Floats(1e-30f)));
     const Vec3T<Floats> wi = way * inverse;
     Floats fraction = inverse * inverse;
     if (light.kind == FrameLight::Kind::kSpot) {
-        const Floats cosine = -dot(wi, spread<Floats>(light.axis));
+        const Floats cosine = -dot(wi, broadcast<Floats>(light.axis));
         const Floats s = clamp((cosine - Floats(light.cos_outer)) * Floats(light.inverse_range), kNone, kOne);
         fraction = fraction * s * s * (Floats(3.0f) - s - s);
     }
@@ -178,7 +178,7 @@ Color LitBatch::reflected(const FrameLight& light, Lobes lobes) const {
     case FrameLight::Kind::kSpot:
         return from_position(light, diffuse);
     case FrameLight::Kind::kSun:
-        return from_direction(spread<Floats>(light.axis), kOne, diffuse) * spread_color(light.emitted);
+        return from_direction(broadcast<Floats>(light.axis), kOne, diffuse) * spread_color(light.emitted);
     }
     return Color(kNone);
 }

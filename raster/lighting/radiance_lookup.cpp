@@ -36,7 +36,7 @@ struct RadianceLookup::Query {
     }
 };
 
-RadianceLookup::RadianceLookup(const PreparedData& data, const GBuffer& gbuffer, const ReflectionProbes* probes,
+RadianceLookup::RadianceLookup(const RasterSceneData& data, const GBuffer& gbuffer, const ReflectionProbes* probes,
                                const Planes3& image, int x, int y)
     : data_(data), gbuffer_(gbuffer), probes_(probes), image_(image) {
     load(gbuffer.object, x, y).store_aligned(objects_.data());

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"
-#include "raster/prepare.h"
 #include "raster/probes/reflection_probes.h"
+#include "raster/raster_scene.h"
 
 namespace duet::raster {
 
@@ -18,7 +18,7 @@ class RadianceLookup {
 public:
     /// `probes` may be null: the environment alone arrives. `image` is the radiance of the pixels without what is looked
     /// up here.
-    RadianceLookup(const PreparedData& data, const GBuffer& gbuffer, const ReflectionProbes* probes,
+    RadianceLookup(const RasterSceneData& data, const GBuffer& gbuffer, const ReflectionProbes* probes,
                    const Planes3& image, int x, int y);
 
     /// Returns what arrives at points p relative to the eye from about the unit direction w, filtered by a GGX lobe of
@@ -32,7 +32,7 @@ private:
     RgbT<Floats> on_screen(const Vec3T<Floats>& q, const xsimd::batch_bool<float>& lanes,
                            const RgbT<Floats>& otherwise) const;
 
-    const PreparedData& data_;
+    const RasterSceneData& data_;
     const GBuffer& gbuffer_;
     const ReflectionProbes* probes_;
     const Planes3& image_;

@@ -23,7 +23,8 @@ Rgbs albedo(const LobeTables& tables, const Rgbs& normal, const Floats& alpha, c
                  share = xsimd::select(mirror, square * square * grazing, tables.share);
     const auto channel = [&](const Floats& f0) {
         const Floats once = energy * (f0 + (one - f0) * share);
-        // Light scattered more than once (ggx_multiple in common/material/ggx_albedo.h, times the lost fractions).
+        // Light scattered more than once (ggx_multiple_scattering in common/material/ggx_albedo.h, times the lost
+        // fractions).
         const Floats mean = f0 + (one - f0) * Floats(1.0f / 21);
         return once + mean * mean * (one - tables.mean_lost) / (one - mean * tables.mean_lost) * (one - energy);
     };
@@ -32,7 +33,7 @@ Rgbs albedo(const LobeTables& tables, const Rgbs& normal, const Floats& alpha, c
 
 } // namespace
 
-void add_reflections(const PreparedData& data, const Settings& settings, const GBuffer& gbuffer,
+void add_reflections(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
                      const ReflectionProbes* probes, Planes3& radiance) {
     const Planes3 before = probes != nullptr ? radiance : Planes3(); // reflections read other pixels
     constexpr int kBandRows = 8;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"
-#include "raster/prepare.h"
+#include "raster/raster_scene.h"
 
 namespace duet::raster {
 
@@ -12,7 +12,7 @@ class ReflectionProbes; // raster/probes/reflection_probes.h
 /// Adds what the surfaces reflect of their surroundings, without the lights' own light on rough surfaces, which is
 /// direct light. Without probes the environment alone is reflected. Where a sharp reflection lies within the image, it
 /// shows the image's own pixels, as they are before the call.
-void add_reflections(const PreparedData& data, const Settings& settings, const GBuffer& gbuffer,
+void add_reflections(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
                      const ReflectionProbes* probes, Planes3& radiance);
 
 } // namespace duet::raster

@@ -2,7 +2,7 @@
 
 #include "raster/lighting/radiance_lookup.h"
 #include "raster/probes/glass_shapes.h"
-#include "raster/shader/shader.h"
+#include "raster/visibility/shader.h"
 
 #include "common/material/fresnel.h"
 
@@ -35,12 +35,12 @@ Refracted refract(const Vec3s& w, const Vec3s& n, const Floats& eta) {
 /// Shows what arrives through the glass of one object in a batch of pixels.
 class GlassBatch {
 public:
-    GlassBatch(const PreparedData& data, const GBuffer& gbuffer, const RadianceLookup& lookup, int x, int y)
+    GlassBatch(const RasterSceneData& data, const GBuffer& gbuffer, const RadianceLookup& lookup, int x, int y)
         : data_(data), gbuffer_(gbuffer), lookup_(lookup), p_(gbuffer.points(x, y)), n_(gbuffer.normal.vector(x, y)),
           w_(gbuffer.projection.to_viewer(p_) * Floats(-1.0f)), alpha_(load(gbuffer.alpha, x, y)) {}
 
     Rgbs through(std::int32_t object, const Dielectric& glass, const Mask& lanes) const {
-        const Rgbs tint = spread<Floats>(glass.tint.value);
+        const Rgbs tint = broadcast<Floats>(glass.tint.value);
         const Floats eta(glass.ior), alpha = glass.thin ? Floats(0.0f) : alpha_;
         const Refracted in = refract(w_, n_, eta);
         const auto exit = glass.thin ? std::nullopt : data_.glass_shapes->exit(object, gbuffer_.projection.eye(), p_, in.w);
@@ -57,7 +57,7 @@ public:
     }
 
 private:
-    const PreparedData& data_;
+    const RasterSceneData& data_;
     const GBuffer& gbuffer_;
     const RadianceLookup& lookup_;
     Vec3s p_, n_, w_; ///< w_ is the direction of the camera's rays
@@ -66,7 +66,8 @@ private:
 
 } // namespace
 
-void add_refraction(const PreparedData& data, const Settings& settings, const GBuffer& gbuffer, Planes3& radiance) {
+void add_refraction(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
+                    Planes3& radiance) {
     const Planes3 before = radiance;
     for_each_batch(gbuffer.width(), gbuffer.height(), settings.threads, [&](int x, int y) {
         alignas(64) std::array<std::int32_t, Ints::size> objects, materials;

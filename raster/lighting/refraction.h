@@ -2,12 +2,13 @@
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"
-#include "raster/prepare.h"
+#include "raster/raster_scene.h"
 
 namespace duet::raster {
 
 /// Adds the light that arrives through glass: refracted on entry, where the ray leaves the object (GlassShapes), and
 /// then looked up in the image or in the object's reflection probe. Reflections are add_reflections()'s.
-void add_refraction(const PreparedData& data, const Settings& settings, const GBuffer& gbuffer, Planes3& radiance);
+void add_refraction(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
+                    Planes3& radiance);
 
 } // namespace duet::raster

@@ -1,6 +1,6 @@
 #include "raster/lighting/sky_light.h"
 
-#include "raster/shader/shader.h"
+#include "raster/visibility/shader.h"
 
 #include <array>
 
@@ -18,20 +18,20 @@ template <typename T> std::array<T, 9> harmonics(const Vec3T<T>& w) {
 
 } // namespace
 
-void add_sky_light(const PreparedData& data, const Settings& settings, const GBuffer& gbuffer,
+void add_sky_light(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
                    const GtaoImage* occlusion, Planes3& radiance) {
     const std::array<Rgb, 9> coefficients = data.irradiance.scaled_coefficients(data.scene.environment);
     for_each_batch(gbuffer.width(), gbuffer.height(), settings.threads, [&](int x, int y) {
         const RgbT<Floats> albedo = gbuffer.diffuse.color(x, y);
         const auto lit = gbuffer.visible(x, y) & (albedo.r + albedo.g + albedo.b > Floats(0.0f));
         if (!xsimd::any(lit)) return;
-        const SkyVisibility<Floats> sky = occlusion != nullptr ? occlusion->at(x, y) : SkyVisibility<Floats>{};
+        const SkyVisibilityT<Floats> sky = occlusion != nullptr ? occlusion->at(x, y) : SkyVisibilityT<Floats>{};
         const std::array<Floats, 9> towards = harmonics(gbuffer.normal.vector(x, y)), blocked = harmonics(sky.hidden);
-        RgbT<Floats> sum = spread<Floats>(coefficients[0]) * sky.visible;
+        RgbT<Floats> sum = broadcast<Floats>(coefficients[0]) * sky.visible;
         // Irradiance has scaled order 1 by the cosine's factor of 2/3, but light from a hidden direction is not.
         for (std::size_t i = 1; i < 4; ++i)
-            sum += spread<Floats>(coefficients[i]) * (towards[i] - Floats(1.5f) * blocked[i]);
-        for (std::size_t i = 4; i < 9; ++i) sum += spread<Floats>(coefficients[i]) * (towards[i] * sky.visible);
+            sum += broadcast<Floats>(coefficients[i]) * (towards[i] - Floats(1.5f) * blocked[i]);
+        for (std::size_t i = 4; i < 9; ++i) sum += broadcast<Floats>(coefficients[i]) * (towards[i] * sky.visible);
         const Floats none(0.0f), scale = xsimd::select(lit, Floats(kInvPi), none);
         const RgbT<Floats> irradiance{max(sum.r, none), max(sum.g, none), max(sum.b, none)};
         radiance.set(x, y, radiance.color(x, y) + albedo * irradiance * scale);

@@ -12,7 +12,7 @@ template <typename T> struct CosineSpaceT {
     T xx, xz, yy, zx, zz;
     T determinant, gram_xx, gram_xz, gram_yy, gram_zz; ///< of M Mᵀ; the others are 0
 
-    /// The numbers are those of raster/light/ggx_table.h's LobeMatrix, which is the inverse up to its determinant.
+    /// The numbers are those of raster/lighting/ggx_table.h's LobeMatrix, which is the inverse up to its determinant.
     static CosineSpaceT of(T m11, T m13, T m22, T m31, T m33) {
         const T flat = m11 * m33 - m13 * m31;
         CosineSpaceT s{m33, -m13, flat / m22, -m31, m11, {}, {}, {}, {}, {}};
@@ -22,7 +22,7 @@ template <typename T> struct CosineSpaceT {
         return s;
     }
     Vec3T<T> operator()(const Vec3T<T>& w) const {
-        return {fused(xx, w.x, T(xz * w.z)), yy * w.y, fused(zx, w.x, T(zz * w.z))};
+        return {multiply_add(xx, w.x, T(xz * w.z)), yy * w.y, multiply_add(zx, w.x, T(zz * w.z))};
     }
 };
 
@@ -30,7 +30,7 @@ template <typename T> struct CosineSpaceT {
 struct LobeTables {
     Floats m11, m13, m22, m31, m33;
     Floats energy, share;  ///< GgxAlbedo
-    Floats mean_lost;      ///< GgxMeans::lost
+    Floats mean_lost;      ///< GgxAverageAlbedo::lost
 };
 
 /// Looks the tables up. The rows of a roughness are interpolated once and reused while the roughness stays the same, so
@@ -48,8 +48,8 @@ private:
     void for_each_alpha(const Floats& alpha, const xsimd::batch_bool<float>& lanes, const Use& use);
 
     float alpha_ = -1;
-    std::array<StripOf<float>, 5> matrix_;
-    std::array<StripOf<float>, 2> lost_, share_; ///< 32 columns each
+    std::array<PacketOf<float>, 5> matrix_;
+    std::array<PacketOf<float>, 2> lost_, share_; ///< 32 columns each
     float mean_lost_ = 0;
 };
 

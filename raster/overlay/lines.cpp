@@ -14,22 +14,23 @@ std::int64_t floor_divided(std::int64_t a, std::int64_t b) { return a >= 0 ? a /
 
 /// Rasterizes a line along its major axis u. It calls mark(column, row) once per column, in (u, v) order.
 template <typename Mark>
-void walk(std::int64_t u0, std::int64_t v0, std::int64_t u1, std::int64_t v1, int columns, const Mark& mark) {
+void rasterize_along_axis(std::int64_t u0, std::int64_t v0, std::int64_t u1, std::int64_t v1, int columns,
+                          const Mark& mark) {
     if (u0 > u1) std::swap(u0, u1), std::swap(v0, v1);
     const std::int64_t du = u1 - u0, dv = v1 - v0;
-    const std::int64_t first = std::max<std::int64_t>(floor_divided(u0 + kSubPixels - 1, kSubPixels), 0),
-                       end = std::min<std::int64_t>(floor_divided(u1 + kSubPixels - 1, kSubPixels), columns);
+    const std::int64_t first = std::max<std::int64_t>(floor_divided(u0 + kSubpixels - 1, kSubpixels), 0),
+                       end = std::min<std::int64_t>(floor_divided(u1 + kSubpixels - 1, kSubpixels), columns);
     if (first >= end) return;
     // Row r is nearest where v is in (r − ½, r + ½]: r = ceil(v − ½), with v = v0 + (u − u0)·dv/du in 1/256
     // pixel. Therefore r = −floor((128 − v)/256). The numerator decreases by dv·256 per column and is stored as
     // a row and a remainder.
-    const std::int64_t divisor = kSubPixels * du;
-    std::int64_t numerator = (kSubPixels / 2 - v0) * du - (first * kSubPixels - u0) * dv;
+    const std::int64_t divisor = kSubpixels * du;
+    std::int64_t numerator = (kSubpixels / 2 - v0) * du - (first * kSubpixels - u0) * dv;
     std::int64_t row = -floor_divided(numerator, divisor);
     std::int64_t rest = numerator + row * divisor; // in [0, divisor)
     for (std::int64_t column = first; column < end; ++column) {
         mark(static_cast<int>(column), row);
-        rest -= kSubPixels * dv;
+        rest -= kSubpixels * dv;
         if (rest < 0) ++row, rest += divisor; // |dv| <= du: at most one row
         if (rest >= divisor) --row, rest -= divisor;
     }
@@ -55,9 +56,9 @@ void draw_line(FixedPoint a, FixedPoint b, SampleOffset offset, Image<std::uint8
             std::atomic_ref(marks(static_cast<int>(x), y)).store(1, std::memory_order_relaxed);
     };
     if (std::abs(bx - ax) >= std::abs(by - ay))
-        walk(ax, ay, bx, by, marks.width(), set);
+        rasterize_along_axis(ax, ay, bx, by, marks.width(), set);
     else
-        walk(ay, ax, by, bx, marks.height(), set_steep);
+        rasterize_along_axis(ay, ax, by, bx, marks.height(), set_steep);
 }
 
 // The algorithm is that of Liang and Barsky 1984, "A New Concept and Method for Line Clipping", in homogeneous
@@ -82,22 +83,22 @@ bool clip_line(const PixelVertex& a, const PixelVertex& b, const Viewport& viewp
     return true;
 }
 
-void draw_lines(const PreparedData& data, const PassView& view, SampleOffset offset, int threads,
+void draw_lines(const RasterSceneData& data, const PassView& view, SampleOffset offset, int threads,
                 Image<std::uint8_t>& marks) {
     std::vector<std::uint32_t> all = data.polygonal;
-    all.insert(all.end(), data.open_polygonal.begin(), data.open_polygonal.end());
+    all.insert(all.end(), data.alpha_polygonal.begin(), data.alpha_polygonal.end());
     for (const std::uint32_t index : all) {
         const Object& object = data.scene.objects[index];
         const Shape& shape = data.scene.shapes[object.shape];
         TransformedObject placed;
         placed.to_pixel = object_to_pixel(object, view.pinhole, view.time);
-        placed.to_pixel_columns = transpose(placed.to_pixel);
+        placed.to_pixel_transposed = transpose(placed.to_pixel);
         constexpr std::uint32_t kRun = 4096;
         const std::uint32_t count = primitive_count(shape);
         parallel_for((count + kRun - 1) / kRun, threads, [&](std::size_t run) {
             const auto first = static_cast<std::uint32_t>(run) * kRun;
             for (std::uint32_t i = first; i < std::min(first + kRun, count); ++i) {
-                const Corners corners = primitive_corners(shape, i);
+                const PrimitiveVertices corners = primitive_vertices(shape, i);
                 const auto number = static_cast<std::size_t>(corners.count);
                 std::array<PixelVertex, 4> v;
                 for (std::size_t k = 0; k < number; ++k) v[k] = pixel_vertex(placed, corners.p[k]);

@@ -21,7 +21,7 @@ bool clip_line(const PixelVertex& a, const PixelVertex& b, const Viewport& viewp
 
 /// Marks all edges of the scene's triangles and quads for samples at `offset`. Quads' diagonals are not edges, and
 /// spheres have none. The result is the same for any number of threads.
-void draw_lines(const PreparedData& data, const PassView& view, SampleOffset offset, int threads,
+void draw_lines(const RasterSceneData& data, const PassView& view, SampleOffset offset, int threads,
                 Image<std::uint8_t>& marks);
 
 } // namespace duet::raster

@@ -5,7 +5,7 @@
 
 namespace duet::raster {
 
-bool draws_edges(const Settings& settings) { return settings.edges || settings.shading == Shading::kEdges; }
+bool draws_edges(const RasterSettings& settings) { return settings.edges || settings.shading == Shading::kEdges; }
 
 void Overlay::add_lines(const PassView& view) {
     for (const SampleOffset offset : view.samples) {
@@ -16,15 +16,15 @@ void Overlay::add_lines(const PassView& view) {
     }
 }
 
-void Overlay::add_edges(const SeenPicture& seen) {
+void Overlay::add_edges(const EdgeBuffer& edge_buffer) {
     parallel_for(static_cast<std::size_t>(sums_.height()), settings_.threads, [&](std::size_t row) {
         const int y = static_cast<int>(row);
-        for (int x = 0; x < sums_.width(); ++x) sums_(x, y) += ink(seen, x, y);
+        for (int x = 0; x < sums_.width(); ++x) sums_(x, y) += edge_strength(edge_buffer, x, y);
     });
     ++samples_;
 }
 
-void Overlay::put(ImageRgb& picture) const {
+void Overlay::composite(ImageRgb& picture) const {
     if (samples_ == 0) return;
     for (std::size_t i = 0; i < picture.size(); ++i) {
         const float covered = sums_[i] / static_cast<float>(samples_);

@@ -2,27 +2,27 @@
 #pragma once
 
 #include "raster/overlay/edges.h"
-#include "raster/prepare.h"
+#include "raster/raster_scene.h"
 
 namespace duet::raster {
 
 /// Returns true if these settings draw edges.
-bool draws_edges(const Settings& settings);
+bool draws_edges(const RasterSettings& settings);
 
 /// Accumulates over all passes how much of each pixel lines or edges cover. The references must outlive it.
 class Overlay {
 public:
-    Overlay(const PreparedData& data, const Settings& settings, const View& view)
+    Overlay(const RasterSceneData& data, const RasterSettings& settings, const View& view)
         : data_(data), settings_(settings), sums_(view.width, view.height, 0.0f) {}
 
     void add_lines(const PassView& view);
-    void add_edges(const SeenPicture& seen);
+    void add_edges(const EdgeBuffer& edge_buffer);
     /// Draws the result: white lines on black, black edges on white, or black edges over the image.
-    void put(ImageRgb& picture) const;
+    void composite(ImageRgb& picture) const;
 
 private:
-    const PreparedData& data_;
-    const Settings& settings_;
+    const RasterSceneData& data_;
+    const RasterSettings& settings_;
     ImageFloat sums_;
     int samples_ = 0;
 };

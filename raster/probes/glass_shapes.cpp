@@ -13,7 +13,8 @@ using Vec3s = Vec3T<Floats>;
 
 constexpr int kSteps = 4; ///< from sphere to sphere, as in ReflectionProbes::trace
 
-OctahedralMap shape_of(const PreparedData& data, const Settings& settings, std::uint32_t object, Vec3d center) {
+OctahedralMap shape_of(const RasterSceneData& data, const RasterSettings& settings, std::uint32_t object,
+                       Vec3d center) {
     const ProbeCapture capture(data, settings, center, object, GlassShapes::kSide / 2);
     const float missing = length(data.objects[object].bounds.diagonal()) / 2;
     OctahedralMap map(GlassShapes::kSide);
@@ -33,7 +34,7 @@ OctahedralMap shape_of(const PreparedData& data, const Settings& settings, std::
 
 } // namespace
 
-GlassShapes::GlassShapes(const PreparedData& data, const Settings& settings) {
+GlassShapes::GlassShapes(const RasterSceneData& data, const RasterSettings& settings) {
     std::vector<std::uint32_t> objects = data.glass;
     const auto size = [&](std::uint32_t i) { return length(data.objects[i].bounds.diagonal()); };
     std::stable_sort(objects.begin(), objects.end(),

@@ -2,8 +2,8 @@
 // the object's center. A refracted ray finds there where it leaves.
 #pragma once
 
-#include "raster/prepare.h"
 #include "raster/probes/octahedral_map.h"
+#include "raster/raster_scene.h"
 
 #include <optional>
 
@@ -13,7 +13,7 @@ namespace duet::raster {
 /// map's resolution.
 class GlassShapes {
 public:
-    GlassShapes(const PreparedData& data, const Settings& settings);
+    GlassShapes(const RasterSceneData& data, const RasterSettings& settings);
 
     struct Exit {
         Vec3T<Floats> p;  ///< where the ray leaves, relative to the eye

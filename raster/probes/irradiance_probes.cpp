@@ -1,7 +1,7 @@
 #include "raster/probes/irradiance_probes.h"
 
 #include "raster/probes/solid_test.h"
-#include "raster/shader/shader.h"
+#include "raster/visibility/shader.h"
 
 #include "common/system/parallel.h"
 
@@ -50,12 +50,12 @@ template <typename Visit> void for_each_pixel(const ProbeCapture& capture, const
 
 /// Returns the region that probes fill: the scene without what is very large, and not far beyond what its camera looks
 /// at. Points outside use the nearest probes.
-Box3d region_of(const PreparedData& data) {
+Box3d region_of(const RasterSceneData& data) {
     const Scene& scene = data.scene;
     const Camera& camera = scene.camera;
     const double view = length(camera.look_at - camera.eye), reach = 2 * view;
     Box3 bounds;
-    for (const PreparedObject& object : data.objects)
+    for (const RasterObject& object : data.objects)
         if (static_cast<double>(length(object.bounds.diagonal())) < 10 * view) bounds.extend(object.bounds);
     if (bounds.empty()) bounds = scene.bounds;
     Box3d box;
@@ -74,7 +74,7 @@ Box3d region_of(const PreparedData& data) {
 
 /// Spreads the probes so that cells are close to cubes. The outermost probes stand half a cell within the region, so
 /// that none lies in an outer wall.
-void IrradianceProbes::place(const PreparedData& data) {
+void IrradianceProbes::place(const RasterSceneData& data) {
     const Box3d box = region_of(data);
     const Vec3d extent = box.high - box.low;
     const double most = std::clamp(kMostTriangles / (6 * static_cast<double>(data.primitives) + 1e3),
@@ -100,7 +100,7 @@ Vec3d IrradianceProbes::grid_point(std::size_t probe) const {
 
 /// Moves a probe that lies inside an object along an axis, by up to three steps. Returns false if all of that is
 /// inside, too.
-bool IrradianceProbes::move_out_of_solids(const PreparedData& data, Vec3d& position) const {
+bool IrradianceProbes::move_out_of_solids(const RasterSceneData& data, Vec3d& position) const {
     if (!inside_solid(data, position)) return true;
     for (int quarters = 1; quarters <= 12; ++quarters)
         for (std::size_t axis = 0; axis < 3; ++axis)
@@ -116,7 +116,7 @@ bool IrradianceProbes::move_out_of_solids(const PreparedData& data, Vec3d& posit
 
 float IrradianceProbes::spacing() const { return static_cast<float>(std::max({step_.x, step_.y, step_.z})); }
 
-IrradianceProbes::IrradianceProbes(const PreparedData& data, const Settings& settings) {
+IrradianceProbes::IrradianceProbes(const RasterSceneData& data, const RasterSettings& settings) {
     place(data);
     std::vector<std::unique_ptr<ProbeCapture>> captures(probes_.size());
     parallel_for(probes_.size(), settings.threads, [&](std::size_t i) {
@@ -184,7 +184,7 @@ void IrradianceProbes::add_bounce(const ProbeCapture& capture, Harmonics& sum) c
                 const RgbT<Floats> reflected = albedo * irradiance(gbuffer.projection.eye(), gbuffer.points(x, y),
                                                                    gbuffer.normal.vector(x, y), seen) *
                                                Floats(kInvPi);
-                StripOf<float> r, g, b;
+                PacketOf<float> r, g, b;
                 store(r, 0, reflected.r), store(g, 0, reflected.g), store(b, 0, reflected.b);
                 for (std::uint32_t left = lane_bits(seen); left != 0; left &= left - 1) {
                     const auto i = static_cast<std::size_t>(std::countr_zero(left));
@@ -214,7 +214,7 @@ struct IrradianceProbes::Corner {
         const Floats seen = variance / (variance + behind * behind); // Chebyshev's inequality
         weight = trilinear * (front * front + Floats(0.2f)) * max(seen * seen * seen, Floats(1e-4f));
         irradiance = RgbT<Floats>(Floats(0.0f));
-        for (std::size_t i = 0; i < 9; ++i) irradiance += spread<Floats>(probe.irradiance[i]) * basis[i];
+        for (std::size_t i = 0; i < 9; ++i) irradiance += broadcast<Floats>(probe.irradiance[i]) * basis[i];
         const Floats none(0.0f);
         irradiance = {max(irradiance.r, none), max(irradiance.g, none), max(irradiance.b, none)};
     }
@@ -243,7 +243,7 @@ RgbT<Floats> IrradianceProbes::irradiance(const Vec3d& eye, const Vec3s& p, cons
         // The mean counts where no probe stands about a point, since all would lie within objects.
         Floats sum(1e-9f);
         RgbT<Floats> light(Floats(0.0f));
-        for (std::size_t c = 0; c < 9; ++c) light += spread<Floats>(mean_[c]) * basis[c] * sum;
+        for (std::size_t c = 0; c < 9; ++c) light += broadcast<Floats>(mean_[c]) * basis[c] * sum;
         for (int corner = 0; corner < 8; ++corner) {
             const int dx = corner & 1, dy = corner >> 1 & 1, dz = corner >> 2;
             const auto probe = static_cast<std::size_t>(base + dx + size_[0] * (dy + size_[1] * dz));

@@ -3,9 +3,9 @@
 // "Dynamic Diffuse Global Illumination with Ray-Traced Irradiance Fields").
 #pragma once
 
-#include "raster/prepare.h"
 #include "raster/probes/octahedral_map.h"
 #include "raster/probes/probe_capture.h"
+#include "raster/raster_scene.h"
 
 #include <array>
 
@@ -15,7 +15,7 @@ namespace duet::raster {
 class IrradianceProbes {
 public:
     /// Renders the probes and lets light bounce kBounces times. The result is the same for any number of threads.
-    IrradianceProbes(const PreparedData& data, const Settings& settings);
+    IrradianceProbes(const RasterSceneData& data, const RasterSettings& settings);
 
     /// Returns the irradiance at points relative to the eye at `eye`, with unit normals; unspecified in lanes that
     /// `mask` leaves out.
@@ -38,9 +38,9 @@ private:
         OctahedralMap distance; ///< of the surfaces: mean and mean square; empty inside an object
     };
 
-    void place(const PreparedData& data);
+    void place(const RasterSceneData& data);
     Vec3d grid_point(std::size_t probe) const;
-    bool move_out_of_solids(const PreparedData& data, Vec3d& position) const;
+    bool move_out_of_solids(const RasterSceneData& data, Vec3d& position) const;
     void set_distances(const ProbeCapture& capture, Probe& probe) const;
     static Harmonics gathered(const ProbeCapture& capture);
     void add_bounce(const ProbeCapture& capture, Harmonics& sum) const;

@@ -2,7 +2,7 @@
 // Environment Maps"; Cigolle et al. 2014, "A Survey of Efficient Representations for Independent Unit Vectors").
 #pragma once
 
-#include "raster/lanes.h"
+#include "raster/geometry/packet.h"
 
 #include <vector>
 

@@ -3,8 +3,8 @@
 #include "raster/gbuffer/gbuffer_pass.h"
 #include "raster/lighting/background.h"
 #include "raster/lighting/direct_light.h"
-#include "raster/shadow/cube_map.h"
-#include "raster/shadow/light_views.h"
+#include "raster/shadows/cube_map.h"
+#include "raster/shadows/light_views.h"
 #include "raster/shadows/map_shadows.h"
 #include "raster/shadows/shadow_filter.h"
 
@@ -19,17 +19,17 @@ struct Selection {
     bool excluded;
 };
 
-ProbeCapture::Face capture(const PreparedData& data, const Settings& settings, const Camera& camera, int side,
+ProbeCapture::Face capture(const RasterSceneData& data, const RasterSettings& settings, const Camera& camera, int side,
                            const Selection& selection) {
     const View view{camera, side, side};
-    const Pinhole pinhole = CameraModel(view).through();
+    const Pinhole pinhole = CameraModel(view).pinhole();
     const std::vector<SampleOffset> samples{SampleOffset{}};
     const PassView pass{.pinhole = pinhole,
                         .time = static_cast<float>(camera.shutter_open),
                         .viewport = viewport_of(view, pinhole),
                         .samples = samples};
     const TileGrid grid{{0, 0, side, side}};
-    GeometryLoan geometry(*data.geometries);
+    PooledGeometry geometry(*data.geometries);
     if (selection.excluded)
         process_without(data, selection.objects, grid, pass, settings, *geometry);
     else
@@ -49,26 +49,26 @@ ProbeCapture::Face capture(const PreparedData& data, const Settings& settings, c
     return face;
 }
 
-Settings single_threaded(Settings settings) {
+RasterSettings single_threaded(RasterSettings settings) {
     settings.threads = 1;
-    settings.parts = {};
+    settings.components = {};
     return settings;
 }
 /// Back faces are visible from within.
-Settings with_all_faces(const Settings& settings) {
-    Settings result = single_threaded(settings);
+RasterSettings with_all_faces(const RasterSettings& settings) {
+    RasterSettings result = single_threaded(settings);
     result.skips.back_faces = false;
     return result;
 }
 
 template <std::size_t... kFaces>
-std::array<ProbeCapture::Face, 6> capture_all(const PreparedData& data, const Settings& settings,
-                                              const std::vector<Camera>& views, int side,
-                                              const Selection& selection, std::index_sequence<kFaces...>) {
+std::array<ProbeCapture::Face, 6> capture_all(const RasterSceneData& data, const RasterSettings& settings,
+                                              const std::vector<Camera>& views, int side, const Selection& selection,
+                                              std::index_sequence<kFaces...>) {
     return {capture(data, settings, views[kFaces], side, selection)...};
 }
 
-std::vector<Camera> views_about(const PreparedData& data, Vec3d center) {
+std::vector<Camera> views_about(const RasterSceneData& data, Vec3d center) {
     const double size = static_cast<double>(length(data.scene.bounds.diagonal())) + 1e-30;
     std::vector<Camera> views = cube_views(center, {}, size, 1, 0);
     for (Camera& view : views) view.shutter_open = view.shutter_close = data.scene.camera.shutter_open;
@@ -77,17 +77,15 @@ std::vector<Camera> views_about(const PreparedData& data, Vec3d center) {
 
 } // namespace
 
-ProbeCapture::ProbeCapture(const PreparedData& data, const Settings& settings, Vec3d center, int side,
+ProbeCapture::ProbeCapture(const RasterSceneData& data, const RasterSettings& settings, Vec3d center, int side,
                            const std::vector<std::uint32_t>& excluded)
-    : center_(center), side_(side),
-      faces_(capture_all(data, single_threaded(settings), views_about(data, center), side, {excluded, true},
-                         std::make_index_sequence<6>())) {}
+    : center_(center), side_(side), faces_(capture_all(data, single_threaded(settings), views_about(data, center), side,
+                                                       {excluded, true}, std::make_index_sequence<6>())) {}
 
-ProbeCapture::ProbeCapture(const PreparedData& data, const Settings& settings, Vec3d center, std::uint32_t object,
-                           int side)
-    : center_(center), side_(side),
-      faces_(capture_all(data, with_all_faces(settings), views_about(data, center), side, {{object}, false},
-                         std::make_index_sequence<6>())) {}
+ProbeCapture::ProbeCapture(const RasterSceneData& data, const RasterSettings& settings, Vec3d center,
+                           std::uint32_t object, int side)
+    : center_(center), side_(side), faces_(capture_all(data, with_all_faces(settings), views_about(data, center), side,
+                                                       {{object}, false}, std::make_index_sequence<6>())) {}
 
 ProbeCapture::Pixel ProbeCapture::pixel(Vec3 w) const {
     const std::size_t face = cube_face(w);

@@ -3,13 +3,13 @@
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"
-#include "raster/prepare.h"
+#include "raster/raster_scene.h"
 
 #include <array>
 
 namespace duet::raster {
 
-/// Holds the six faces of a cube about a point. Directions and faces are those of raster/shadow/cube_map.h.
+/// Holds the six faces of a cube about a point. Directions and faces are those of raster/shadows/cube_map.h.
 class ProbeCapture {
 public:
     struct Face {
@@ -19,11 +19,12 @@ public:
     };
     /// Renders side × side pixels for each face, on the calling thread. The objects in `excluded`, in order, are left
     /// out.
-    ProbeCapture(const PreparedData& data, const Settings& settings, Vec3d center, int side,
+    ProbeCapture(const RasterSceneData& data, const RasterSettings& settings, Vec3d center, int side,
                  const std::vector<std::uint32_t>& excluded);
 
     /// Renders one object alone, without light: its surface as seen from within or from outside.
-    ProbeCapture(const PreparedData& data, const Settings& settings, Vec3d center, std::uint32_t object, int side);
+    ProbeCapture(const RasterSceneData& data, const RasterSettings& settings, Vec3d center, std::uint32_t object,
+                 int side);
 
     Vec3d center() const { return center_; }
     int side() const { return side_; }

@@ -41,7 +41,8 @@ struct LobeSamples {
     }
 };
 
-/// Halves a map. Texels of the octahedral square differ in solid angle by a factor of up to 5, but neighbors hardly do.
+/// Halves a map. TextureSampler of the octahedral square differ in solid angle by a factor of up to 5, but neighbors
+/// hardly do.
 OctahedralMap halved(const OctahedralMap& fine) {
     OctahedralMap coarse(fine.side() / 2);
     for (int y = 0; y < coarse.side(); ++y)

@@ -28,7 +28,7 @@ struct Site {
 };
 
 /// Returns the objects that reflect, the largest first.
-std::vector<std::uint32_t> reflecting_objects(const PreparedData& data) {
+std::vector<std::uint32_t> reflecting_objects(const RasterSceneData& data) {
     std::vector<std::uint32_t> objects;
     for (std::uint32_t i = 0; i < data.scene.objects.size(); ++i)
         if (any_reflects(data.scene, data.scene.objects[i])) objects.push_back(i);
@@ -38,7 +38,7 @@ std::vector<std::uint32_t> reflecting_objects(const PreparedData& data) {
     return objects;
 }
 
-std::vector<Site> sites_of(const PreparedData& data) {
+std::vector<Site> sites_of(const RasterSceneData& data) {
     std::vector<Site> sites;
     for (const std::uint32_t object : reflecting_objects(data)) {
         if (sites.size() == ReflectionProbes::kMostProbes) break;
@@ -50,7 +50,7 @@ std::vector<Site> sites_of(const PreparedData& data) {
 }
 
 /// Adds what a capture's surfaces reflect of the light between surfaces, and of the environment in their highlights.
-void add_reflected_light(const PreparedData& data, Settings settings, ProbeCapture& capture) {
+void add_reflected_light(const RasterSceneData& data, RasterSettings settings, ProbeCapture& capture) {
     settings.threads = 1;
     for (ProbeCapture::Face& face : capture.faces()) {
         if (data.irradiance_probes)
@@ -76,7 +76,7 @@ bool reflects(const Material& material) {
     return !std::holds_alternative<Diffuse>(material) && !std::holds_alternative<Emissive>(material);
 }
 
-ReflectionProbes::ReflectionProbes(const PreparedData& data, const Settings& settings) {
+ReflectionProbes::ReflectionProbes(const RasterSceneData& data, const RasterSettings& settings) {
     const std::vector<Site> sites = sites_of(data);
     if (sites.empty()) return;
     probes_.resize(sites.size());

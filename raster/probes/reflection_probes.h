@@ -3,9 +3,9 @@
 // Impostors").
 #pragma once
 
-#include "raster/prepare.h"
 #include "raster/probes/probe_capture.h"
 #include "raster/probes/radiance_map.h"
+#include "raster/raster_scene.h"
 
 namespace duet::raster {
 
@@ -14,7 +14,7 @@ namespace duet::raster {
 class ReflectionProbes {
 public:
     /// `data` must have its irradiance probes, if the settings want them.
-    ReflectionProbes(const PreparedData& data, const Settings& settings);
+    ReflectionProbes(const RasterSceneData& data, const RasterSettings& settings);
 
     /// Returns the probe of an object.
     std::size_t probe_of(std::int32_t object) const { return of_object_[static_cast<std::size_t>(object)]; }

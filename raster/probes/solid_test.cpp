@@ -37,7 +37,7 @@ bool contains(const QuadList& list, Vec3d p) {
 
 } // namespace
 
-bool inside_solid(const PreparedData& data, Vec3d p) {
+bool inside_solid(const RasterSceneData& data, Vec3d p) {
     const Scene& scene = data.scene;
     for (std::size_t i = 0; i < scene.objects.size(); ++i) {
         if (!data.objects[i].closed) continue;

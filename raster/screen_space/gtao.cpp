@@ -114,7 +114,7 @@ struct Pattern {
 };
 Pattern pattern_of(int x, int y) {
     static constexpr std::array<float, 16> kTurn{0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
-    StripOf<float> turn, jitter;
+    PacketOf<float> turn, jitter;
     for (std::size_t i = 0; i < Floats::size; ++i) {
         const auto column = static_cast<std::size_t>(x + static_cast<int>(i)) % kBlock;
         const std::size_t cell = static_cast<std::size_t>(y % kBlock) * kBlock + column;
@@ -233,7 +233,7 @@ void GtaoImage::filter_row(int y) {
     }
 }
 
-SkyVisibility<Floats> GtaoImage::at(int x, int y) const {
+SkyVisibilityT<Floats> GtaoImage::at(int x, int y) const {
     // Pixel 2k has a value of its own at half resolution; pixel 2k + 1 lies between two.
     const Vec3s p = gbuffer_->points(x, y), n = gbuffer_->normal.vector(x, y);
     const ScreenProjection& projection = gbuffer_->projection;

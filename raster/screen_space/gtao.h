@@ -4,16 +4,9 @@
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"
+#include "raster/lighting/sky_visibility.h"
 
 namespace duet::raster {
-
-/// Describes which part of the cosine-weighted hemisphere over a point is open to the environment.
-template <typename T> struct SkyVisibility {
-    T visible = T(1); ///< open fraction, in [0, 1]
-    /// ∫ w cos dw / π over the hidden directions: their mean direction, weighted by how much of the light they block.
-    /// It is 2/3 of the normal if everything is hidden.
-    Vec3T<T> hidden{T(0), T(0), T(0)};
-};
 
 /// Holds the occlusion of a G-buffer, and optionally its irradiance, at half resolution. Its memory is reused from frame
 /// to frame.
@@ -27,14 +20,14 @@ public:
     template <typename Irradiance> void add_irradiance(int threads, const Irradiance& irradiance);
 
     /// Returns the visibility of a batch of the G-buffer's pixels, upsampled along depths and normals.
-    SkyVisibility<Floats> at(int x, int y) const;
+    SkyVisibilityT<Floats> at(int x, int y) const;
     /// Returns the visible fraction and the irradiance of a batch, after add_irradiance().
     struct Lit {
         Floats visible;
         RgbT<Floats> irradiance;
     };
     Lit lit_at(int x, int y) const {
-        const SkyVisibility<Floats> s = at(x, y);
+        const SkyVisibilityT<Floats> s = at(x, y);
         return {s.visible, {s.hidden.x, s.hidden.y, s.hidden.z}};
     }
 

@@ -1,14 +1,14 @@
 #include "raster/shading/deferred.h"
 
 #include "raster/gbuffer/gbuffer_pass.h"
-#include "raster/light/environment_light.h"
 #include "raster/lighting/background.h"
 #include "raster/lighting/direct_light.h"
+#include "raster/lighting/environment_light.h"
 #include "raster/lighting/indirect_light.h"
 #include "raster/lighting/reflections.h"
 #include "raster/lighting/refraction.h"
 #include "raster/lighting/sky_light.h"
-#include "raster/screen/needs.h"
+#include "raster/screen_space/required_passes.h"
 #include "raster/shadows/map_shadows.h"
 #include "raster/shadows/shadow_filter.h"
 
@@ -33,7 +33,7 @@ void prepare_frame(const ScreenProjection& projection, int width, int height, bo
 
 } // namespace
 
-void shade_deferred(const PreparedData& data, const Settings& settings, const Geometry& geometry,
+void shade_deferred(const RasterSceneData& data, const RasterSettings& settings, const Geometry& geometry,
                     const PassView& view, const TileGrid& grid, SampleOffset offset, const Control& control,
                     DeferredFrame& frame) {
     prepare_frame(ScreenProjection(view.pinhole, offset), grid.region.width(), grid.region.height(),
@@ -46,7 +46,7 @@ void shade_deferred(const PreparedData& data, const Settings& settings, const Ge
 
     fill_gbuffer(data, settings, geometry, view, grid, offset, control, gbuffer, radiance);
     done("surface attributes");
-    if (settings.parts.direct && !data.scene.lights.empty()) {
+    if (settings.components.direct && !data.scene.lights.empty()) {
         if (settings.shadows && data.soft_shadows) {
             const MapShadows shadows(*data.shadows, *data.soft_shadows, gbuffer.projection.eye(), view.time);
             const DirectLight light = direct_light(data, settings, gbuffer, &shadows);
@@ -60,7 +60,7 @@ void shade_deferred(const PreparedData& data, const Settings& settings, const Ge
     }
     draw_background(data, settings, gbuffer, radiance);
     done("background");
-    const PartSet& parts = settings.parts;
+    const LightComponentSet& parts = settings.components;
     const bool occluded = settings.ambient_occlusion != AmbientOcclusion::kNone;
     if (data.irradiance_probes && parts.environment) {
         const float radius = occluded ? kOccluded * data.irradiance_probes->spacing() : 0;

@@ -29,7 +29,7 @@ struct DeferredFrame {
 };
 
 /// Computes the radiance of one sample per pixel, at `offset` in its pixel.
-void shade_deferred(const PreparedData& data, const Settings& settings, const Geometry& geometry,
+void shade_deferred(const RasterSceneData& data, const RasterSettings& settings, const Geometry& geometry,
                     const PassView& view, const TileGrid& grid, SampleOffset offset, const Control& control,
                     DeferredFrame& frame);
 

@@ -1,9 +1,9 @@
 // The shadows of all lights of a scene, looked up in lanes.
 #pragma once
 
-#include "raster/shadow/shadows.h"
-#include "raster/shadows/sharp_shadow_map.h"
 #include "raster/shadows/shadow_lookup.h"
+#include "raster/shadows/shadows.h"
+#include "raster/shadows/sharp_shadow_map.h"
 #include "raster/shadows/soft_shadow_map.h"
 
 namespace duet::raster {

@@ -1,7 +1,7 @@
 // Declares how the direct light's stage asks for shadows.
 #pragma once
 
-#include "raster/lanes.h"
+#include "raster/geometry/packet.h"
 
 namespace duet::raster {
 

@@ -78,7 +78,7 @@ Floats SharpShadowMap::visibility(const Vec3T<Floats>& p, const Vec3T<Floats>& n
     const Ints side(map_.side());
     const Ints first = truncated(xsimd::select(inside, y0 - Floats(1.0f), zero)) * side +
                        truncated(xsimd::select(inside, x0 - Floats(1.0f), zero));
-    const float* texels = map_.nearness().pixels().data();
+    const float* texels = map_.reversed_depth().pixels().data();
     Floats lit(0.0f);
     for (int j = 0; j < 4; ++j) {
         const Floats off_y = y0 + Floats(static_cast<float>(j) - 0.5f) - y;

@@ -3,8 +3,8 @@
 // and Techniques").
 #pragma once
 
-#include "raster/lanes.h"
-#include "raster/shadow/shadow_map.h"
+#include "raster/geometry/packet.h"
+#include "raster/shadows/shadow_map.h"
 
 namespace duet::raster {
 

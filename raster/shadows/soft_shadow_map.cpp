@@ -28,7 +28,7 @@ template <int kTaps> struct Taps {
             for (int tap = 0; tap < kTaps; ++tap) {
                 const auto k = static_cast<std::size_t>(tap), i = static_cast<std::size_t>(pattern);
                 const auto index = static_cast<std::uint32_t>(tap * kPatterns + pattern);
-                const Vec2 u = net_point(index, kAll);
+                const Vec2 u = sobol_net_point(index, kAll);
                 a[k][i] = u.x, b[k][i] = u.y;
                 // Offsets from the center's direction grow with the square, so contacts close by are found too.
                 const float s = (static_cast<float>(tap) + (static_cast<float>(pattern * 7 % kPatterns) + 0.5f) /
@@ -49,7 +49,7 @@ DepthCube::DepthCube(const CubeMap& cube)
     depths_.assign(6 * texels, 0);
     for (std::size_t face = 0; face < 6; ++face)
         if (cube.faces[face]) {
-            const ImageFloat& image = cube.faces[face]->nearness();
+            const ImageFloat& image = cube.faces[face]->reversed_depth();
             std::copy(image.begin(), image.end(), depths_.begin() + static_cast<std::ptrdiff_t>(face * texels));
         }
 }
@@ -113,7 +113,7 @@ struct SoftShadowMap::Receiver {
 
 SoftShadowMap::SoftShadowMap(const CubeMap& cube, const Emitter& emitter)
     : cube_(cube), kind_(emitter.kind), radius_(static_cast<float>(emitter.radius)) {
-    if (kind_ == Emitter::Kind::kBall) return;
+    if (kind_ == Emitter::Kind::kSphere) return;
     const Vec3d u = emitter.u, v = emitter.v, n = cross(u, v);
     const double over = 1 / dot(n, n);
     u_ = Vec3(cube_.frame.to_local(u)), v_ = Vec3(cube_.frame.to_local(v));
@@ -123,7 +123,7 @@ SoftShadowMap::SoftShadowMap(const CubeMap& cube, const Emitter& emitter)
 
 SoftShadowMap::Outline SoftShadowMap::outline_from(const Vec3s& p) const {
     const auto all = [](Vec3 w) { return Vec3s{Floats(w.x), Floats(w.y), Floats(w.z)}; };
-    if (kind_ != Emitter::Kind::kBall) {
+    if (kind_ != Emitter::Kind::kSphere) {
         const Floats towards = xsimd::select(p.z < Floats(0.0f), Floats(1.0f), Floats(-1.0f));
         return {all(corner_), all(u_), all(v_), all(dual_u_), all(dual_v_), false,
                 {Floats(0.0f), Floats(0.0f), towards}};

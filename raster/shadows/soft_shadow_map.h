@@ -3,7 +3,7 @@
 #pragma once
 
 #include "raster/gbuffer/screen_projection.h"
-#include "raster/shadow/soft_shadow.h"
+#include "raster/shadows/soft_shadow.h"
 
 #include <vector>
 

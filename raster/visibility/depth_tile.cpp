@@ -11,7 +11,7 @@ namespace duet::raster {
 /// the signs are unchanged, and the increments from pixel to pixel are a and b themselves. Within a block that an
 /// edge passes through, the values fit into 32 bits for triangles of any size: |a|, |b| < 2^25.2 (kGuardBand), so no
 /// sample of the block is farther than 14 · 2^25.2 < 2^30 from a sample of the other sign.
-struct DepthTile::Edges {
+struct DepthTile::TileEdges {
     using Values = std::array<std::int64_t, 3>;
     Values at; ///< at the tile's first sample
     Values right, down; ///< increments from block to block
@@ -21,30 +21,30 @@ struct DepthTile::Edges {
     /// in vain, but none is missed.
     std::array<float, 3> none, all;
     std::array<std::int32_t, 3> margin; ///< edge_margins
-    std::array<StripOf<std::int32_t>, 3> step; ///< from the first sample of a packet
-    std::array<std::int32_t, 3> next_strip;    ///< from a packet to the one below
+    std::array<PacketOf<std::int32_t>, 3> step; ///< from the first sample of a packet
+    std::array<std::int32_t, 3> next_packet;    ///< from a packet to the one below
 
-    Edges(const DrawTriangle& triangle, const PixelRect& rect, SampleOffset offset) {
+    TileEdges(const DrawTriangle& triangle, const PixelRect& rect, SampleOffset offset) {
         const auto& p = triangle.corners;
         const Values margins = edge_margins(triangle);
         constexpr std::int64_t kNever = 0x7fffffff, kLast = kBlock - 1, kZero = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             const EdgeFunction edge(p[k], p[(k + 1) % 3]);
             at[k] =
-                edge.at(std::int64_t{rect.x0} * kSubPixels + offset.x, std::int64_t{rect.y0} * kSubPixels + offset.y) >>
-                kSubPixelBits;
+                edge.at(std::int64_t{rect.x0} * kSubpixels + offset.x, std::int64_t{rect.y0} * kSubpixels + offset.y) >>
+                kSubpixelBits;
             right[k] = edge.a * kBlock;
             down[k] = edge.b * kBlock;
-            const std::int64_t well = triangle.sound ? (margins[k] + kSubPixels - 1) >> kSubPixelBits : kNever;
+            const std::int64_t well = triangle.plane_reliable ? (margins[k] + kSubpixels - 1) >> kSubpixelBits : kNever;
             const std::int64_t most =
                 std::abs(at[k]) + TileGrid::kTileSize * (std::abs(edge.a) + std::abs(edge.b)) + well;
             const float error = static_cast<float>(most) * 0x1p-20f;
             none[k] = static_cast<float>(-kLast * (std::max(edge.a, kZero) + std::max(edge.b, kZero))) - error;
             all[k] = static_cast<float>(well - kLast * (std::min(edge.a, kZero) + std::min(edge.b, kZero))) + error;
             margin[k] = static_cast<std::int32_t>(well);
-            next_strip[k] = static_cast<std::int32_t>(edge.b * kStripRows);
+            next_packet[k] = static_cast<std::int32_t>(edge.b * kPacketRows);
             const Ints a(static_cast<std::int32_t>(edge.a)), b(static_cast<std::int32_t>(edge.b));
-            for (std::size_t i = 0; i < kStrip; i += Ints::size)
+            for (std::size_t i = 0; i < kPacketSize; i += Ints::size)
                 store(step[k], i, a * load(kColumns<std::int32_t>, i) + b * load(kRows<std::int32_t>, i));
         }
     }
@@ -65,13 +65,13 @@ struct DepthTile::BlockRow {
     /// samples, well inside.
     std::uint32_t some = 0, all = 0;
 
-    BlockRow(const Edges& edges, int row) {
+    BlockRow(const TileEdges& edges, int row) {
         for (std::size_t i = 0; i < kBlocks; i += Floats::size) {
             const Floats column = Floats::load_aligned(kLanesAsFloats.at(i));
             auto some_inside = column >= Floats(0.0f), all_inside = some_inside;
             for (std::size_t k = 0; k < 3; ++k) {
-                const Floats here = fused(Floats(static_cast<float>(edges.right[k])), column,
-                                          Floats(static_cast<float>(edges.at[k] + edges.down[k] * row)));
+                const Floats here = multiply_add(Floats(static_cast<float>(edges.right[k])), column,
+                                                 Floats(static_cast<float>(edges.at[k] + edges.down[k] * row)));
                 some_inside = some_inside && here >= Floats(edges.none[k]);
                 all_inside = all_inside && here >= Floats(edges.all[k]);
             }
@@ -82,24 +82,25 @@ struct DepthTile::BlockRow {
 };
 
 /// Holds the coverage of a block, one bit per sample: all covered samples, and those well inside.
-struct DepthTile::Covered {
+struct DepthTile::BlockCoverage {
     std::uint64_t some = ~std::uint64_t{0}, well_inside = some;
 
-    Covered() = default; ///< all samples
+    BlockCoverage() = default; ///< all samples
     bool all_well_inside() const { return well_inside == ~std::uint64_t{0}; }
     /// Computes the coverage from the edge values at the block's first sample, for the packets of rows y0 to y1.
     /// The other packets stay empty.
-    Covered(const Edges& edges, const std::array<std::int32_t, 3>& at, int y0, int y1) : some(0), well_inside(0) {
+    BlockCoverage(const TileEdges& edges, const std::array<std::int32_t, 3>& at, int y0, int y1)
+        : some(0), well_inside(0) {
         const Ints zero(0);
-        for (int strip = y0 / kStripRows; strip <= y1 / kStripRows; ++strip)
-            for (std::size_t i = 0; i < kStrip; i += Ints::size) {
+        for (int packet = y0 / kPacketRows; packet <= y1 / kPacketRows; ++packet)
+            for (std::size_t i = 0; i < kPacketSize; i += Ints::size) {
                 const auto value = [&](std::size_t k) {
-                    return Ints(at[k] + strip * edges.next_strip[k]) + load(edges.step[k], i);
+                    return Ints(at[k] + packet * edges.next_packet[k]) + load(edges.step[k], i);
                 };
                 const Ints e0 = value(0), e1 = value(1), e2 = value(2);
                 const auto inside =
                     e0 >= Ints(edges.margin[0]) && e1 >= Ints(edges.margin[1]) && e2 >= Ints(edges.margin[2]);
-                const std::size_t first = static_cast<std::size_t>(strip) * kStrip + i;
+                const std::size_t first = static_cast<std::size_t>(packet) * kPacketSize + i;
                 some |= std::uint64_t{lane_bits(min(min(e0, e1), e2) >= zero)} << first;
                 well_inside |= std::uint64_t{lane_bits(inside)} << first;
             }
@@ -111,25 +112,26 @@ void DepthTile::reset(const PixelRect& rect, SampleOffset offset, const Viewport
     offset_ = offset;
     viewport_ = viewport;
     farthest_.fill(0);
-    partial_.fill(0);
+    draws_since_farthest_.fill(0);
     drawn_.fill(false);
 }
 
-void DepthTile::empty(std::size_t block) {
-    std::fill_n(nearness_.begin() + static_cast<std::ptrdiff_t>(block * kBlockSamples), kBlockSamples, 0.0f);
+void DepthTile::clear_block(std::size_t block) {
+    std::fill_n(reversed_depth_.begin() + static_cast<std::ptrdiff_t>(block * kBlockSamples), kBlockSamples, 0.0f);
     std::fill_n(ids_.begin() + static_cast<std::ptrdiff_t>(block * kBlockSamples), kBlockSamples,
                 static_cast<std::int32_t>(kNoTriangle));
-    constexpr std::size_t kStrips = kBlockSamples / kStrip;
-    std::fill_n(inside_.begin() + static_cast<std::ptrdiff_t>(block * kStrips), kStrips, std::uint16_t{0});
+    constexpr std::size_t kPacketsPerBlock = kBlockSamples / kPacketSize;
+    std::fill_n(inside_.begin() + static_cast<std::ptrdiff_t>(block * kPacketsPerBlock), kPacketsPerBlock,
+                std::uint16_t{0});
 }
 
-void DepthTile::empty_undrawn() {
+void DepthTile::clear_undrawn() {
     for (std::size_t block = 0; block < drawn_.size(); ++block)
-        if (!drawn_[block]) empty(block);
+        if (!drawn_[block]) clear_block(block);
 }
 
 /// Returns one bit per block of a row whose farthest sample is not nearer than `nearest`.
-std::uint32_t DepthTile::not_hidden(int row, float nearest) const {
+std::uint32_t DepthTile::unoccluded_blocks(int row, float nearest) const {
     std::uint32_t hidden = 0;
     for (std::size_t i = 0; i < kBlocks; i += Floats::size)
         hidden |=
@@ -140,12 +142,12 @@ std::uint32_t DepthTile::not_hidden(int row, float nearest) const {
 
 /// Evaluates the reversed depth over kSide × kSide blocks; in an orthographic view the plane is its inverse. The
 /// value of a sample is the sum of a column term and a row term.
-template <std::size_t kSide> struct DepthTile::Nearness {
+template <std::size_t kSide> struct DepthTile::DepthEvaluator {
     const Viewport& viewport;
     alignas(64) std::array<double, kSide * kBlock> columns, rows;
 
     /// (x, y) is the position of the first block's first sample relative to the plane's origin.
-    Nearness(const NearnessPlane& plane, const Viewport& viewport_, double x, double y) : viewport(viewport_) {
+    DepthEvaluator(const DepthPlane& plane, const Viewport& viewport_, double x, double y) : viewport(viewport_) {
         for (std::size_t i = 0; i < columns.size(); i += Doubles::size) {
             const Doubles number =
                 Doubles(static_cast<double>(i / kBlock * kBlock)) + load(kColumns<double>, i % kBlock);
@@ -160,43 +162,45 @@ template <std::size_t kSide> struct DepthTile::Nearness {
                                   Doubles::load_aligned(&columns[block % kSide * kBlock + first % kBlock]);
             return viewport.orthographic ? Doubles(viewport.near) / value : value;
         };
-        const Floats nearness = narrowed(half(i), half(i + Doubles::size));
-        return nearness;
+        const Floats reversed_depth = narrowed(half(i), half(i + Doubles::size));
+        return reversed_depth;
     }
 };
 
-/// Depth-tests one batch of samples from `place` on against a triangle. `lanes` selects the samples that it covers,
-/// well inside.
+/// Depth-tests one batch of samples from `sample_index` on against a triangle. `lanes` selects the samples that it
+/// covers, well inside.
 template <typename Lanes>
-void DepthTile::keep_nearest(std::size_t place, std::int32_t number, const Floats& nearness, const Lanes& lanes) {
-    const Ints id(number), id_before = Ints::load_aligned(&ids_[place]);
-    const Floats before = Floats::load_aligned(&nearness_[place]);
+void DepthTile::depth_test_batch(std::size_t sample_index, std::int32_t number, const Floats& reversed_depth,
+                                 const Lanes& lanes) {
+    const Ints id(number), id_before = Ints::load_aligned(&ids_[sample_index]);
+    const Floats before = Floats::load_aligned(&reversed_depth_[sample_index]);
     // Nonnegative floats compare like their bits. A lower id wins a tie, so it is compared with the predecessor of
     // the stored float. (Two comparisons joined by "or" would form a longer dependency chain.)
-    const Ints bits = xsimd::bitwise_cast<Ints>(nearness);
+    const Ints bits = xsimd::bitwise_cast<Ints>(reversed_depth);
     Ints to_beat = xsimd::bitwise_cast<Ints>(before);
     to_beat = xsimd::select(id < id_before, to_beat - Ints(1), to_beat);
     const auto wins = xsimd::bool_cast(xsimd::select(xsimd::bool_cast(lanes), bits, Ints(-1)) > to_beat);
-    xsimd::select(wins, nearness, before).store_aligned(&nearness_[place]);
-    xsimd::select(xsimd::bool_cast(wins), id, id_before).store_aligned(&ids_[place]);
-    inside_[place / kStrip] |= static_cast<std::uint16_t>(lane_bits(wins) << place % kStrip);
+    xsimd::select(wins, reversed_depth, before).store_aligned(&reversed_depth_[sample_index]);
+    xsimd::select(xsimd::bool_cast(wins), id, id_before).store_aligned(&ids_[sample_index]);
+    inside_[sample_index / kPacketSize] |= static_cast<std::uint16_t>(lane_bits(wins) << sample_index % kPacketSize);
 }
 
-/// Draws the samples of one packet of a block, from `first` on. nearness_at(i) returns the reversed depths of the
+/// Draws the samples of one packet of a block, from `first` on. depth_at(i) returns the reversed depths of the
 /// samples from the i-th on. (It is inlined like draw_block(), because calls would cost a tenth of the frame time.)
-template <typename NearnessAt>
-[[gnu::always_inline]] inline void DepthTile::draw_strip(std::size_t block, std::size_t first, std::uint64_t samples,
-                                                         std::uint32_t id, const NearnessAt& nearness_at) {
-    for (std::size_t i = first; i < first + kStrip; i += Floats::size) {
+template <typename DepthAt>
+[[gnu::always_inline]] inline void DepthTile::draw_packet(std::size_t block, std::size_t first, std::uint64_t samples,
+                                                          std::uint32_t id, const DepthAt& depth_at) {
+    for (std::size_t i = first; i < first + kPacketSize; i += Floats::size) {
         const auto here = static_cast<std::uint32_t>(samples >> i) & ((1u << Floats::size) - 1);
-        keep_nearest(block * kBlockSamples + i, static_cast<std::int32_t>(id), nearness_at(i), lanes_from<float>(here));
+        depth_test_batch(block * kBlockSamples + i, static_cast<std::int32_t>(id), depth_at(i),
+                         lanes_from<float>(here));
     }
 }
 
-void DepthTile::draw(const DrawTriangle& triangle, const WholeTriangles& whole) {
+void DepthTile::draw(const DrawTriangle& triangle, const UnclippedTriangles& whole) {
     const PixelRect r = intersect(rect_, pixels_within(triangle.corners, offset_));
     if (r.empty()) return;
-    const Edges edges(triangle, rect_, offset_);
+    const TileEdges edges(triangle, rect_, offset_);
     const int first_column = (r.x0 - rect_.x0) / kBlock, last_column = (r.x1 - 1 - rect_.x0) / kBlock;
     const std::uint32_t touched = (2u << last_column) - (1u << first_column);
     const Origin from = origin(triangle.corners, viewport_);
@@ -206,11 +210,12 @@ void DepthTile::draw(const DrawTriangle& triangle, const WholeTriangles& whole) 
         const BlockRow blocks(edges, row);
         const int top = rect_.y0 + row * kBlock;
         const int y0 = std::max(r.y0 - top, 0), y1 = std::min(r.y1 - top, kBlock) - 1;
-        for (std::uint32_t left = blocks.some & touched & not_hidden(row, triangle.nearest); left != 0;
+        for (std::uint32_t left = blocks.some & touched & unoccluded_blocks(row, triangle.nearest); left != 0;
              left &= left - 1) {
             const int column = std::countr_zero(left);
-            const bool all = (blocks.all >> column & 1) && triangle.sound;
-            const Covered covered = all ? Covered() : Covered(edges, edges.at_block(column, row), y0, y1);
+            const bool all = (blocks.all >> column & 1) && triangle.plane_reliable;
+            const BlockCoverage covered =
+                all ? BlockCoverage() : BlockCoverage(edges, edges.at_block(column, row), y0, y1);
             if (covered.some != 0)
                 draw_block(triangle, whole, static_cast<std::size_t>(row * kBlocks + column), covered,
                            first + Vec2d(column, row) * double{kBlock});
@@ -219,30 +224,31 @@ void DepthTile::draw(const DrawTriangle& triangle, const WholeTriangles& whole) 
 }
 
 /// Draws the covered samples of a block. `first` is its first sample, relative to the plane's origin.
-[[gnu::always_inline]] inline void DepthTile::draw_block(const DrawTriangle& triangle, const WholeTriangles& whole,
-                                                         std::size_t block, const Covered& covered, Vec2d first) {
-    open(block);
-    const Nearness<1> nearness(triangle.nearness, viewport_, first.x, first.y);
+[[gnu::always_inline]] inline void DepthTile::draw_block(const DrawTriangle& triangle, const UnclippedTriangles& whole,
+                                                         std::size_t block, const BlockCoverage& covered, Vec2d first) {
+    begin_block(block);
+    const DepthEvaluator<1> reversed_depth(triangle.depth_plane, viewport_, first.x, first.y);
     // Process all packets, because a branch on their coverage would be mispredicted.
-    for (std::size_t strip = 0; strip < kBlockSamples; strip += kStrip)
-        draw_strip(block, strip, covered.well_inside, triangle.id, [&](std::size_t i) { return nearness.at(0, i); });
+    for (std::size_t packet = 0; packet < kBlockSamples; packet += kPacketSize)
+        draw_packet(block, packet, covered.well_inside, triangle.id,
+                    [&](std::size_t i) { return reversed_depth.at(0, i); });
     if (covered.some != covered.well_inside)
         draw_edge_samples(triangle, whole, block, covered.some & ~covered.well_inside);
     constexpr std::uint8_t kOften = 16;
-    if (covered.all_well_inside() || ++partial_[block] >= kOften) find_farthest(block);
+    if (covered.all_well_inside() || ++draws_since_farthest_[block] >= kOften) update_farthest(block);
 }
 
-void DepthTile::draw_edge_samples(const DrawTriangle& triangle, const WholeTriangles& whole, std::size_t block,
+void DepthTile::draw_edge_samples(const DrawTriangle& triangle, const UnclippedTriangles& whole, std::size_t block,
                                   std::uint64_t samples) {
-    const WholeTriangle all = whole.whole(triangle.id);
+    const UnclippedTriangle all = whole.unclipped(triangle.id);
     const Interpolation at = interpolation(all, triangle.corners, viewport_);
     const int x0 = rect_.x0 + static_cast<int>(block % kBlocks) * kBlock,
               y0 = rect_.y0 + static_cast<int>(block / kBlocks) * kBlock;
     for (; samples != 0; samples &= samples - 1) {
         const int bit = std::countr_zero(samples), x = x0 + bit % kBlock, y = y0 + bit / kBlock;
-        const Interpolated here = at.at(offset_.position(x, y), all.piece);
-        keep_one(block * kBlockSamples + static_cast<std::size_t>(bit), triangle.id,
-                 kept_nearness(here.nearness(viewport_.near)), false);
+        const Interpolated here = at.at(offset_.position(x, y), all.triangle_kind);
+        depth_test_sample(block * kBlockSamples + static_cast<std::size_t>(bit), triangle.id,
+                          to_stored_depth(here.reversed_depth(viewport_.near)), false);
     }
 }
 
@@ -250,7 +256,7 @@ namespace {
 
 /// Splits a box of 8 × 8 samples, which overlaps up to 2 × 2 blocks, into its samples in each block. The box's
 /// first sample is `left` samples to the right of and `top` samples below the first block's.
-std::array<std::uint64_t, 4> over_blocks(std::uint64_t samples, int left, int top) {
+std::array<std::uint64_t, 4> split_over_blocks(std::uint64_t samples, int left, int top) {
     constexpr std::uint64_t kFirstColumn = 0x0101010101010101;
     const std::uint64_t in_left = (samples & kFirstColumn * (0xffu >> left)) << left,
                         in_right = samples >> (8 - left) & kFirstColumn * (0xffu >> (8 - left));
@@ -260,59 +266,59 @@ std::array<std::uint64_t, 4> over_blocks(std::uint64_t samples, int left, int to
 }
 
 /// Returns one bit per packet of the blocks that contains any of the samples.
-std::uint32_t strips_of(const std::array<std::uint64_t, 4>& samples) {
-    std::uint32_t strips = 0;
+std::uint32_t packets_of(const std::array<std::uint64_t, 4>& samples) {
+    std::uint32_t packets = 0;
     for (std::size_t k = 0; k < samples.size(); ++k) {
         constexpr std::uint64_t kAllButLast = 0x7fff7fff7fff7fff;
         const std::uint64_t any = (((samples[k] & kAllButLast) + kAllButLast) | samples[k]) & ~kAllButLast;
         // Move bits 15, 31, 47 and 63 to four adjacent bits.
-        strips |= static_cast<std::uint32_t>((any >> 15) * 0x0001000200040008 >> 48 & 0xf) << 4 * k;
+        packets |= static_cast<std::uint32_t>((any >> 15) * 0x0001000200040008 >> 48 & 0xf) << 4 * k;
     }
-    return strips;
+    return packets;
 }
 
 } // namespace
 
 // The function has one loop over the packets of all blocks, so the CPU can mispredict only its trip count.
-void DepthTile::draw(const Patch& patch) {
-    const int x = patch.x - rect_.x0, y = patch.y - rect_.y0, left = x & 7, top = y & 7;
+void DepthTile::draw(const CoverageMask& mask) {
+    const int x = mask.x - rect_.x0, y = mask.y - rect_.y0, left = x & 7, top = y & 7;
     const int column = x >> 3, row = y >> 3; // of the first block, which may lie just outside the tile
-    const std::array<std::uint64_t, 4> samples = over_blocks(patch.samples, left, top);
+    const std::array<std::uint64_t, 4> samples = split_over_blocks(mask.samples, left, top);
     const std::uint32_t in_tile = ((column >= 0 ? 0x0f0fu : 0) | (column + 1 < kBlocks ? 0xf0f0u : 0)) &
                                   ((row >= 0 ? 0x00ffu : 0) | (row + 1 < kBlocks ? 0xff00u : 0));
-    const Nearness<2> nearness(patch.nearness, viewport_, -left, -top);
-    for (std::uint32_t strips = strips_of(samples) & in_tile; strips != 0; strips &= strips - 1) {
-        const auto strip = static_cast<std::size_t>(std::countr_zero(strips)), part = strip / 4;
-        const auto block = static_cast<std::size_t>((row + static_cast<int>(part / 2)) * kBlocks + column +
-                                                    static_cast<int>(part % 2));
-        open(block);
-        draw_strip(block, strip % 4 * kStrip, samples[part], patch.id,
-                   [&](std::size_t i) { return nearness.at(part, i); });
+    const DepthEvaluator<2> reversed_depth(mask.depth_plane, viewport_, -left, -top);
+    for (std::uint32_t packets = packets_of(samples) & in_tile; packets != 0; packets &= packets - 1) {
+        const auto packet = static_cast<std::size_t>(std::countr_zero(packets)), quarter = packet / 4;
+        const auto block = static_cast<std::size_t>((row + static_cast<int>(quarter / 2)) * kBlocks + column +
+                                                    static_cast<int>(quarter % 2));
+        begin_block(block);
+        draw_packet(block, packet % 4 * kPacketSize, samples[quarter], mask.id,
+                    [&](std::size_t i) { return reversed_depth.at(quarter, i); });
     }
 }
 
 void DepthTile::draw(std::span<const Fragment> fragments) {
-    for (const Fragment& f : fragments) keep_one(f.place, f.id, f.nearness, f.inside);
+    for (const Fragment& f : fragments) depth_test_sample(f.sample_index, f.id, f.reversed_depth, f.inside);
 }
 
-void DepthTile::keep_one(std::size_t place, std::uint32_t id, float nearness, bool inside) {
-    open(place / kBlockSamples);
+void DepthTile::depth_test_sample(std::size_t sample_index, std::uint32_t id, float reversed_depth, bool inside) {
+    begin_block(sample_index / kBlockSamples);
     const auto number = static_cast<std::int32_t>(id);
-    const bool tie_won = nearness == nearness_[place] && number < ids_[place];
-    if (!(nearness > nearness_[place] || tie_won)) return;
-    nearness_[place] = nearness;
-    ids_[place] = number;
-    const auto bit = static_cast<std::uint16_t>(1u << place % kStrip);
-    std::uint16_t& strip = inside_[place / kStrip];
-    strip = static_cast<std::uint16_t>(inside ? strip | bit : strip & ~bit);
+    const bool tie_won = reversed_depth == reversed_depth_[sample_index] && number < ids_[sample_index];
+    if (!(reversed_depth > reversed_depth_[sample_index] || tie_won)) return;
+    reversed_depth_[sample_index] = reversed_depth;
+    ids_[sample_index] = number;
+    const auto bit = static_cast<std::uint16_t>(1u << sample_index % kPacketSize);
+    std::uint16_t& packet = inside_[sample_index / kPacketSize];
+    packet = static_cast<std::uint16_t>(inside ? packet | bit : packet & ~bit);
 }
 
-void DepthTile::find_farthest(std::size_t block) {
+void DepthTile::update_farthest(std::size_t block) {
     Floats least(1.0f);
     for (std::size_t i = 0; i < kBlock * kBlock; i += Floats::size)
-        least = min(least, Floats::load_aligned(&nearness_[block * kBlock * kBlock + i]));
-    farthest_[block] = lowest(least);
-    partial_[block] = 0;
+        least = min(least, Floats::load_aligned(&reversed_depth_[block * kBlock * kBlock + i]));
+    farthest_[block] = reduce_min(least);
+    draws_since_farthest_[block] = 0;
 }
 
 } // namespace duet::raster

@@ -12,8 +12,8 @@ bool nearer(const Hit& a, const Hit& b) {
 
 } // namespace
 
-bool touches(const Geometry& geometry, std::size_t tile) {
-    return !geometry.outlines.tile(tile).empty() || !geometry.fragments.tile(tile).empty() ||
+bool overlaps_tile(const Geometry& geometry, std::size_t tile) {
+    return !geometry.triangle_lists.tile(tile).empty() || !geometry.fragment_lists.tile(tile).empty() ||
            (!geometry.spheres.empty() && !geometry.sphere_bins.tile(tile).empty());
 }
 
@@ -21,36 +21,37 @@ HitLists::HitLists(const Geometry& geometry, const PassView& view, SampleOffset 
                    const HitTile& tile)
     : geometry_(geometry), view_(view), offset_(offset), tile_index_(tile_index), tile_(tile) {
     const PixelRect& r = tile.rect();
-    if (touches(geometry, tile_index))
+    if (overlaps_tile(geometry, tile_index))
         pixels_.resize(static_cast<std::size_t>(r.width()) * static_cast<std::size_t>(r.height()));
 }
 
 void HitLists::draw() {
-    for (const TileLists::Item& item : geometry_.outlines.tile(tile_index_)) {
+    for (const TileLists::Item& item : geometry_.triangle_lists.tile(tile_index_)) {
         const Batch& batch = geometry_.batches[item.batch];
-        for (std::uint32_t k = 0; k < item.count; ++k) draw_outline(batch.triangles[batch.order[item.first + k]]);
+        for (std::uint32_t k = 0; k < item.count; ++k) draw_triangle(batch.triangles[batch.order[item.first + k]]);
     }
     const PixelRect& r = tile_.rect();
-    for (const TileLists::Item& item : geometry_.fragments.tile(tile_index_)) {
+    for (const TileLists::Item& item : geometry_.fragment_lists.tile(tile_index_)) {
         const Batch& batch = geometry_.batches[item.batch];
         for (std::uint32_t k = 0; k < item.count; ++k) {
             const Fragment& fragment = batch.fragments[item.first + k];
-            add_triangle(fragment.id, r.x0 + place_x(fragment.place), r.y0 + place_y(fragment.place));
+            add_triangle(fragment.id, r.x0 + tile_sample_x(fragment.sample_index),
+                         r.y0 + tile_sample_y(fragment.sample_index));
         }
     }
     if (geometry_.spheres.empty()) return;
     for (const std::uint32_t i : geometry_.sphere_bins.tile(tile_index_)) draw_sphere(geometry_.spheres[i]);
 }
 
-void HitLists::draw_outline(const DrawTriangle& triangle) {
+void HitLists::draw_triangle(const DrawTriangle& triangle) {
     const auto& c = triangle.corners;
     const std::array<EdgeFunction, 3> edges{EdgeFunction(c[0], c[1]), EdgeFunction(c[1], c[2]),
                                             EdgeFunction(c[2], c[0])};
     const PixelRect r = intersect(tile_.rect(), pixels_within(c, offset_));
     for (int y = r.y0; y < r.y1; ++y)
         for (int x = r.x0; x < r.x1; ++x) {
-            const std::int64_t sx = std::int64_t{x} * kSubPixels + offset_.x,
-                               sy = std::int64_t{y} * kSubPixels + offset_.y;
+            const std::int64_t sx = std::int64_t{x} * kSubpixels + offset_.x,
+                               sy = std::int64_t{y} * kSubpixels + offset_.y;
             if (std::all_of(edges.begin(), edges.end(), [&](const EdgeFunction& e) { return e.at(sx, sy) >= 0; }))
                 add_triangle(triangle.id, x, y);
         }
@@ -74,19 +75,20 @@ void HitLists::add_triangle(std::uint32_t id, int x, int y) {
     const Triangles& triangles = geometry_.triangles;
     const Run& run = triangles.run_of(id);
     const std::uint32_t index = Triangles::index(run, id);
-    const WholeTriangle whole = triangles.whole(run, index);
+    const UnclippedTriangle whole = triangles.unclipped(run, index);
     add(x, y,
-        hit_triangle(whole, triangles.objects[run.object].object, whole.piece == Piece::kTriangle ? index : index / 2,
-                     offset_.position(x, y), tile_.distance_per_depth(x, y), view_.pinhole.near));
+        hit_triangle(whole, triangles.objects[run.object].object,
+                     whole.triangle_kind == TriangleKind::kTriangle ? index : index / 2, offset_.position(x, y),
+                     tile_.distance_per_depth(x, y), view_.pinhole.near));
 }
 
 // Inserts a hit into the sorted list of a pixel's nearest unprocessed hits.
 void HitLists::add(int x, int y, const Hit& hit) {
     Pixel& p = pixel(x, y);
     if (p.done || !nearer(p.last, hit) || !nearer(hit, tile_.hit(x, y))) return;
-    if (p.count == kKept) {
+    if (p.count == kStored) {
         p.more = true;
-        if (!nearer(hit, p.nearest[kKept - 1])) return;
+        if (!nearer(hit, p.nearest[kStored - 1])) return;
         --p.count;
     }
     std::size_t i = p.count++;

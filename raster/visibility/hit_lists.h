@@ -1,7 +1,7 @@
 // Builds per-pixel lists of surfaces in front of the visible surface, sorted by depth.
 #pragma once
 
-#include "raster/visibility/cover.h"
+#include "raster/visibility/hit_tile.h"
 
 #include "common/image/image.h"
 #include "common/scene/scene.h"
@@ -11,11 +11,11 @@
 
 namespace duet::raster {
 
-/// Returns true if a geometry without coverage masks (Patch) has primitives that may overlap the tile.
-bool touches(const Geometry& geometry, std::size_t tile);
+/// Returns true if a geometry without coverage masks (CoverageMask) has primitives that may overlap the tile.
+bool overlaps_tile(const Geometry& geometry, std::size_t tile);
 
 /// Holds lists of Hits in front of the visible surface of each pixel, sorted front to back, one sample per pixel
-/// (Carpenter 1984, "The A-buffer, an Antialiased Hidden Surface Method"). A list stores the kKept nearest hits. If
+/// (Carpenter 1984, "The A-buffer, an Antialiased Hidden Surface Method"). A list stores the kStored nearest hits. If
 /// more are needed, the tile is drawn again for those behind them, so memory does not grow with the number of
 /// surfaces.
 class HitLists {
@@ -48,12 +48,12 @@ public:
     /// Calls take(x, y, hit) for the first hit of each pixel that stops its light. stops(x, y, left) decides this
     /// from the transmittance `left` of the surfaces up to and including this hit.
     template <typename Stops, typename Take>
-    void for_each_stop(const Scene& scene, const Stops& stops, const Take& take) {
+    void for_each_blocking_hit(const Scene& scene, const Stops& stops, const Take& take) {
         if (empty()) return;
         const PixelRect& r = tile_.rect();
-        ImageFloat through(r.width(), r.height(), 1.0f);
+        ImageFloat transmittance(r.width(), r.height(), 1.0f);
         for_each([&](int x, int y, const Hit& hit) {
-            float& left = through(x - r.x0, y - r.y0);
+            float& left = transmittance(x - r.x0, y - r.y0);
             left *= 1 - opacity(scene, tile_.ray(x, y), hit);
             if (!stops(x, y, left)) return false;
             take(x, y, hit);
@@ -62,16 +62,16 @@ public:
     }
 
 private:
-    static constexpr std::size_t kKept = 8;
+    static constexpr std::size_t kStored = 8;
     struct Pixel {
-        std::array<Hit, kKept> nearest;
+        std::array<Hit, kStored> nearest;
         std::uint32_t count = 0;
         bool more = false, done = false;
         Hit last{.t = -1}; ///< this hit and all nearer ones are processed
     };
 
     void draw();
-    void draw_outline(const DrawTriangle& triangle);
+    void draw_triangle(const DrawTriangle& triangle);
     void draw_sphere(const DrawSphere& sphere);
     void add_triangle(std::uint32_t id, int x, int y);
     void add(int x, int y, const Hit& hit);

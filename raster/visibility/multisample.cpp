@@ -8,8 +8,7 @@ namespace {
 /// Converts positions in sixteenths of a pixel, relative to the pixel center.
 std::vector<SampleOffset> pattern(std::initializer_list<std::array<int, 2>> sixteenths) {
     std::vector<SampleOffset> result;
-    for (const auto& [x, y] : sixteenths)
-        result.push_back({(x + 8) * (kSubPixels / 16), (y + 8) * (kSubPixels / 16)});
+    for (const auto& [x, y] : sixteenths) result.push_back({(x + 8) * (kSubpixels / 16), (y + 8) * (kSubpixels / 16)});
     return result;
 }
 
@@ -36,33 +35,33 @@ Layer& LayeredTile::layer_at(std::size_t i) {
     return *layers_[i];
 }
 
-void LayeredTile::add_one(std::uint32_t place, std::int32_t id, SampleOffset offset) {
+void LayeredTile::add_one(std::uint32_t sample_index, std::int32_t id, SampleOffset offset) {
     std::size_t i = 0;
-    while (i < layers_.size() && layers_[i]->counts_[place] > 0 && layers_[i]->ids_[place] != id) ++i;
+    while (i < layers_.size() && layers_[i]->counts_[sample_index] > 0 && layers_[i]->ids_[sample_index] != id) ++i;
     Layer& layer = layer_at(i);
-    if (layer.counts_[place]++ == 0) {
-        layer.ids_[place] = id;
-        layer.sum_x_[place] = layer.sum_y_[place] = 0;
-        layer.used_[place / kStrip] = true;
+    if (layer.counts_[sample_index]++ == 0) {
+        layer.ids_[sample_index] = id;
+        layer.sum_x_[sample_index] = layer.sum_y_[sample_index] = 0;
+        layer.used_[sample_index / kPacketSize] = true;
     }
-    layer.sum_x_[place] += offset.x;
-    layer.sum_y_[place] += offset.y;
+    layer.sum_x_[sample_index] += offset.x;
+    layer.sum_y_[sample_index] += offset.y;
 }
 
 void LayeredTile::add(const DepthTile& tile) {
     const SampleOffset offset = tile.offset();
     const Ints x(offset.x), y(offset.y), one(1);
-    for (std::uint32_t first = 0; first < kTileSamples; first += static_cast<std::uint32_t>(kStrip)) {
-        if (rect_.x0 + place_x(first) >= rect_.x1 || rect_.y0 + place_y(first) >= rect_.y1) continue;
-        bool same = !layers_.empty() && layers_[0]->used_[first / kStrip];
-        for (std::size_t i = first; same && i < first + kStrip; i += Ints::size)
+    for (std::uint32_t first = 0; first < kTileSamples; first += static_cast<std::uint32_t>(kPacketSize)) {
+        if (rect_.x0 + tile_sample_x(first) >= rect_.x1 || rect_.y0 + tile_sample_y(first) >= rect_.y1) continue;
+        bool same = !layers_.empty() && layers_[0]->used_[first / kPacketSize];
+        for (std::size_t i = first; same && i < first + kPacketSize; i += Ints::size)
             same = xsimd::all(Ints::load_aligned(&layers_[0]->ids_[i]) == Ints::load_aligned(tile.ids() + i));
         if (!same) { // the first sample, or more than one primitive
-            for (std::uint32_t i = first; i < first + kStrip; ++i) add_one(i, tile.ids()[i], offset);
+            for (std::uint32_t i = first; i < first + kPacketSize; ++i) add_one(i, tile.ids()[i], offset);
             continue;
         }
         Layer& layer = *layers_[0];
-        for (std::size_t i = first; i < first + kStrip; i += Ints::size) {
+        for (std::size_t i = first; i < first + kPacketSize; i += Ints::size) {
             const auto add_to = [i](std::array<std::int32_t, kTileSamples>& sums, const Ints& by) {
                 (Ints::load_aligned(&sums[i]) + by).store_aligned(&sums[i]);
             };
@@ -73,20 +72,25 @@ void LayeredTile::add(const DepthTile& tile) {
     }
 }
 
-void LayeredTile::strip(std::size_t i, int x, int y, Strip& strip) const {
+void LayeredTile::layer_packet(std::size_t i, int x, int y, LayerPacket& layer_packet) const {
     const Layer& layer = *layers_[i];
-    const std::uint32_t first = place(x, y);
-    strip.place = {
-        .x = x, .y = y, .ids = nullptr, .nearness = nullptr, .offset = {}, .offsets = nullptr, .whole_pixels = true};
-    if (!layer.used_[first / kStrip]) return;
-    strip.place.ids = &layer.ids_[first];
-    for (std::size_t k = 0; k < kStrip; ++k) {
+    const std::uint32_t first = sample_index(x, y);
+    layer_packet.packet = {.x = x,
+                           .y = y,
+                           .ids = nullptr,
+                           .reversed_depth = nullptr,
+                           .offset = {},
+                           .offsets = nullptr,
+                           .whole_pixels = true};
+    if (!layer.used_[first / kPacketSize]) return;
+    layer_packet.packet.ids = &layer.ids_[first];
+    for (std::size_t k = 0; k < kPacketSize; ++k) {
         const int count = layer.counts_[first + k];
-        strip.offsets[k] = {};
+        layer_packet.offsets[k] = {};
         if (count == 0 || count == count_) continue;
-        strip.offsets[k] = {(layer.sum_x_[first + k] + count / 2) / count,
-                            (layer.sum_y_[first + k] + count / 2) / count};
-        strip.place.offsets = &strip.offsets;
+        layer_packet.offsets[k] = {(layer.sum_x_[first + k] + count / 2) / count,
+                                   (layer.sum_y_[first + k] + count / 2) / count};
+        layer_packet.packet.offsets = &layer_packet.offsets;
     }
 }
 

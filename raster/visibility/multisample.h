@@ -2,8 +2,8 @@
 // visible in the pixel is shaded once (Akeley 1993, "RealityEngine Graphics", §3.3).
 #pragma once
 
-#include "raster/visibility/strip_place.h"
 #include "raster/visibility/depth_tile.h"
+#include "raster/visibility/sample_packet.h"
 
 #include <vector>
 
@@ -21,15 +21,15 @@ const std::vector<SampleOffset>& multisample_pattern(int count);
 class Layer {
 public:
     /// Returns the number of the pixel's samples that see the primitive.
-    int count(std::uint32_t place) const { return counts_[place]; }
-    std::uint32_t id(std::uint32_t place) const { return static_cast<std::uint32_t>(ids_[place]); }
+    int count(std::uint32_t sample_index) const { return counts_[sample_index]; }
+    std::uint32_t id(std::uint32_t sample_index) const { return static_cast<std::uint32_t>(ids_[sample_index]); }
 
 private:
     friend class LayeredTile;
     static constexpr std::size_t kTile = kTileSamples;
     alignas(64) std::array<std::int32_t, kTile> ids_;
     alignas(64) std::array<std::int32_t, kTile> counts_, sum_x_, sum_y_; ///< sums of sample offsets
-    std::array<bool, kTile / kStrip> used_;                              ///< packets with any nonzero count
+    std::array<bool, kTile / kPacketSize> used_;                         ///< packets with any nonzero count
 };
 
 /// Holds all primitives visible at the samples of a tile's pixels. It allocates as many layers as the pixel with the
@@ -45,20 +45,20 @@ public:
     const PixelRect& rect() const { return rect_; }
     std::size_t layers() const { return layers_.size(); }
     const Layer& layer(std::size_t i) const { return *layers_[i]; }
-    /// Holds the input of shading for a packet of two rows of eight pixels in one layer. `place.ids` is null if the
-    /// layer has none of them. `offsets` stores the per-sample positions that `place` may point to.
-    struct Strip {
-        StripPlace place;
-        std::array<SampleOffset, kStrip> offsets;
+    /// Holds the input of shading for a packet of two rows of eight pixels in one layer. `packet.ids` is null if the
+    /// layer has none of them. `offsets` stores the per-sample positions that `packet` may point to.
+    struct LayerPacket {
+        SamplePacket packet;
+        std::array<SampleOffset, kPacketSize> offsets;
     };
-    /// Fills `strip` with the packet whose first pixel is (x, y).
-    void strip(std::size_t layer, int x, int y, Strip& strip) const;
-    std::uint32_t place(int x, int y) const {
-        return place_in_tile(static_cast<std::uint32_t>(x - rect_.x0), static_cast<std::uint32_t>(y - rect_.y0));
+    /// Fills `layer_packet` with the packet whose first pixel is (x, y).
+    void layer_packet(std::size_t layer, int x, int y, LayerPacket& layer_packet) const;
+    std::uint32_t sample_index(int x, int y) const {
+        return tile_sample_index(static_cast<std::uint32_t>(x - rect_.x0), static_cast<std::uint32_t>(y - rect_.y0));
     }
 
 private:
-    void add_one(std::uint32_t place, std::int32_t id, SampleOffset offset);
+    void add_one(std::uint32_t sample_index, std::int32_t id, SampleOffset offset);
     Layer& layer_at(std::size_t i);
 
     PixelRect rect_;

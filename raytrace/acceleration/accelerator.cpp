@@ -1,10 +1,10 @@
 #include "raytrace/acceleration/accelerator.h"
 
-#include "common/scene/holes.h"
+#include "common/scene/alpha_mask.h"
 #include "common/system/error.h"
+#include "raytrace/acceleration/bvh_input.h"
 #include "raytrace/acceleration/bvh_packet.h"
 #include "raytrace/acceleration/bvh_stream.h"
-#include "raytrace/acceleration/gatherer.h"
 #include "raytrace/acceleration/sort_by_class.h"
 
 #include <algorithm>
@@ -16,34 +16,34 @@ namespace duet::raytrace {
 
 namespace {
 
-bool stands_in_world(const Object& object) { return object.identity && !object.moving; }
+bool is_untransformed(const Object& object) { return object.identity && !object.moving; }
 
 } // namespace
 
 Accelerator::Accelerator(const Scene& scene, int threads, BvhQuality quality)
-    : scene_(scene), quality_(quality), shapes_(scene.shapes.size()), holes_(scene.needs.alpha) {
-    Gatherer world(quality, threads);
+    : scene_(scene), quality_(quality), shapes_(scene.shapes.size()), has_alpha_masks_(scene.needs.alpha) {
+    BvhInput world(quality, threads);
     for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
         const Object& object = scene.objects[i];
         const Shape& shape = scene.shapes[object.shape];
         primitives_ += primitive_count(shape);
-        if (stands_in_world(object)) {
+        if (is_untransformed(object)) {
             world.add_shape(shape, i);
             continue;
         }
         world.add_instance(object, i, shape);
         if (!shapes_[object.shape].empty()) continue;
-        Gatherer own(quality, threads);
+        BvhInput own(quality, threads);
         own.add_shape(shape, kNoObject);
         shapes_[object.shape] = own.build();
     }
     world_ = world.build();
-    few_primitives_ = !world_.use_tree() && world_.instances.empty() && !holes_;
-    streams_ = streamable(world_);
+    few_primitives_ = !world_.use_tree() && world_.instances.empty() && !has_alpha_masks_;
+    use_streams_ = streamable(world_);
 }
 
 // Transforms the ray to the instance's object space at the ray's time.
-Ray Accelerator::inside(const BvhInstance& instance, const Ray& ray) const {
+Ray Accelerator::to_instance_space(const BvhInstance& instance, const Ray& ray) const {
     const Object& object = scene_.objects[instance.object];
     if (!object.moving) return to_object_space(ray, object.to_world, object.to_object);
     const ObjectTransform transform = object_transform(object, ray.time);
@@ -54,13 +54,13 @@ Ray Accelerator::inside(const BvhInstance& instance, const Ray& ray) const {
 template <bool kAny> auto Accelerator::instance_test(const Ray& ray) const {
     return [this, &ray](const BvhInstance& instance, Hit& so_far) {
         const auto no_instance = [](const BvhInstance&, Hit&) { return false; };
-        const Ray its = inside(instance, ray);
-        if (!traceable(its)) return false;
+        const Ray local = to_instance_space(instance, ray);
+        if (!traceable(local)) return false;
         const Bvh& shape = shapes_[instance.shape];
         if constexpr (kAny)
-            return find_any(shape, its, instance.object, so_far, no_instance);
+            return find_any(shape, local, instance.object, so_far, no_instance);
         else
-            return find_closest(shape, its, instance.object, so_far, no_instance);
+            return find_closest(shape, local, instance.object, so_far, no_instance);
     };
 }
 
@@ -74,16 +74,16 @@ struct Accelerator::PacketInstances {
 
     void operator()(const BvhInstance& instance, unsigned active, PacketHits& best) const {
         const Bvh& shape = scene.shapes_[instance.shape];
-        std::array<Ray, kSize> its;
+        std::array<Ray, kSize> local;
         // Lanes that are not active get the ray of the first active one.
-        its.fill(scene.inside(instance, rays[static_cast<std::size_t>(std::countr_zero(active))]));
+        local.fill(scene.to_instance_space(instance, rays[static_cast<std::size_t>(std::countr_zero(active))]));
         for (unsigned some = active & (active - 1); some != 0; some &= some - 1) {
             const auto ray = static_cast<std::size_t>(std::countr_zero(some));
-            its[ray] = scene.inside(instance, rays[ray]);
+            local[ray] = scene.to_instance_space(instance, rays[ray]);
         }
-        const RayPacket packet(its, shape.bounds);
+        const RayPacket packet(local, shape.bounds);
         if (packet.coherent()) {
-            PacketTraversal(shape, packet, its, active, instance.object, NoInstances(), best).run();
+            PacketTraversal(shape, packet, local, active, instance.object, NoInstances(), best).run();
             return;
         }
         for (; active != 0; active &= active - 1) {
@@ -96,7 +96,7 @@ struct Accelerator::PacketInstances {
 };
 
 // Finds the closest hit without regard to alpha: transparent points count as hits.
-Hit Accelerator::first(const Ray& ray) const {
+Hit Accelerator::closest_without_alpha(const Ray& ray) const {
     Hit best;
     best.t = min(ray.t_max, std::numeric_limits<float>::max()); // a distance that overflowed is no hit
     if (!traceable(ray)) return {};
@@ -104,31 +104,31 @@ Hit Accelerator::first(const Ray& ray) const {
 }
 
 Hit Accelerator::closest(const Ray& ray) const {
-    const Hit hit = first(ray);
-    return holes_ ? beyond_holes(ray, hit) : hit;
+    const Hit hit = closest_without_alpha(ray);
+    return has_alpha_masks_ ? skip_transparent(ray, hit) : hit;
 }
 
 // Steps from `hit` to the first hit that the ray does not pass through. Each hit lies beyond the previous one, so
 // the loop ends.
-Hit Accelerator::beyond_holes(const Ray& ray, Hit hit) const {
+Hit Accelerator::skip_transparent(const Ray& ray, Hit hit) const {
     Ray rest = ray;
-    while (hit.valid() && passes_through(scene_, ray, hit)) {
+    while (hit.valid() && passes_alpha_mask(scene_, ray, hit)) {
         rest.t_min = hit.t;
-        hit = first(rest);
+        hit = closest_without_alpha(rest);
     }
     return hit;
 }
 
 // Returns what find_any returns, but respects alpha by stepping through closest hits.
-bool Accelerator::occluded_beyond_holes(Ray ray, const Hit& end) const {
+bool Accelerator::occluded_with_alpha(Ray ray, const Hit& end) const {
     ray.t_max = min(ray.t_max, end.t);
     const auto before_end = [&](const Hit& hit) {
         return hit.valid() &&
                (hit.t < end.t || std::pair(hit.object, hit.primitive) < std::pair(end.object, end.primitive));
     };
-    for (Hit hit = first(ray); before_end(hit); hit = first(ray)) {
+    for (Hit hit = closest_without_alpha(ray); before_end(hit); hit = closest_without_alpha(ray)) {
         const bool is_end = hit.object == end.object && hit.primitive == end.primitive;
-        if (!is_end && !passes_through(scene_, ray, hit)) return true;
+        if (!is_end && !passes_alpha_mask(scene_, ray, hit)) return true;
         ray.t_min = hit.t;
     }
     return false;
@@ -137,23 +137,23 @@ bool Accelerator::occluded_beyond_holes(Ray ray, const Hit& end) const {
 void Accelerator::closest(std::span<const Ray> rays, std::span<Hit> hits) const {
     constexpr std::size_t kSize = RayPacket::kSize;
     constexpr unsigned kAll = (1u << kSize) - 1;
-    const RayPacket::Batch most(std::numeric_limits<float>::max()); // a distance that overflowed is no hit
+    const RayPacket::Batch max_distance(std::numeric_limits<float>::max()); // a distance that overflowed is no hit
     std::size_t done = 0;
     for (; rays.size() - done >= kSize; done += kSize) {
         const auto some = rays.subspan(done).first<kSize>();
         const auto their_hits = hits.subspan(done).first<kSize>();
         const RayPacket packet(some, world_.bounds);
         if (!packet.coherent()) {
-            for (std::size_t i = 0; i < kSize; ++i) their_hits[i] = first(some[i]);
+            for (std::size_t i = 0; i < kSize; ++i) their_hits[i] = closest_without_alpha(some[i]);
             continue;
         }
-        PacketHits best(xsimd::min(packet.t_max(), most));
+        PacketHits best(xsimd::min(packet.t_max(), max_distance));
         PacketTraversal(world_, packet, some, kAll, kNoObject, PacketInstances{*this, some}, best).run();
         best.store(their_hits);
     }
-    for (; done < rays.size(); ++done) hits[done] = first(rays[done]);
-    if (holes_)
-        for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = beyond_holes(rays[i], hits[i]);
+    for (; done < rays.size(); ++done) hits[done] = closest_without_alpha(rays[done]);
+    if (has_alpha_masks_)
+        for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = skip_transparent(rays[i], hits[i]);
 }
 
 namespace {
@@ -171,50 +171,50 @@ std::size_t shear_class(const Ray& ray) {
 }
 
 // Rays are sorted by class in chunks of at most this size.
-constexpr std::size_t kMostSorted = 512;
+constexpr std::size_t kMaxSorted = 512;
 
 } // namespace
 
 // Tests up to one packet of rays of the same shear class against the whole primitive list. The rays may otherwise be
 // incoherent.
-void Accelerator::closest_in_list(std::span<const Ray> rays, std::span<const std::uint32_t> which,
+void Accelerator::closest_in_list(std::span<const Ray> rays, std::span<const std::uint32_t> indices,
                                   std::span<Hit> hits) const {
     constexpr std::size_t kSize = RayPacket::kSize;
     std::array<Ray, kSize> some;
-    for (std::size_t k = 0; k < kSize; ++k) some[k] = rays[which[k < which.size() ? k : 0]];
+    for (std::size_t k = 0; k < kSize; ++k) some[k] = rays[indices[k < indices.size() ? k : 0]];
     const RayPacket packet{std::span<const Ray, kSize>(some)};
-    if (which.size() < kSize / 4 || !packet.coherent()) {
-        for (const std::uint32_t i : which) hits[i] = first(rays[i]);
+    if (indices.size() < kSize / 4 || !packet.coherent()) {
+        for (const std::uint32_t i : indices) hits[i] = closest_without_alpha(rays[i]);
         return;
     }
     PacketHits best(xsimd::min(packet.t_max(), RayPacket::Batch(std::numeric_limits<float>::max())));
     const PacketInstances none{*this, some};
-    PacketTraversal(world_, packet, some, (1u << which.size()) - 1, kNoObject, none, best).run_list();
+    PacketTraversal(world_, packet, some, (1u << indices.size()) - 1, kNoObject, none, best).run_list();
     std::array<Hit, kSize> found;
     best.store(found);
-    for (std::size_t k = 0; k < which.size(); ++k) hits[which[k]] = found[k];
+    for (std::size_t k = 0; k < indices.size(); ++k) hits[indices[k]] = found[k];
 }
 
-void Accelerator::closest_of_scattered(std::span<const Ray> rays, std::span<const std::uint32_t> which,
-                                       std::span<Hit> hits) const {
-    DUET_CHECK(gathers_scattered());
-    if (!streams_)
-        for (std::size_t from = 0; from < which.size(); from += kMostSorted)
-            closest_by_class(rays, which.subspan(from, std::min(which.size() - from, kMostSorted)), hits);
-    else if (which.size() >= kFewestStreamed)
-        find_closest_of_stream(world_, rays, which, hits);
+void Accelerator::closest_of_incoherent(std::span<const Ray> rays, std::span<const std::uint32_t> indices,
+                                        std::span<Hit> hits) const {
+    DUET_CHECK(batches_incoherent_rays());
+    if (!use_streams_)
+        for (std::size_t from = 0; from < indices.size(); from += kMaxSorted)
+            closest_sorted_by_class(rays, indices.subspan(from, std::min(indices.size() - from, kMaxSorted)), hits);
+    else if (indices.size() >= kMinStreamSize)
+        find_closest_of_stream(world_, rays, indices, hits);
     else
-        for (const std::uint32_t i : which) hits[i] = first(rays[i]);
-    if (holes_)
-        for (const std::uint32_t i : which) hits[i] = beyond_holes(rays[i], hits[i]);
+        for (const std::uint32_t i : indices) hits[i] = closest_without_alpha(rays[i]);
+    if (has_alpha_masks_)
+        for (const std::uint32_t i : indices) hits[i] = skip_transparent(rays[i], hits[i]);
 }
 
-void Accelerator::closest_by_class(std::span<const Ray> rays, std::span<const std::uint32_t> which,
-                                   std::span<Hit> hits) const {
-    std::array<std::uint8_t, kMostSorted> classes;
-    std::array<std::uint32_t, kMostSorted> order;
+void Accelerator::closest_sorted_by_class(std::span<const Ray> rays, std::span<const std::uint32_t> indices,
+                                          std::span<Hit> hits) const {
+    std::array<std::uint8_t, kMaxSorted> classes;
+    std::array<std::uint32_t, kMaxSorted> order;
     const auto ends = sort_by_class<kShearClasses>(
-        which, [&](std::uint32_t i) { return shear_class(rays[i]); }, classes, order);
+        indices, [&](std::uint32_t i) { return shear_class(rays[i]); }, classes, order);
     std::size_t done = 0;
     for (std::size_t c = 0; c < kShearClasses - 1; ++c)
         while (done < ends[c]) {
@@ -222,18 +222,18 @@ void Accelerator::closest_by_class(std::span<const Ray> rays, std::span<const st
             closest_in_list(rays, std::span(order).subspan(done, taken), hits);
             done += taken;
         }
-    for (; done < which.size(); ++done) hits[order[done]] = first(rays[order[done]]);
+    for (; done < indices.size(); ++done) hits[order[done]] = closest_without_alpha(rays[order[done]]);
 }
 
 bool Accelerator::occluded(const Ray& ray, const Hit& end) const {
     Hit clamped = end;
     clamped.t = min(end.t, std::numeric_limits<float>::max()); // a distance that overflowed is no hit
-    if (holes_) return occluded_beyond_holes(ray, clamped);
+    if (has_alpha_masks_) return occluded_with_alpha(ray, clamped);
     return traceable(ray) && find_any(world_, ray, kNoObject, clamped, instance_test<true>(ray));
 }
 
-HierarchyStatistics Accelerator::statistics() const {
-    HierarchyStatistics result;
+BvhStatistics Accelerator::statistics() const {
+    BvhStatistics result;
     result.quality = quality_ == BvhQuality::kHigh ? "high" : "default";
     const auto add = [&](const Bvh& bvh) {
         result.nodes += static_cast<std::int64_t>(bvh.nodes.size());

@@ -22,17 +22,17 @@ public:
     /// Returns the closest hit with t in (t_min, t_max]; t_min must not be negative. The hit is invalid if the ray
     /// misses, or if it is not `traceable`: its components are out of range or it has no direction. At equal t the
     /// lower (object, primitive) wins. A point where the material's alpha is 0 is no hit. At an alpha between 0 and
-    /// 1 that fraction of rays hits, chosen by a hash of the ray and the primitive (holes.h).
+    /// 1 that fraction of rays hits, chosen by a hash of the ray and the primitive (alpha_mask.h).
     Hit closest(const Ray& ray) const;
     /// Finds the closest hit of each ray; `hits` must be as long as `rays`. The rays are traced in packets, which is
     /// faster if neighbors in the list are coherent, as the camera rays of neighboring pixels are.
     void closest(std::span<const Ray> rays, std::span<Hit> hits) const;
-    /// Finds the closest hits of the rays with the indices `which`, which may be incoherent. Other elements of
-    /// `hits` stay unchanged. The scene must be one for which gathers_scattered() is true.
-    void closest_of_scattered(std::span<const Ray> rays, std::span<const std::uint32_t> which,
-                              std::span<Hit> hits) const;
+    /// Finds the closest hits of the rays with the indices `indices`, which may be incoherent. Other elements of
+    /// `hits` stay unchanged. The scene must be one for which batches_incoherent_rays() is true.
+    void closest_of_incoherent(std::span<const Ray> rays, std::span<const std::uint32_t> indices,
+                               std::span<Hit> hits) const;
     /// Returns whether a batch of incoherent rays is traced faster together than one by one.
-    bool gathers_scattered() const { return few_primitives_ || streams_; }
+    bool batches_incoherent_rays() const { return few_primitives_ || use_streams_; }
     /// Returns whether the scene is a short list of primitives without instances and alpha masks. For such a scene,
     /// the closest hits of a batch of rays cost less than a separate any-hit query for each ray.
     bool few_primitives() const { return few_primitives_; }
@@ -42,17 +42,18 @@ public:
 
     std::int64_t primitives() const { return primitives_; } ///< of the flattened scene, counting each instance's
     std::int64_t memory_bytes() const;
-    HierarchyStatistics statistics() const;
+    BvhStatistics statistics() const;
     const Bvh& world() const { return world_; }
 
 private:
-    Hit first(const Ray& ray) const;
-    void closest_by_class(std::span<const Ray> rays, std::span<const std::uint32_t> which, std::span<Hit> hits) const;
-    void closest_in_list(std::span<const Ray> rays, std::span<const std::uint32_t> which, std::span<Hit> hits) const;
-    Hit beyond_holes(const Ray& ray, Hit hit) const;
-    bool occluded_beyond_holes(Ray ray, const Hit& end) const;
+    Hit closest_without_alpha(const Ray& ray) const;
+    void closest_sorted_by_class(std::span<const Ray> rays, std::span<const std::uint32_t> indices,
+                                 std::span<Hit> hits) const;
+    void closest_in_list(std::span<const Ray> rays, std::span<const std::uint32_t> indices, std::span<Hit> hits) const;
+    Hit skip_transparent(const Ray& ray, Hit hit) const;
+    bool occluded_with_alpha(Ray ray, const Hit& end) const;
     struct PacketInstances;
-    Ray inside(const BvhInstance& instance, const Ray& ray) const;
+    Ray to_instance_space(const BvhInstance& instance, const Ray& ray) const;
     template <bool kAny> auto instance_test(const Ray& ray) const;
 
     const Scene& scene_;
@@ -60,9 +61,9 @@ private:
     Bvh world_;
     std::vector<Bvh> shapes_; ///< by shape; empty if no instance uses the shape
     std::int64_t primitives_ = 0;
-    bool holes_; ///< whether any material has an alpha mask
+    bool has_alpha_masks_; ///< whether any material has an alpha mask
     bool few_primitives_ = false;
-    bool streams_ = false; ///< whether `world_` is streamable (bvh_stream.h)
+    bool use_streams_ = false; ///< whether `world_` is streamable (bvh_stream.h)
 };
 
 } // namespace duet::raytrace

@@ -18,7 +18,7 @@ public:
     /// that count.
     template <typename S, typename Vertex>
     [[gnu::always_inline]] CandidateTest(const Shear<S>& ray, const std::array<Vertex, 3>& p, Batch ends) {
-        test({ray, p[0], p[1], p[2]}, ray.speed, ends, 0);
+        test({ray, p[0], p[1], p[2]}, ray.depth_per_t, ends, 0);
         first_half_ = Lanes(true);
     }
     template <typename S, typename Vertex>
@@ -34,7 +34,7 @@ public:
         const auto half = [&](const auto& of_first, const auto& of_second) {
             return select(first, of_first, of_second);
         };
-        test({a, half(b, c), half(c, d), half(cb, dc), half(ac, ad), half(ba, ca)}, ray.speed, ends,
+        test({a, half(b, c), half(c, d), half(cb, dc), half(ac, ad), half(ba, ca)}, ray.depth_per_t, ends,
              lane_bits(first & second));
         if (candidates_ == 0) return;
         first_half_ = first;
@@ -52,12 +52,12 @@ public:
     /// Returns a bit mask of the candidates that are hit at u and v, but so close to the ray's origin that
     /// plane_distance must compute the distance. Most of these rays leave the polygon. For all remaining candidates,
     /// intersect_triangle or intersect_quad decides.
-    unsigned touched() const { return touched_ & candidates_; }
-    /// Sets the distances of all touched lanes, whose hits become certain.
-    [[gnu::always_inline]] void decide_touched(Batch distances) {
-        t_ = xsimd::select(touched_lanes_, distances, t_);
-        certain_ |= touched_;
-        touched_ = 0;
+    unsigned needs_distance() const { return needs_distance_ & candidates_; }
+    /// Sets the distances of all lanes that need one, whose hits become certain.
+    [[gnu::always_inline]] void set_distances(Batch distances) {
+        t_ = xsimd::select(needs_distance_lanes_, distances, t_);
+        certain_ |= needs_distance_;
+        needs_distance_ = 0;
     }
     Batch t() const { return t_; }
     Batch u() const { return u_; }
@@ -73,29 +73,30 @@ private:
 
     // `unsure` is a bit mask of lanes that the distance test must not reject, and whose hits are never certain.
     template <typename S>
-    [[gnu::always_inline]] void test(const TriangleTest<Batch>& test, const S& speed, Batch ends, unsigned unsure) {
+    [[gnu::always_inline]] void test(const TriangleTest<Batch>& test, const S& depth_per_t, Batch ends,
+                                     unsigned unsure) {
         const Batch zero(0.0f);
         const Batch low = xsimd::min(xsimd::min(test.e0, test.e1), test.e2);
         const Batch high = xsimd::max(xsimd::max(test.e0, test.e1), test.e2);
         candidates_ = lane_bits((low >= zero) | (high <= zero));
         if (candidates_ == 0) return;
         const Batch inv_det = Batch(1.0f) / test.det();
-        const Batch t = test.distance(inv_det), error = test.distance_error(inv_det, speed);
-        unsure |= lane_bits(test.is_needle(inv_det, speed));
+        const Batch t = test.distance(inv_det), error = test.distance_error(inv_det, depth_per_t);
+        unsure |= lane_bits(test.is_needle(inv_det, depth_per_t));
         const auto outside = (t < -error) | (t - error > ends); // false for NaN
         candidates_ &= ~lane_bits(outside) | unsure;
         if (candidates_ == 0) return;
         const auto inside = (low > zero) | (high < zero);
         certain_ = lane_bits(inside & (xsimd::abs(t) > error)) & ~unsure;
-        touched_lanes_ = inside & (xsimd::abs(t) <= error);
-        touched_ = lane_bits(touched_lanes_) & ~unsure;
+        needs_distance_lanes_ = inside & (xsimd::abs(t) <= error);
+        needs_distance_ = lane_bits(needs_distance_lanes_) & ~unsure;
         t_ = t;
         u_ = test.e1 * inv_det;
         v_ = test.e2 * inv_det;
     }
 
-    unsigned candidates_, certain_ = 0, touched_ = 0;
-    Lanes touched_lanes_, first_half_; // uninitialized if there are no candidates
+    unsigned candidates_, certain_ = 0, needs_distance_ = 0;
+    Lanes needs_distance_lanes_, first_half_; // uninitialized if there are no candidates
     Batch t_, u_, v_;
 };
 
@@ -105,13 +106,13 @@ public:
     [[gnu::always_inline]] BlockTest(const Shear<float>& ray, const PolygonBlock<kCorners>& block, float end)
         : CandidateTest(ray, vertices(block, std::make_index_sequence<kCorners>()), Batch(end)) {}
 
-    /// Computes the distances of the touched polygons. `ray` and `block` must be those given to the constructor.
-    [[gnu::always_inline]] void measure_touched(const ShearedRay& ray, const PolygonBlock<kCorners>& block) {
+    /// Computes the distances of the polygons that need one. `ray` and `block` must be those given to the constructor.
+    [[gnu::always_inline]] void compute_distances(const ShearedRay& ray, const PolygonBlock<kCorners>& block) {
         Batch distances = plane_distances(ray, block.corner[0], block.corner[1], block.corner[2]);
         if constexpr (kCorners == 4)
             distances = xsimd::select(this->first_half(), distances,
                                       plane_distances(ray, block.corner[0], block.corner[2], block.corner[3]));
-        this->decide_touched(distances);
+        this->set_distances(distances);
     }
 
 private:
@@ -130,7 +131,7 @@ private:
     [[gnu::always_inline]] static Batch plane_distances(const ShearedRay& ray, const Corner& a, const Corner& b,
                                                         const Corner& c) {
         using Double = DoubleBatch;
-        const auto origin = spread<Double>(Vec3d(ray.origin)), direction = spread<Double>(Vec3d(ray.direction));
+        const auto origin = broadcast<Double>(Vec3d(ray.origin)), direction = broadcast<Double>(Vec3d(ray.direction));
         alignas(sizeof(Batch)) BlockLanes<float> distances;
         for (std::size_t i = 0; i < kBlockSize; i += kDoubleLanes) {
             const auto at = [i](const Corner& p) {

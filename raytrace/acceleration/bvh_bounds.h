@@ -11,10 +11,10 @@ namespace duet::raytrace {
 
 /// Stores a box with x, y, z and one unused lane. It is empty when constructed.
 struct Bounds {
-    using Four = FloatBatch<4>;
-    Four low = Four(kInfinity), high = Four(-kInfinity);
+    using Float4 = FloatBatch<4>;
+    Float4 low = Float4(kInfinity), high = Float4(-kInfinity);
 
-    void extend(Four l, Four h) {
+    void extend(Float4 l, Float4 h) {
         low = xsimd::min(low, l);
         high = xsimd::max(high, h);
     }
@@ -33,7 +33,7 @@ public:
     explicit RelativeArea(const Bounds& whole) {
         const Vec3 size = whole.box().diagonal();
         const float largest = max_component(size);
-        scale_ = Bounds::Four(largest > 0 ? 1 / max(largest, 0x1p-126f) : 0.0f);
+        scale_ = Bounds::Float4(largest > 0 ? 1 / max(largest, 0x1p-126f) : 0.0f);
         const float area = half(whole);
         per_area_ = area > 0 ? 1 / area : 0;
     }
@@ -45,7 +45,7 @@ private:
         ((bounds.high - bounds.low) * scale_).store_aligned(d.data());
         return d[0] * d[1] + d[1] * d[2] + d[2] * d[0];
     }
-    Bounds::Four scale_;
+    Bounds::Float4 scale_;
     float per_area_;
 };
 

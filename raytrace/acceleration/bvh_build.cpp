@@ -11,34 +11,34 @@ namespace duet::raytrace {
 
 namespace {
 
-// Partitions the items like `divide`, but in parallel and through a second array, `copy`. Items of one chunk keep
-// their order.
+// Partitions the items like `partition_items`, but in parallel and through a second array, `copy`. Items of one chunk
+// keep their order.
 template <typename GoesLeft>
-Halves divide_in_parallel(Items items, BuildItems& copy, int threads, const GoesLeft& goes_left) {
+Partition partition_in_parallel(Items items, BuildItems& copy, int threads, const GoesLeft& goes_left) {
     const std::size_t chunks = (items.size() + kChunk - 1) / kChunk;
-    std::vector<Halves> parts(chunks);
+    std::vector<Partition> chunk_partitions(chunks);
     const auto chunk = [&](std::size_t i) {
         return items.subspan(i * kChunk, std::min(kChunk, items.size() - i * kChunk));
     };
     parallel_for(chunks, threads, [&](std::size_t i) {
         for (const BuildItem& item : chunk(i)) {
             const bool left = goes_left(item);
-            (left ? parts[i].left : parts[i].right).extend(item);
-            parts[i].left_count += left ? 1 : 0;
+            (left ? chunk_partitions[i].left : chunk_partitions[i].right).extend(item);
+            chunk_partitions[i].left_count += left ? 1 : 0;
         }
     });
-    Halves halves;
+    Partition partition;
     std::vector<std::size_t> left_begin(chunks), right_begin(chunks);
     for (std::size_t i = 0; i < chunks; ++i) {
-        left_begin[i] = halves.left_count;
-        halves.left_count += parts[i].left_count;
-        halves.left.extend(parts[i].left);
-        halves.right.extend(parts[i].right);
+        left_begin[i] = partition.left_count;
+        partition.left_count += chunk_partitions[i].left_count;
+        partition.left.extend(chunk_partitions[i].left);
+        partition.right.extend(chunk_partitions[i].right);
     }
-    std::size_t right = halves.left_count;
+    std::size_t right = partition.left_count;
     for (std::size_t i = 0; i < chunks; ++i) {
         right_begin[i] = right;
-        right += chunk(i).size() - parts[i].left_count;
+        right += chunk(i).size() - chunk_partitions[i].left_count;
     }
     if (copy.size() < items.size()) copy = BuildItems(items.size());
     parallel_for(chunks, threads, [&](std::size_t i) {
@@ -49,7 +49,7 @@ Halves divide_in_parallel(Items items, BuildItems& copy, int threads, const Goes
         const Items target = chunk(i);
         std::copy_n(copy.begin() + static_cast<std::ptrdiff_t>(i * kChunk), target.size(), target.begin());
     });
-    return halves;
+    return partition;
 }
 
 // Describes a subtree of at most `job_size` items. The builder leaves a placeholder node for it, so that several
@@ -59,39 +59,39 @@ struct Job {
     std::size_t first, count;
     Extent extent;
     int depth;
-    bool distinct;
+    bool deduplicated;
 };
 
 class Builder {
 public:
-    Builder(Items items, std::size_t job_size, int threads, const DropTwins& drop_twins)
-        : items_(items), job_size_(job_size), threads_(threads), drop_twins_(drop_twins) {}
+    Builder(Items items, std::size_t job_size, int threads, const RemoveDuplicates& remove_duplicates)
+        : items_(items), job_size_(job_size), threads_(threads), remove_duplicates_(remove_duplicates) {}
 
     std::vector<BinaryNode> nodes;
     std::vector<Job> jobs;
 
-    /// Builds the subtree of items [first, first + count) and returns the index of its node. `distinct` is true if
+    /// Builds the subtree of items [first, first + count) and returns the index of its node. `deduplicated` is true if
     /// duplicates have been removed already.
-    std::uint32_t build(std::size_t first, std::size_t count, const Extent& extent, int depth, bool distinct) {
+    std::uint32_t build(std::size_t first, std::size_t count, const Extent& extent, int depth, bool deduplicated) {
         const auto index = static_cast<std::uint32_t>(nodes.size());
         nodes.emplace_back();
         // Boxes cannot separate items with the same center. Without this step, a ray that reaches n duplicates would
         // test all n.
-        if (count > Bvh::kMaxLeaf && extent.one_center() && drop_twins_ && !distinct) {
-            count = drop_twins_(items_.subspan(first, count));
-            distinct = true;
+        if (count > Bvh::kMaxLeaf && extent.same_center() && remove_duplicates_ && !deduplicated) {
+            count = remove_duplicates_(items_.subspan(first, count));
+            deduplicated = true;
         }
         if (count <= job_size_) {
-            jobs.push_back({index, first, count, extent, depth, distinct});
+            jobs.push_back({index, first, count, extent, depth, deduplicated});
             return index;
         }
         nodes[index].box = extent.bounds.box();
-        const std::optional<Halves> halves = split(items_.subspan(first, count), extent, depth);
-        if (halves) {
-            const std::size_t left_count = halves->left_count;
-            const std::uint32_t left = build(first, left_count, halves->left, depth + 1, distinct);
+        const std::optional<Partition> partition = split(items_.subspan(first, count), extent, depth);
+        if (partition) {
+            const std::size_t left_count = partition->left_count;
+            const std::uint32_t left = build(first, left_count, partition->left, depth + 1, deduplicated);
             const std::uint32_t right =
-                build(first + left_count, count - left_count, halves->right, depth + 1, distinct);
+                build(first + left_count, count - left_count, partition->right, depth + 1, deduplicated);
             nodes[index].left = left;
             nodes[index].right = right;
         } else {
@@ -103,35 +103,35 @@ public:
 
 private:
     // Partitions the items, or returns nothing if they are to be a leaf.
-    std::optional<Halves> split(Items items, const Extent& extent, int depth) {
+    std::optional<Partition> split(Items items, const Extent& extent, int depth) {
         if (items.size() == 1) return std::nullopt;
-        const bool can_be_leaf = extent.one_kind() && items.size() <= largest_leaf(items[0].kind);
+        const bool can_be_leaf = extent.same_kind() && items.size() <= largest_leaf(items[0].kind);
         const Binning binning(extent, items.size());
-        const Tests tests(extent.kinds);
+        const LeafCost leaf_cost(extent.kinds);
         std::optional<Split> best;
         if (depth < kSahDepth) {
             fill(bins_, items, binning, threads_);
-            best = best_split(bins_, binning, RelativeArea(extent.bounds), tests, items.size());
+            best = best_split(bins_, binning, RelativeArea(extent.bounds), leaf_cost, items.size());
         }
-        if (can_be_leaf && (!best || best->cost >= tests(items.size()))) return std::nullopt;
+        if (can_be_leaf && (!best || best->cost >= leaf_cost(items.size()))) return std::nullopt;
         if (best) {
             const auto goes_left = [&](const BuildItem& item) { return binning.bin(item)[best->axis] <= best->bin; };
-            if (items.size() > 2 * kChunk) return divide_in_parallel(items, copy_, threads_, goes_left);
-            return divide(items, goes_left);
+            if (items.size() > 2 * kChunk) return partition_in_parallel(items, copy_, threads_, goes_left);
+            return partition_items(items, goes_left);
         }
-        return divide_anyhow(items, extent);
+        return partition_without_plane(items, extent);
     }
 
     Items items_;
     std::size_t job_size_;
     int threads_;
-    const DropTwins& drop_twins_;
+    const RemoveDuplicates& remove_duplicates_;
     Bins bins_;
     BuildItems copy_;
 };
 
-// Appends the nodes of a subtree to the tree. The subtree's root replaces the placeholder node at index `seat`.
-void graft(std::vector<BinaryNode>& tree, std::size_t seat, const std::vector<BinaryNode>& subtree) {
+// Appends the nodes of a subtree to the tree. The subtree's root replaces the placeholder node at index `slot`.
+void graft(std::vector<BinaryNode>& tree, std::size_t slot, const std::vector<BinaryNode>& subtree) {
     const auto offset = static_cast<std::uint32_t>(tree.size()) - 1;
     const auto rebased = [&](BinaryNode node) {
         if (!node.leaf()) {
@@ -140,27 +140,27 @@ void graft(std::vector<BinaryNode>& tree, std::size_t seat, const std::vector<Bi
         }
         return node;
     };
-    tree[seat] = rebased(subtree[0]);
+    tree[slot] = rebased(subtree[0]);
     std::transform(subtree.begin() + 1, subtree.end(), std::back_inserter(tree), rebased);
 }
 
 } // namespace
 
-BinaryTree build_binary_tree(BuildItems items, int threads, const DropTwins& drop_twins) {
+BinaryTree build_binary_tree(BuildItems items, int threads, const RemoveDuplicates& remove_duplicates) {
     BinaryTree tree{{}, std::move(items)};
     if (tree.items.empty()) return tree;
     if (tree.items.size() > (std::size_t{1} << 31)) throw Error(message(tree.items.size(), " primitives: too many"));
 
     // The division into jobs depends only on the input, so that the tree does not depend on the number of threads.
     constexpr std::size_t kJobs = 64, kSmallestJob = 4096;
-    Builder top(tree.items, std::max(tree.items.size() / kJobs, kSmallestJob), threads, drop_twins);
+    Builder top(tree.items, std::max(tree.items.size() / kJobs, kSmallestJob), threads, remove_duplicates);
     top.build(0, tree.items.size(), extent_of(tree.items), 0, false);
     std::vector<std::vector<BinaryNode>> subtrees(top.jobs.size());
     parallel_for(top.jobs.size(), threads, [&](std::size_t i) {
         const Job& job = top.jobs[i];
-        Builder builder(tree.items, 0, 1, drop_twins);
+        Builder builder(tree.items, 0, 1, remove_duplicates);
         builder.nodes.reserve(job.count);
-        builder.build(job.first, job.count, job.extent, job.depth, job.distinct);
+        builder.build(job.first, job.count, job.extent, job.depth, job.deduplicated);
         subtrees[i] = std::move(builder.nodes);
     });
     tree.nodes = std::move(top.nodes);

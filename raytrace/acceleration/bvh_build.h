@@ -32,7 +32,7 @@ struct BinaryNode {
 inline Bounds BinaryNode::bounds() const {
     static_assert(offsetof(BinaryNode, box) == 0 && sizeof(Box3) == 6 * sizeof(float));
     const auto* numbers = reinterpret_cast<const float*>(this);
-    return {Bounds::Four::load_unaligned(numbers), Bounds::Four::load_unaligned(numbers + 3)};
+    return {Bounds::Float4::load_unaligned(numbers), Bounds::Float4::load_unaligned(numbers + 3)};
 }
 
 /// Node 0 is the root. There are no nodes if there are no items. The depth is at most Bvh::kMaxDepth.
@@ -44,13 +44,13 @@ struct BinaryTree {
 /// This function removes duplicates from items that all have the same center: it moves the items to retain to the
 /// front and returns their number. Of primitives that are equal except for their (object, primitive), only the first
 /// in that order is ever a closest hit.
-using DropTwins = std::function<std::size_t(std::span<BuildItem>)>;
+using RemoveDuplicates = std::function<std::size_t(std::span<BuildItem>)>;
 
 /// Builds a binary tree over any set of boxes by the binned SAH (Wald 2007, "On fast Construction of SAH-based
 /// Bounding Volume Hierarchies", §3). It takes O(n log n) time on any input, and returns the same tree for any
-/// number of threads (0 = all). Each item is in one leaf, except for those that `drop_twins` removes, which are in
-/// none. Throws Error for more than 2³¹ items.
-BinaryTree build_binary_tree(BuildItems items, int threads, const DropTwins& drop_twins = {});
+/// number of threads (0 = all). Each item is in one leaf, except for those that `remove_duplicates` removes, which are
+/// in none. Throws Error for more than 2³¹ items.
+BinaryTree build_binary_tree(BuildItems items, int threads, const RemoveDuplicates& remove_duplicates = {});
 
 /// Names the items [first, first + count) of one leaf, and the element of their kind's list that they fill.
 struct LeafItems {
@@ -59,7 +59,7 @@ struct LeafItems {
 
 /// Holds a packed hierarchy whose blocks of primitives and instances are still to be filled, one block or instance
 /// per leaf.
-struct Collapsed {
+struct CollapsedBvh {
     Bvh bvh;
     std::vector<LeafItems> leaves;
     /// These are the expected numbers of nodes and of leaves that a ray through the root's box visits, by the SAH.
@@ -72,10 +72,10 @@ struct Collapsed {
 /// (Ylitie, Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", §3).
 /// The result is the same for any number of threads (0 = all). Throws Error if there are more elements than BvhRef
 /// can index.
-Collapsed collapse(const BinaryTree& tree, int threads);
+CollapsedBvh collapse(const BinaryTree& tree, int threads);
 
 /// Adds a list of all primitives, in full blocks, to the hierarchy of a small scene if a ray is expected to test
 /// that list faster than it traverses the tree. The items of the list are appended to the tree's.
-void add_list_where_faster(BinaryTree& tree, Collapsed& collapsed);
+void add_list_where_faster(BinaryTree& tree, CollapsedBvh& collapsed);
 
 } // namespace duet::raytrace

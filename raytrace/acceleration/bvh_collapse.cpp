@@ -12,75 +12,76 @@ namespace {
 // Tabulates the cheapest ways to represent each binary subtree by a forest of at most n wide subtrees. Dynamic
 // programming fills it from the leaves up. The cost of a wide node is its relative area, which is the probability
 // that a ray enters it. The leaves are given, and their own cost is the same for every forest.
-class Forests {
+class CollapseTable {
 public:
-    Forests(const BinaryTree& tree, int threads)
-        : tree_(tree), area_(tree.nodes[0].bounds()), forests_(tree.nodes.size()) {
-        // The subtrees kTop levels below the root are processed in parallel, then the levels above them.
-        constexpr int kTop = 8;
+    CollapseTable(const BinaryTree& tree, int threads)
+        : tree_(tree), area_(tree.nodes[0].bounds()), table_(tree.nodes.size()) {
+        // The subtrees kParallelDepth levels below the root are processed in parallel, then the levels above them.
+        constexpr int kParallelDepth = 8;
         std::vector<std::uint32_t> subtrees;
-        gather(0, kTop, subtrees);
+        collect_subtrees(0, kParallelDepth, subtrees);
         parallel_for(subtrees.size(), threads, [&](std::size_t i) { visit(subtrees[i], Bvh::kMaxDepth); });
-        visit(0, kTop);
+        visit(0, kParallelDepth);
     }
 
-    /// Return the costs of the whole tree; see Collapsed.
-    float node_cost() const { return forests_[0].cost[0]; }
-    float leaf_cost() const { return forests_[0].leaves; }
+    /// Return the costs of the whole tree; see CollapsedBvh.
+    float node_cost() const { return table_[0].cost[0]; }
+    float leaf_cost() const { return table_[0].leaves; }
 
     /// Writes the roots of the wide subtrees that are a node's children, at most BvhNode::kWidth, and returns their
     /// number.
     std::size_t children(std::uint32_t node, std::array<std::uint32_t, BvhNode::kWidth>& roots) const {
         std::size_t count = 0;
-        cut(node, BvhNode::kWidth, roots, count);
+        add_children(node, BvhNode::kWidth, roots, count);
         return count;
     }
 
 private:
-    static constexpr std::size_t kMost = BvhNode::kWidth - 1;
-    // Among forests with the same area, those with large leaves near the root are better: rays that hit such leaves
+    static constexpr std::size_t kMaxSubtrees = BvhNode::kWidth - 1;
+    // Among table with the same area, those with large leaves near the root are better: rays that hit such leaves
     // end earlier, which the area does not express. Each leaf therefore adds this fraction of its area at every
     // level above it.
-    static constexpr float kHidden = 0.1f;
+    static constexpr float kLeafPenalty = 0.1f;
 
-    struct Forest {
-        std::array<float, kMost> cost; // cost[n - 1] is the cost as at most n wide subtrees
+    struct CollapseCosts {
+        std::array<float, kMaxSubtrees> cost; // cost[n - 1] is the cost as at most n wide subtrees
         float leaves;                  // sum of the leaves' relative areas
     };
 
-    void gather(std::uint32_t node, int depth, std::vector<std::uint32_t>& subtrees) const {
+    void collect_subtrees(std::uint32_t node, int depth, std::vector<std::uint32_t>& subtrees) const {
         if (depth == 0) return subtrees.push_back(node);
         if (tree_.nodes[node].leaf()) return;
-        gather(tree_.nodes[node].left, depth - 1, subtrees);
-        gather(tree_.nodes[node].right, depth - 1, subtrees);
+        collect_subtrees(tree_.nodes[node].left, depth - 1, subtrees);
+        collect_subtrees(tree_.nodes[node].right, depth - 1, subtrees);
     }
 
     // Fills the table down to `depth` levels below a node. Deeper levels must be filled already.
     void visit(std::uint32_t index, int depth) {
         const BinaryNode& node = tree_.nodes[index];
         if (node.leaf()) {
-            forests_[index].cost.fill(0);
-            forests_[index].leaves = area_(node.bounds());
+            table_[index].cost.fill(0);
+            table_[index].leaves = area_(node.bounds());
             return;
         }
         if (depth == 0) return;
         visit(node.left, depth - 1);
         visit(node.right, depth - 1);
-        const Forest &left = forests_[node.left], &right = forests_[node.right];
-        Forest& forest = forests_[index];
-        forest.leaves = left.leaves + right.leaves;
-        forest.cost[0] = area_(node.bounds()) + kHidden * forest.leaves + share(left, right, BvhNode::kWidth).cost;
-        for (std::size_t n = 2; n <= kMost; ++n)
-            forest.cost[n - 1] = min(forest.cost[n - 2], share(left, right, n).cost);
+        const CollapseCosts &left = table_[node.left], &right = table_[node.right];
+        CollapseCosts& entry = table_[index];
+        entry.leaves = left.leaves + right.leaves;
+        entry.cost[0] =
+            area_(node.bounds()) + kLeafPenalty * entry.leaves + best_division(left, right, BvhNode::kWidth).cost;
+        for (std::size_t n = 2; n <= kMaxSubtrees; ++n)
+            entry.cost[n - 1] = min(entry.cost[n - 2], best_division(left, right, n).cost);
     }
 
     // Describes the best division of n wide subtrees among two children, of which the left child gets `left`.
-    struct Share {
+    struct Division {
         float cost;
         std::size_t left;
     };
-    static Share share(const Forest& left, const Forest& right, std::size_t n) {
-        Share best{kInfinity, 1};
+    static Division best_division(const CollapseCosts& left, const CollapseCosts& right, std::size_t n) {
+        Division best{kInfinity, 1};
         for (std::size_t k = 1; k < n; ++k) {
             const float cost = left.cost[k - 1] + right.cost[n - k - 1];
             if (cost < best.cost) best = {cost, k};
@@ -88,38 +89,38 @@ private:
         return best;
     }
 
-    void cut(std::uint32_t index, std::size_t n, std::array<std::uint32_t, BvhNode::kWidth>& roots,
-             std::size_t& count) const {
+    void add_children(std::uint32_t index, std::size_t n, std::array<std::uint32_t, BvhNode::kWidth>& roots,
+                      std::size_t& count) const {
         const BinaryNode& node = tree_.nodes[index];
-        const std::size_t left = share(forests_[node.left], forests_[node.right], n).left;
-        take(node.left, left, roots, count);
-        take(node.right, n - left, roots, count);
+        const std::size_t left = best_division(table_[node.left], table_[node.right], n).left;
+        add_subtrees(node.left, left, roots, count);
+        add_subtrees(node.right, n - left, roots, count);
     }
-    void take(std::uint32_t node, std::size_t n, std::array<std::uint32_t, BvhNode::kWidth>& roots,
-              std::size_t& count) const {
-        const auto& cost = forests_[node].cost;
+    void add_subtrees(std::uint32_t node, std::size_t n, std::array<std::uint32_t, BvhNode::kWidth>& roots,
+                      std::size_t& count) const {
+        const auto& cost = table_[node].cost;
         while (n > 1 && cost[n - 2] == cost[n - 1]) --n; // fewer subtrees cost no more
         if (n == 1)
             roots[count++] = node;
         else
-            cut(node, n, roots, count);
+            add_children(node, n, roots, count);
     }
 
     const BinaryTree& tree_;
     RelativeArea area_;
-    std::vector<Forest> forests_; // indexed by node
+    std::vector<CollapseCosts> table_; // indexed by node
 };
 
 class Collapser {
 public:
-    Collapser(const BinaryTree& tree, int threads, Collapsed& result)
-        : tree_(tree), forests_(tree, threads), bvh_(result.bvh), leaves_(result.leaves), elements_(result.elements) {}
+    Collapser(const BinaryTree& tree, int threads, CollapsedBvh& result)
+        : tree_(tree), table_(tree, threads), bvh_(result.bvh), leaves_(result.leaves), elements_(result.elements) {}
 
     BvhRef ref(std::uint32_t index) {
         const BinaryNode& node = tree_.nodes[index];
         return node.leaf() ? leaf(node.first, node.count) : BvhRef::node(pack(index));
     }
-    const Forests& forests() const { return forests_; }
+    const CollapseTable& table() const { return table_; }
 
 private:
     // Adds one element, a block of primitives or an instance, and returns the reference to it.
@@ -138,7 +139,7 @@ private:
 
     std::uint32_t pack(std::uint32_t index) {
         std::array<std::uint32_t, BvhNode::kWidth> children;
-        const std::size_t count = forests_.children(index, children);
+        const std::size_t count = table_.children(index, children);
         // The largest child is stored last, because find_any visits the children in reverse order.
         std::stable_sort(children.begin(), children.begin() + static_cast<std::ptrdiff_t>(count),
                          [&](std::uint32_t a, std::uint32_t b) {
@@ -162,7 +163,7 @@ private:
     }
 
     const BinaryTree& tree_;
-    Forests forests_;
+    CollapseTable table_;
     Bvh& bvh_;
     std::vector<LeafItems>& leaves_;
     std::array<std::size_t, 4>& elements_; // number of elements so far in each kind's list
@@ -172,14 +173,14 @@ template <typename T, typename A> std::size_t bytes(const std::vector<T, A>& v) 
 
 } // namespace
 
-Collapsed collapse(const BinaryTree& tree, int threads) {
-    Collapsed result;
+CollapsedBvh collapse(const BinaryTree& tree, int threads) {
+    CollapsedBvh result;
     if (tree.nodes.empty()) return result;
     result.bvh.bounds = tree.nodes[0].box;
     Collapser collapser(tree, threads, result);
     const BvhRef root = collapser.ref(0);
-    result.node_cost = collapser.forests().node_cost();
-    result.leaf_cost = collapser.forests().leaf_cost();
+    result.node_cost = collapser.table().node_cost();
+    result.leaf_cost = collapser.table().leaf_cost();
     result.bvh.nodes.shrink_to_fit();
     if (root.is_leaf()) result.bvh.list.push_back(root);
     return result;

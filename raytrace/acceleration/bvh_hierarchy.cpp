@@ -1,7 +1,7 @@
 #include "raytrace/acceleration/bvh_hierarchy.h"
 
 #include "common/system/error.h"
-#include "raytrace/acceleration/bvh_optimize.h"
+#include "raytrace/acceleration/bvh_reinsertion.h"
 
 namespace duet::raytrace {
 
@@ -10,26 +10,26 @@ namespace {
 // Limits the effort spent on moving nodes (reinsertion). The default quality moves only a few nodes, because most of
 // the gain is near the root: a few large, badly placed subtrees (a room's walls among its furniture, overlapping
 // objects) slow down every ray.
-struct Effort {
+struct ReinsertionEffort {
     std::size_t one_in; // the 1/one_in of all nodes with the largest areas are tried
     int rounds;
 };
-constexpr Effort kFew{64, 3}, kMany{1, 4};
+constexpr ReinsertionEffort kDefaultEffort{64, 3}, kHighEffort{1, 4};
 
-Hierarchy packed(BinaryTree tree, Effort effort, int threads) {
+Hierarchy optimize_and_collapse(BinaryTree tree, ReinsertionEffort effort, int threads) {
     if (tree.nodes.empty()) return {};
     reinsert(tree, tree.nodes.size() / effort.one_in, effort.rounds, threads);
-    Collapsed collapsed = collapse(tree, threads);
+    CollapsedBvh collapsed = collapse(tree, threads);
     add_list_where_faster(tree, collapsed);
     return {std::move(tree.items), std::move(collapsed)};
 }
 
 // Finds the largest number of leaves that a ray is expected to visit, by the SAH, in any subtree with at least
-// 1/kFairShare of all leaves. The whole tree alone would not do, because most of its box may be empty: a thicket on
-// a wide ground, for example.
-class Crowding {
+// 1/kMinSubtreeShare of all leaves. The whole tree alone would not do, because most of its box may be empty: a thicket
+// on a wide ground, for example.
+class ExpectedLeafVisits {
 public:
-    explicit Crowding(const BinaryTree& tree)
+    explicit ExpectedLeafVisits(const BinaryTree& tree)
         : tree_(tree), area_(tree.nodes[0].bounds()), all_((tree.nodes.size() + 1) / 2) {
         visit(0);
     }
@@ -47,8 +47,8 @@ private:
         if (node.leaf()) return {1, area};
         const Leaves left = visit(node.left), right = visit(node.right);
         const Leaves both{left.count + right.count, left.area + right.area};
-        constexpr std::size_t kFairShare = 16;
-        if (both.count * kFairShare >= all_ && area > 0) most_ = max(most_, both.area / area);
+        constexpr std::size_t kMinSubtreeShare = 16;
+        if (both.count * kMinSubtreeShare >= all_ && area > 0) most_ = max(most_, both.area / area);
         return both;
     }
 
@@ -77,23 +77,24 @@ BvhQuality bvh_quality(std::string_view name) {
     throw Error(message("hierarchy of quality \"", name, "\": expected default or high"));
 }
 
-Hierarchy build_hierarchy(BuildItems items, const Primitives& primitives, BvhQuality quality, int threads) {
-    BinaryTree tree = build_binary_tree(std::move(items), threads, primitives.drop_twins);
-    if (quality == BvhQuality::kDefault) return packed(std::move(tree), kFew, threads);
+Hierarchy build_hierarchy(BuildItems items, const PrimitiveQueries& primitives, BvhQuality quality, int threads) {
+    BinaryTree tree = build_binary_tree(std::move(items), threads, primitives.remove_duplicates);
+    if (quality == BvhQuality::kDefault) return optimize_and_collapse(std::move(tree), kDefaultEffort, threads);
 
     // Spatial splits make boxes smaller at the price of more leaves. The SAH assumes that all rays start and end
     // outside of the scene, and so it overrates them: a wall cut into pieces is visited by more rays than a whole
     // one. Spatial splits pay off where rays visit many leaves (about a hundred in halls of beams or in hair), but
     // gain nothing in finely tessellated meshes (two to five).
-    constexpr float kCrowded = 8;
+    constexpr float kMinVisits = 8;
     constexpr float kBudget = 1; // at most as many additional items as items
-    const float crowding = tree.nodes.empty() ? 0 : Crowding(tree).most();
-    if (crowding < kCrowded) return packed(std::move(tree), kMany, threads);
-    BuildItems kept = items_of_leaves(tree);
-    Hierarchy whole = packed(std::move(tree), kMany, threads);
-    Hierarchy cut =
-        packed(build_spatial_tree(std::move(kept), primitives.outline_of, kBudget, threads), kMany, threads);
-    return cost(cut) < cost(whole) ? std::move(cut) : std::move(whole);
+    const float visits = tree.nodes.empty() ? 0 : ExpectedLeafVisits(tree).most();
+    if (visits < kMinVisits) return optimize_and_collapse(std::move(tree), kHighEffort, threads);
+    BuildItems leaf_items = items_of_leaves(tree);
+    Hierarchy object_hierarchy = optimize_and_collapse(std::move(tree), kHighEffort, threads);
+    Hierarchy spatial_hierarchy = optimize_and_collapse(
+        build_spatial_tree(std::move(leaf_items), primitives.polygon_of, kBudget, threads), kHighEffort, threads);
+    return cost(spatial_hierarchy) < cost(object_hierarchy) ? std::move(spatial_hierarchy)
+                                                            : std::move(object_hierarchy);
 }
 
 } // namespace duet::raytrace

@@ -10,16 +10,16 @@ namespace duet::raytrace {
 /// same index.
 struct Hierarchy {
     BuildItems items;
-    Collapsed collapsed;
+    CollapsedBvh collapsed;
 };
 
 /// Holds the functions by which a builder queries the primitives of items.
-struct Primitives {
-    OutlineOf outline_of; ///< used by spatial splits
-    DropTwins drop_twins;
+struct PrimitiveQueries {
+    PolygonOf polygon_of; ///< used by spatial splits
+    RemoveDuplicates remove_duplicates;
 };
 
 /// Builds a hierarchy over the items. It is the same for any number of threads (0 = all).
-Hierarchy build_hierarchy(BuildItems items, const Primitives& primitives, BvhQuality quality, int threads);
+Hierarchy build_hierarchy(BuildItems items, const PrimitiveQueries& primitives, BvhQuality quality, int threads);
 
 } // namespace duet::raytrace

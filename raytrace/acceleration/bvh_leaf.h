@@ -32,25 +32,25 @@ public:
     /// Tests a leaf. Without kAny, `best` becomes the first of itself and the leaf's hits. Returns true if the
     /// search is over.
     [[gnu::always_inline]] bool operator()(BvhRef leaf, Hit& best) {
-        if (leaf.kind() == PrimitiveKind::kTriangle) return polygons(bvh_.triangles[leaf.index()], best);
-        return others(leaf, best);
+        if (leaf.kind() == PrimitiveKind::kTriangle) return test_polygons(bvh_.triangles[leaf.index()], best);
+        return test_others(leaf, best);
     }
 
 private:
     // This function is not inlined, which keeps the loop for scenes of triangles small.
-    [[gnu::noinline]] bool others(BvhRef leaf, Hit& best) {
-        if (leaf.kind() == PrimitiveKind::kQuad) return polygons(bvh_.quads[leaf.index()], best);
-        if (leaf.kind() == PrimitiveKind::kSphere) return spheres(bvh_.spheres[leaf.index()], best);
+    [[gnu::noinline]] bool test_others(BvhRef leaf, Hit& best) {
+        if (leaf.kind() == PrimitiveKind::kQuad) return test_polygons(bvh_.quads[leaf.index()], best);
+        if (leaf.kind() == PrimitiveKind::kSphere) return test_spheres(bvh_.spheres[leaf.index()], best);
         if (!instance_(bvh_.instances[leaf.index()], best)) return false;
         found_ = true;
         return kAny;
     }
 
     template <std::size_t kCorners>
-    [[gnu::always_inline]] bool polygons(const PolygonBlock<kCorners>& block, Hit& best) {
+    [[gnu::always_inline]] bool test_polygons(const PolygonBlock<kCorners>& block, Hit& best) {
         BlockTest<kCorners> test(sheared_->shear, block, best.t);
         if (test.candidates() == 0) return false;
-        if (test.touched() != 0) test.measure_touched(*sheared_, block);
+        if (test.needs_distance() != 0) test.compute_distances(*sheared_, block);
         using Batch = FloatBatch<kBlockSize>;
         unsigned hits = test.certain() & lane_bits((test.t() > Batch(sheared_->t_min)) & (test.t() <= Batch(best.t)));
         if (hits != 0) {
@@ -61,27 +61,27 @@ private:
             }
         }
         for (unsigned lanes = test.candidates() & ~test.certain(); lanes != 0; lanes &= lanes - 1)
-            if (exactly(block, static_cast<std::size_t>(std::countr_zero(lanes)), best)) return true;
+            if (test_exactly(block, static_cast<std::size_t>(std::countr_zero(lanes)), best)) return true;
         return false;
     }
 
-    template <typename Block> [[gnu::noinline]] bool exactly(const Block& block, std::size_t lane, Hit& best) {
+    template <typename Block> [[gnu::noinline]] bool test_exactly(const Block& block, std::size_t lane, Hit& best) {
         sheared_->t_max = best.t;
         const auto hit = exact_hit(*sheared_, block, lane);
         return hit && consider(block, lane, *hit, best);
     }
 
-    bool spheres(const SphereBlock& block, Hit& best) {
+    bool test_spheres(const SphereBlock& block, Hit& best) {
         const SphereBlockTest test(*sphere_ray_, block, best.t);
         for (unsigned lanes = test.hits(); lanes != 0; lanes &= lanes - 1) {
             const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
-            if (consider({name(block.object[lane]), 0, 0, 0, test.t(lane)}, best)) return true;
+            if (consider({reported_object(block.object[lane]), 0, 0, 0, test.t(lane)}, best)) return true;
         }
         return false;
     }
 
     template <typename Block> bool consider(const Block& block, std::size_t lane, const TriangleHit& hit, Hit& best) {
-        return consider({name(block.object[lane]), block.primitive[lane], hit.u, hit.v, hit.t}, best);
+        return consider({reported_object(block.object[lane]), block.primitive[lane], hit.u, hit.v, hit.t}, best);
     }
     bool consider(const Hit& hit, Hit& best) {
         if (!precedes(hit, best)) return false;
@@ -90,7 +90,7 @@ private:
         if (!kAny) best = hit;
         return kAny;
     }
-    std::uint32_t name(std::uint32_t own) const { return object_ == kNoObject ? own : object_; }
+    std::uint32_t reported_object(std::uint32_t own) const { return object_ == kNoObject ? own : object_; }
 
     const Bvh& bvh_;
     std::optional<ShearedRay> sheared_; // used for polygons

@@ -38,7 +38,7 @@ private:
     };
     template <std::size_t... i, typename Make> auto each(std::index_sequence<i...>, const Make& make) const {
         if constexpr (kRelative)
-            return std::array{Relative<decltype(make(corners_[i]))>{make(corners_[i])}...};
+            return std::array{RelativeVertex<decltype(make(corners_[i]))>{make(corners_[i])}...};
         else
             return std::array{make(corners_[i])...};
     }
@@ -65,7 +65,7 @@ public:
     PacketTraversal(const Bvh& bvh, const RayPacket& packet, std::span<const Ray, kSize> rays, unsigned active,
                     std::uint32_t object, const Instances& instances, PacketHits& best)
         : bvh_(bvh), packet_(packet), rays_(rays), active_(active), object_(object), instances_(instances), best_(best),
-          last_(highest(ends())) {}
+          farthest_(reduce_max(ends())) {}
 
     void run() {
         if (bvh_.nodes.empty())
@@ -82,15 +82,15 @@ private:
     using Batch = RayPacket::Batch;
     // Up to this many active rays are tested, a few at a time, against a whole block of polygons. More active rays
     // are all tested against one polygon at a time.
-    static constexpr int kFewRays = kSize / 2;
+    static constexpr int kMaxRaysPerBlockTest = kSize / 2;
     // This many active rays or more are all tested against one sphere at a time. Fewer are each tested against a
     // whole block of spheres.
-    static constexpr int kSomeRays = 3;
+    static constexpr int kMinRaysPerSphereTest = 3;
     // This is the number of rays that are tested together against a block. Each takes kBlockSize lanes.
-    static constexpr std::size_t kShares = kSize / kBlockSize;
+    static constexpr std::size_t kRaysPerBatch = kSize / kBlockSize;
 
     // Stores a child on the traversal stack, with the distance at which each ray enters its box.
-    struct Waiting {
+    struct PacketStackEntry {
         alignas(sizeof(Batch)) RayPacket::Values entry; // infinity for rays that miss the box
         float nearest;
         unsigned entering; // bit mask of the rays that enter
@@ -116,7 +116,7 @@ private:
     // bit mask of the rays that enter that child, or 0 if there is no such child.
     unsigned step(BvhRef& next) {
         const BvhNode& node = node_at(bvh_, next);
-        const auto [distance, entered] = packet_.enter_any(node, last_);
+        const auto [distance, entered] = packet_.enter_any(node, farthest_);
         if (entered == 0) return 0;
         for (unsigned children = entered; children != 0; children &= children - 1)
             prefetch(bvh_, node.children[static_cast<std::size_t>(std::countr_zero(children))]);
@@ -145,10 +145,10 @@ private:
             test(bvh_.triangles[leaf.index()], active);
         } else if (leaf.kind() == PrimitiveKind::kQuad) {
             test(bvh_.quads[leaf.index()], active);
-        } else if (leaf.kind() == PrimitiveKind::kInstance && std::popcount(active) > kFewRays) {
+        } else if (leaf.kind() == PrimitiveKind::kInstance && std::popcount(active) > kMaxRaysPerBlockTest) {
             instances_(bvh_.instances[leaf.index()], active, best_);
-            nearer_ = true;
-        } else if (leaf.kind() == PrimitiveKind::kSphere && std::popcount(active) >= kSomeRays) {
+            best_changed_ = true;
+        } else if (leaf.kind() == PrimitiveKind::kSphere && std::popcount(active) >= kMinRaysPerSphereTest) {
             test(bvh_.spheres[leaf.index()], active);
         } else {
             for (; active != 0; active &= active - 1) {
@@ -159,8 +159,8 @@ private:
                 set_best(ray, hit);
             }
         }
-        if (nearer_) last_ = highest(ends());
-        nearer_ = false;
+        if (best_changed_) farthest_ = reduce_max(ends());
+        best_changed_ = false;
     }
 
     template <std::size_t kCorners> void test(const PolygonBlock<kCorners>& block, unsigned active) {
@@ -178,26 +178,26 @@ private:
     }
     template <std::size_t kCorners, typename Corners>
     [[gnu::always_inline]] void test(const PolygonBlock<kCorners>& block, const Corners& corners, unsigned active) {
-        if (std::popcount(active) <= kFewRays)
-            ray_by_ray(block, corners, active);
+        if (std::popcount(active) <= kMaxRaysPerBlockTest)
+            test_block(block, corners, active);
         else
-            one_by_one(block, corners, active);
+            test_each_polygon(block, corners, active);
     }
 
-    // Tests a whole block against kShares rays at a time, as many as fit into a batch.
+    // Tests a whole block against kRaysPerBatch rays at a time, as many as fit into a batch.
     template <std::size_t kCorners, typename Corners>
-    void ray_by_ray(const PolygonBlock<kCorners>& block, const Corners& corners, unsigned active) {
+    void test_block(const PolygonBlock<kCorners>& block, const Corners& corners, unsigned active) {
         const auto vertices = corners.of_all();
         while (active != 0) {
-            std::array<std::size_t, kShares> rays;
-            unsigned known = 0; // lanes that repeat the first ray, because too few are left
-            for (std::size_t i = 0; i < kShares; ++i) {
-                if (active == 0) known |= ((1u << kBlockSize) - 1) << (i * kBlockSize);
+            std::array<std::size_t, kRaysPerBatch> rays;
+            unsigned repeated_lanes = 0; // lanes that repeat the first ray, because too few are left
+            for (std::size_t i = 0; i < kRaysPerBatch; ++i) {
+                if (active == 0) repeated_lanes |= ((1u << kBlockSize) - 1) << (i * kBlockSize);
                 rays[i] = active != 0 ? static_cast<std::size_t>(std::countr_zero(active)) : rays[0];
                 active &= active - 1;
             }
-            const CandidateTest<Batch> test(packet_.shears(rays), vertices, RayPacket::share(best_.t, rays));
-            unsigned candidates = test.candidates() & ~known;
+            const CandidateTest<Batch> test(packet_.shears(rays), vertices, RayPacket::lanes_of(best_.t, rays));
+            unsigned candidates = test.candidates() & ~repeated_lanes;
             if (candidates == 0) continue;
             const Lanes t(test.t()), u(test.u()), v(test.v());
             for (; candidates != 0; candidates &= candidates - 1) {
@@ -213,7 +213,7 @@ private:
 
     // Tests one polygon at a time against all rays.
     template <std::size_t kCorners, typename Corners>
-    void one_by_one(const PolygonBlock<kCorners>& block, const Corners& corners, unsigned active) {
+    void test_each_polygon(const PolygonBlock<kCorners>& block, const Corners& corners, unsigned active) {
         for (std::size_t lane = 0; lane < kBlockSize; ++lane) {
             const float x = block.corner[0][0][lane];
             if (x != x) return; // this lane and all after it are unused
@@ -224,11 +224,12 @@ private:
             const unsigned ties = lane_bits((test.t() > packet_.t_min()) & (test.t() == ends()));
             const unsigned certain = test.certain() & candidates;
             if ((certain & nearer) != 0)
-                take(certain & nearer, test.t(), test.u(), test.v(), block.object[lane], block.primitive[lane]);
+                store_hits(certain & nearer, test.t(), test.u(), test.v(), block.object[lane], block.primitive[lane]);
             if ((certain & ties) != 0) consider_each(certain & ties, block, lane, test);
-            const unsigned touched = test.touched();
-            if ((touched & candidates) != 0) consider_touched(touched & candidates, block, lane, test);
-            for (unsigned rays = candidates & ~certain & ~touched; rays != 0; rays &= rays - 1)
+            const unsigned needs_distance = test.needs_distance();
+            if ((needs_distance & candidates) != 0)
+                consider_with_distance(needs_distance & candidates, block, lane, test);
+            for (unsigned rays = candidates & ~certain & ~needs_distance; rays != 0; rays &= rays - 1)
                 consider_exactly(block, lane, static_cast<std::size_t>(std::countr_zero(rays)));
         }
     }
@@ -240,7 +241,7 @@ private:
         for (std::size_t lane = 0; lane < kBlockSize; ++lane) {
             const Sphere sphere = block.sphere(lane);
             if (sphere.radius != sphere.radius) return; // this lane and all after it are unused
-            const unsigned candidates = filter.may_meet(sphere) & active;
+            const unsigned candidates = filter.may_hit(sphere) & active;
             if (candidates == 0) continue;
             const SphereRaysTest test(packet_.lines(), candidates, sphere, packet_.t_min(), ends());
             const unsigned nearer = test.hits() & lane_bits(test.t() < ends());
@@ -248,19 +249,19 @@ private:
             const Lanes t(test.t());
             for (unsigned ties = test.hits() & ~nearer; ties != 0; ties &= ties - 1) {
                 const auto ray = static_cast<std::size_t>(std::countr_zero(ties));
-                consider(ray, {name(block.object[lane]), 0, 0, 0, t[ray]});
+                consider(ray, {reported_object(block.object[lane]), 0, 0, 0, t[ray]});
             }
-            if (nearer != 0) take(nearer, test.t(), zero, zero, block.object[lane], 0);
+            if (nearer != 0) store_hits(nearer, test.t(), zero, zero, block.object[lane], 0);
         }
     }
 
     // Stores these hits as the best ones of the rays.
-    void take(unsigned rays, Batch t, Batch u, Batch v, std::uint32_t object, std::uint32_t primitive) {
-        nearer_ = true;
+    void store_hits(unsigned rays, Batch t, Batch u, Batch v, std::uint32_t object, std::uint32_t primitive) {
+        best_changed_ = true;
         store_lanes(t, rays, best_.t.data());
         store_lanes(u, rays, best_.u.data());
         store_lanes(v, rays, best_.v.data());
-        store_lanes(name(object), rays, best_.object);
+        store_lanes(reported_object(object), rays, best_.object);
         store_lanes(primitive, rays, best_.primitive);
     }
     template <typename Block>
@@ -273,8 +274,8 @@ private:
     }
     // Computes the missing hit distance of rays that start close to a polygon. Most of these rays leave it.
     template <std::size_t kCorners>
-    [[gnu::noinline]] void consider_touched(unsigned rays, const PolygonBlock<kCorners>& block, std::size_t lane,
-                                            const CandidateTest<Batch>& test) {
+    [[gnu::noinline]] void consider_with_distance(unsigned rays, const PolygonBlock<kCorners>& block, std::size_t lane,
+                                                  const CandidateTest<Batch>& test) {
         const Lanes u(test.u()), v(test.v());
         const unsigned first_half = kCorners == 3 ? ~0u : lane_bits(test.first_half());
         const auto corners = block.corners(lane);
@@ -294,7 +295,7 @@ private:
     }
     template <typename Block>
     void consider(const Block& block, std::size_t lane, std::size_t ray, const TriangleHit& hit) {
-        consider(ray, {name(block.object[lane]), block.primitive[lane], hit.u, hit.v, hit.t});
+        consider(ray, {reported_object(block.object[lane]), block.primitive[lane], hit.u, hit.v, hit.t});
     }
     void consider(std::size_t ray, const Hit& found) {
         if (precedes(found, best_.get(ray))) set_best(ray, found);
@@ -302,10 +303,10 @@ private:
 
     void set_best(std::size_t ray, const Hit& hit) {
         best_.set(ray, hit);
-        nearer_ = true;
+        best_changed_ = true;
     }
     Batch ends() const { return Batch::load_aligned(best_.t.data()); }
-    std::uint32_t name(std::uint32_t own) const { return object_ == kNoObject ? own : object_; }
+    std::uint32_t reported_object(std::uint32_t own) const { return object_ == kNoObject ? own : object_; }
 
     const Bvh& bvh_;
     const RayPacket& packet_;
@@ -314,11 +315,11 @@ private:
     std::uint32_t object_;
     const Instances& instances_;
     PacketHits& best_;
-    float last_;          // greatest t of the best hits
-    bool nearer_ = false; // whether a best hit changed since `last_` was computed
+    float farthest_;            // greatest t of the best hits
+    bool best_changed_ = false; // whether a best hit changed since `farthest_` was computed
     std::size_t size_ = 0;
     // A step down pushes at most kWidth children.
-    std::array<Waiting, BvhNode::kWidth * Bvh::kMaxDepth + 1> stack_;
+    std::array<PacketStackEntry, BvhNode::kWidth * Bvh::kMaxDepth + 1> stack_;
 };
 
 } // namespace duet::raytrace

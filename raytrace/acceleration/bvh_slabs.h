@@ -35,15 +35,15 @@ template <typename B> struct Slabs {
     /// the largest over all three axes, and `greatest_size` the largest absolute component of the direction.
     Slabs(B origin, B direction, B extent, B greatest_extent, B greatest_size) {
         const B sign = xsimd::bitwise_and(direction, B(-0.0f)), size = xsimd::abs(direction),
-                place = xsimd::abs(origin);
-        const B error = (extent + extent + greatest_extent + place) * B(SlabError::kRelative) +
+                magnitude = xsimd::abs(origin);
+        const B error = (extent + extent + greatest_extent + magnitude) * B(SlabError::kRelative) +
                         B(std::numeric_limits<float>::min());
         const B divisor = xsimd::max(xsimd::max(size, greatest_size * B(SlabError::kSmallest)),
-                                     SlabError::least_divisor(extent + place));
-        const B away = xsimd::bitwise_or(error, sign);
+                                     SlabError::least_divisor(extent + magnitude));
+        const B shift = xsimd::bitwise_or(error, sign);
         scale = xsimd::bitwise_or(B(1.0f) / divisor, sign);
-        near = -(origin + away) * scale;
-        far = -(origin - away) * scale;
+        near = -(origin + shift) * scale;
+        far = -(origin - shift) * scale;
     }
     /// Returns the largest distance from an origin to bounds along one axis.
     static B extent(float low, float high, B origin) {
@@ -58,11 +58,12 @@ public:
 
     SlabRay(const Ray& ray, const Box3& bounds) {
         // This code avoids branches on signs and sizes, which are mispredicted for incoherent rays.
-        using Four = FloatBatch<4>;
-        const auto four = [](Vec3 v) { return Four(_mm_setr_ps(v.x, v.y, v.z, 0.0f)); };
-        const Four origin = four(ray.origin), direction = four(ray.direction);
-        const Four extent = xsimd::max(xsimd::abs(four(bounds.low) - origin), xsimd::abs(four(bounds.high) - origin));
-        const Slabs<Four> slabs(origin, direction, extent, greatest(extent), greatest(xsimd::abs(direction)));
+        using Float4 = FloatBatch<4>;
+        const auto to_float4 = [](Vec3 v) { return Float4(_mm_setr_ps(v.x, v.y, v.z, 0.0f)); };
+        const Float4 origin = to_float4(ray.origin), direction = to_float4(ray.direction);
+        const Float4 extent =
+            xsimd::max(xsimd::abs(to_float4(bounds.low) - origin), xsimd::abs(to_float4(bounds.high) - origin));
+        const Slabs<Float4> slabs(origin, direction, extent, greatest(extent), greatest(xsimd::abs(direction)));
         alignas(16) std::array<float, 4> scales, nears, fars;
         slabs.scale.store_aligned(scales.data());
         slabs.near.store_aligned(nears.data());
@@ -86,7 +87,7 @@ public:
     Entered enter(const BvhNode& node, Batch t_min, Batch t_max) const {
         const auto slab = [&](std::size_t plane, Batch scale, Batch offset) {
             const auto* values = reinterpret_cast<const float*>(reinterpret_cast<const char*>(&node) + plane);
-            return fused(Batch::load_aligned(values), scale, offset);
+            return multiply_add(Batch::load_aligned(values), scale, offset);
         };
         // A NaN (from values out of range) is the first argument of min and max, which then return the second, so
         // that this slab is ignored.

@@ -34,8 +34,8 @@ public:
         std::size_t left_count = 0, right_count = 0;
     };
 
-    SpatialBinning(const Bounds& bounds, std::size_t bins, const OutlineOf& outline_of)
-        : box_(bounds.box()), count_(bins), outline_of_(outline_of) {
+    SpatialBinning(const Bounds& bounds, std::size_t bins, const PolygonOf& polygon_of)
+        : box_(bounds.box()), count_(bins), polygon_of_(polygon_of) {
         width_ = box_.high / static_cast<float>(bins) - box_.low / static_cast<float>(bins);
         for (std::size_t axis = 0; axis < 3; ++axis) per_width_[axis] = width_[axis] > 0 ? 1 / width_[axis] : 0;
     }
@@ -46,7 +46,7 @@ public:
         parallel_for(chunks, threads, [&](std::size_t i) {
             Bins& bins = i == 0 ? bins_ : others[i - 1];
             for (auto& axis : bins) std::fill_n(axis.begin(), count_, Bin());
-            Parts parts;
+            BinBounds parts;
             for (const BuildItem& item : items.subspan(i * kChunk, std::min(kChunk, items.size() - i * kChunk)))
                 add(bins, item, parts);
         });
@@ -55,9 +55,10 @@ public:
                 for (std::size_t k = 0; k < count_; ++k) bins_[axis][k].extend(other[axis][k]);
     }
 
-    // Returns the cheapest plane that adds at most `room` items and leaves fewer than all items on each side, or
+    // Returns the cheapest plane that adds at most `extra_items` items and leaves fewer than all items on each side, or
     // nothing if there is no such plane.
-    std::optional<Split> best(const RelativeArea& area, const Tests& tests, std::size_t count, std::size_t room) const {
+    std::optional<Split> best(const RelativeArea& area, const LeafCost& leaf_cost, std::size_t count,
+                              std::size_t extra_items) const {
         std::optional<Split> best;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             if (!usable(axis)) continue;
@@ -71,8 +72,9 @@ public:
             for (std::size_t i = 1; i < count_; ++i) {
                 left.extend(bins_[axis][i - 1]);
                 const std::size_t l = left.begin, r = right[i].end;
-                if (l == 0 || r == 0 || l >= count || r >= count || l + r > count + room) continue;
-                const float cost = kStepCost + area(left.bounds) * tests(l) + area(right[i].bounds) * tests(r);
+                if (l == 0 || r == 0 || l >= count || r >= count || l + r > count + extra_items) continue;
+                const float cost =
+                    kTraversalCost + area(left.bounds) * leaf_cost(l) + area(right[i].bounds) * leaf_cost(r);
                 if (!best || cost < best->cost)
                     best = Split{axis, plane(axis, i), cost, left.bounds, right[i].bounds, l, r};
             }
@@ -82,7 +84,7 @@ public:
 
 private:
     using Bins = std::array<std::array<Bin, kMaxBins>, 3>;
-    using Parts = std::array<Bounds, kMaxBins>; // bounds of an item's parts, by bin
+    using BinBounds = std::array<Bounds, kMaxBins>; // bounds of an item's parts, by bin
 
     bool usable(std::size_t axis) const {
         return plane(axis, 1) > box_.low[axis] && plane(axis, count_ - 1) < box_.high[axis];
@@ -90,50 +92,50 @@ private:
     float plane(std::size_t axis, std::size_t bin) const {
         return box_.low[axis] + width_[axis] * static_cast<float>(bin);
     }
-    std::size_t bin(std::size_t axis, float place) const {
-        const float at = (place - box_.low[axis]) * per_width_[axis];
+    std::size_t bin(std::size_t axis, float position) const {
+        const float at = (position - box_.low[axis]) * per_width_[axis];
         return static_cast<std::size_t>(clamp(at, 0.0f, static_cast<float>(count_ - 1)));
     }
 
-    void add(Bins& bins, const BuildItem& item, Parts& parts) const {
+    void add(Bins& bins, const BuildItem& item, BinBounds& parts) const {
         const Bounds box{low_corner(item), high_corner(item)};
-        std::optional<Outline> outline; // computed only if the item spans several bins of an axis
+        std::optional<ConvexPolygon> polygon; // computed only if the item spans several bins of an axis
         for (std::size_t axis = 0; axis < 3; ++axis) {
             if (!usable(axis)) continue;
             const std::size_t first = bin(axis, item.box.low[axis]);
             std::size_t last = bin(axis, item.box.high[axis]);
-            if (first != last && !outline) outline = outline_of_(item);
-            if (first != last && outline->count == 0) last = first;
+            if (first != last && !polygon) polygon = polygon_of_(item);
+            if (first != last && polygon->count == 0) last = first;
             ++bins[axis][first].begin;
             ++bins[axis][last].end;
             if (first == last)
                 bins[axis][first].bounds.extend(box);
             else
-                add_parts(bins[axis], box, *outline, axis, first, last, parts);
+                add_parts(bins[axis], box, *polygon, axis, first, last, parts);
         }
     }
 
     // Extends each bin by the part of a polygon between its planes. The parts are approximate, because they serve
     // only to choose a plane.
-    void add_parts(std::array<Bin, kMaxBins>& bins, const Bounds& box, const Outline& outline, std::size_t axis,
-                   std::size_t first, std::size_t last, Parts& parts) const {
+    void add_parts(std::array<Bin, kMaxBins>& bins, const Bounds& box, const ConvexPolygon& polygon, std::size_t axis,
+                   std::size_t first, std::size_t last, BinBounds& parts) const {
         std::fill(parts.begin() + static_cast<std::ptrdiff_t>(first),
                   parts.begin() + static_cast<std::ptrdiff_t>(last) + 1, Bounds());
-        const auto four = [](Vec3 p) {
+        const auto to_float4 = [](Vec3 p) {
             alignas(16) const std::array<float, 4> values{p.x, p.y, p.z, 0};
-            return Four::load_aligned(values.data());
+            return Float4::load_aligned(values.data());
         };
-        for (std::size_t i = 0; i < outline.count; ++i) {
-            Vec3 p = outline.corners[i], q = outline.corners[(i + 1) % outline.count];
-            const Four corner = four(p);
+        for (std::size_t i = 0; i < polygon.count; ++i) {
+            Vec3 p = polygon.corners[i], q = polygon.corners[(i + 1) % polygon.count];
+            const Float4 corner = to_float4(p);
             const std::size_t its_bin = bin(axis, p[axis]);
             if (first <= its_bin && its_bin <= last) parts[its_bin].extend(corner, corner);
             if (q[axis] < p[axis]) std::swap(p, q);
-            const Four from = four(p), way = four(q) - from;
+            const Float4 from = to_float4(p), direction = to_float4(q) - from;
             const float length = q[axis] - p[axis];
             const std::size_t end = std::min(bin(axis, q[axis]), last);
             for (std::size_t k = std::max(bin(axis, p[axis]), first); k < end; ++k) {
-                const Four cut = from + way * Four(min((plane(axis, k + 1) - p[axis]) / length, 1.0f));
+                const Float4 cut = from + direction * Float4(min((plane(axis, k + 1) - p[axis]) / length, 1.0f));
                 parts[k].extend(cut, cut);
                 parts[k + 1].extend(cut, cut);
             }
@@ -147,7 +149,7 @@ private:
     Box3 box_;
     Vec3 width_, per_width_;
     std::size_t count_;
-    const OutlineOf& outline_of_;
+    const PolygonOf& polygon_of_;
     Bins bins_;
 };
 

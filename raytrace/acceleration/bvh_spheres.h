@@ -15,7 +15,7 @@ namespace duet::raytrace {
 struct SphereRay {
     const Ray& ray;
     Vec3d origin;
-    SphereLine<double> line;
+    SphereTestLine<double> line;
 
     explicit SphereRay(const Ray& its) : ray(its), origin(its.origin), line(Vec3d(its.direction)) {}
 };
@@ -32,9 +32,9 @@ public:
             const auto along = [&](std::size_t axis) {
                 return load_doubles(block.center[axis].data() + i) - DoubleBatch(its.origin[axis]);
             };
-            const SphereTest<DoubleBatch> test({along(0), along(1), along(2)}, SphereLine<DoubleBatch>(its.line),
+            const SphereTest<DoubleBatch> test({along(0), along(1), along(2)}, SphereTestLine<DoubleBatch>(its.line),
                                                load_doubles(block.radius.data() + i));
-            const unsigned these = lane_bits(test.meets_ahead());
+            const unsigned these = lane_bits(test.hits_forward());
             met |= these << i;
             if (these == 0) continue;
             const auto roots = test.roots();
@@ -63,8 +63,8 @@ private:
 /// Holds the lines of N rays, one ray per lane: origin x, y, z, then direction x, y, z.
 template <std::size_t N> using LineLanes = std::array<std::array<float, N>, 6>;
 
-/// Returns 1 / d·d for the direction d of a line, as may_meet needs it. It is NaN where a square may underflow or
-/// overflow; may_meet never rejects such rays. T is float or a batch of floats.
+/// Returns 1 / d·d for the direction d of a line, as may_hit needs it. It is NaN where a square may underflow or
+/// overflow; may_hit never rejects such rays. T is float or a batch of floats.
 template <typename T> T filter_scale(const Vec3T<T>& direction) {
     const T squared = dot(direction, direction);
     const auto in_range = (squared > T(1e-20f)) & (squared < T(1e20f));
@@ -75,7 +75,7 @@ template <typename T> T filter_scale(const Vec3T<T>& direction) {
 /// less than 10u|g|, and so is that point; its distance from the center is off by less than 14u|g|. (Where these
 /// values overflow, both sides of the comparison are infinite. Unused lanes, whose radius is NaN, are never set.)
 template <typename Batch>
-unsigned may_meet(const Vec3T<Batch>& to_center, const Vec3T<Batch>& direction, Batch scale, Batch radius) {
+unsigned may_hit(const Vec3T<Batch>& to_center, const Vec3T<Batch>& direction, Batch scale, Batch radius) {
     const Vec3T<Batch> closest = direction * (dot(to_center, direction) * scale) - to_center;
     const Batch far = xsimd::abs(to_center.x) + xsimd::abs(to_center.y) + xsimd::abs(to_center.z) + radius;
     const Batch reach = radius + far * Batch(16 * kRoundoff<float>) + Batch(std::numeric_limits<float>::min());
@@ -83,7 +83,7 @@ unsigned may_meet(const Vec3T<Batch>& to_center, const Vec3T<Batch>& direction, 
     return ~lane_bits(dot(closest, closest) > reach * reach) & lane_bits(radius == radius) & kAll;
 }
 
-/// Tests N rays against one sphere at a time with may_meet.
+/// Tests N rays against one sphere at a time with may_hit.
 template <std::size_t N> class SphereFilter {
 public:
     using Batch = FloatBatch<N>;
@@ -92,10 +92,10 @@ public:
         : origin_(load(lines, 0)), direction_(load(lines, 3)), scale_(filter_scale(direction_)) {}
 
     /// Returns a bit mask of the rays whose line may hit the sphere.
-    unsigned may_meet(const Sphere& sphere) const {
+    unsigned may_hit(const Sphere& sphere) const {
         const Vec3T<Batch> to_center(Batch(sphere.center.x) - origin_.x, Batch(sphere.center.y) - origin_.y,
                                      Batch(sphere.center.z) - origin_.z);
-        return raytrace::may_meet(to_center, direction_, scale_, Batch(sphere.radius));
+        return raytrace::may_hit(to_center, direction_, scale_, Batch(sphere.radius));
     }
 
 private:
@@ -123,9 +123,9 @@ public:
             const auto load = [&](std::size_t column) { return load_doubles(lines[column].data() + i); };
             const SphereTest<DoubleBatch> test({spread(sphere.center.x) - load(0), spread(sphere.center.y) - load(1),
                                                 spread(sphere.center.z) - load(2)},
-                                               SphereLine<DoubleBatch>({load(3), load(4), load(5)}),
+                                               SphereTestLine<DoubleBatch>({load(3), load(4), load(5)}),
                                                spread(sphere.radius));
-            const unsigned met = lane_bits(test.meets_ahead());
+            const unsigned met = lane_bits(test.hits_forward());
             hits_ |= met << i;
             if (met == 0) continue;
             const auto roots = test.roots();

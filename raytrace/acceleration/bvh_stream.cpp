@@ -15,13 +15,13 @@ namespace {
 
 // A streamable hierarchy has at most this many nodes. No ray visits a node twice, so lists with room for this many
 // nodes times the rays of a stream hold all possible pairs.
-constexpr std::size_t kMostNodes = 64;
+constexpr std::size_t kMaxNodes = 64;
 // A ray may be expected to visit at most this many leaves of a streamable hierarchy. A single ray skips what lies
 // behind its closest hit, but a stream does not, and so it loses where rays visit many leaves. Measurements: clouds
 // of 100 to 2,000 spheres of 0.02 to 0.4 of the cloud's side, with and without a ground, Zen 5, rays from the
 // spheres' surfaces. The time of a stream relative to single rays was 0.5 to 0.6 up to 4 expected leaves, 0.65 to
 // 0.85 from 4 to 10, 0.8 to 1.2 from 10 to 18, and 1.0 to 1.4 beyond. (models/spheres.json has 2 expected leaves.)
-constexpr double kMostLeaves = 10;
+constexpr double kMaxExpectedLeaves = 10;
 
 // Returns how many leaves below `ref` a ray is expected to visit if it enters its box of half area `area`, by the
 // SAH.
@@ -49,13 +49,13 @@ double expected_leaves(const Bvh& bvh) {
 }
 
 /// Stores pairs of the index of a ray and the index of what it is to be tested against.
-template <std::size_t kMost> class StreamPairs {
+template <std::size_t kCapacity> class StreamPairs {
 public:
     static constexpr std::size_t kLanes = kSimdLanes;
 
     std::size_t size() const { return size_; }
     /// Returns whether `times` · kLanes more pairs fit.
-    bool has_room(std::size_t times) const { return size_ + times * kLanes <= kMost; }
+    bool has_room(std::size_t times) const { return size_ + times * kLanes <= kCapacity; }
     void clear() { size_ = 0; }
     std::uint32_t ray(std::size_t i) const { return rays_[i]; }
     std::uint32_t other(std::size_t i) const { return others_[i]; }
@@ -74,7 +74,7 @@ public:
         Writer(const Writer&) = delete;
         Writer& operator=(const Writer&) = delete;
 
-        /// Appends the pairs of a ray and those of kLanes `others` whose bit in `which` is set.
+        /// Appends the pairs of a ray and those of kLanes `others` whose bit in `indices` is set.
         void add(std::uint32_t ray, const std::uint32_t* others, unsigned which) {
             const auto all = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(others));
             const auto some = _mm256_maskz_compress_epi32(static_cast<__mmask8>(which), all);
@@ -96,12 +96,12 @@ public:
 private:
     // The arrays are not initialized, because that would clear them for each stream. Writers store up to kLanes
     // values more than they count.
-    std::array<std::uint32_t, kMost + kLanes> rays_, others_;
+    std::array<std::uint32_t, kCapacity + kLanes> rays_, others_;
     std::size_t size_ = 0;
 };
 
-/// Holds the slabs of up to kMost rays in structure-of-arrays layout; see SlabRay.
-template <std::size_t kMost> class SlabRays {
+/// Holds the slabs of up to kCapacity rays in structure-of-arrays layout; see SlabRay.
+template <std::size_t kCapacity> class SlabRays {
 public:
     using Batch = SlabRay::Batch;
     static constexpr std::size_t kLanes = BvhNode::kWidth; // number of a node's children, and of the rays set at once
@@ -132,7 +132,7 @@ public:
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const std::size_t high = std::bit_cast<std::uint32_t>(sign_[axis][ray]) >> 31;
             const auto slab = [&](std::size_t plane, float offset) {
-                return fused(Batch::load_aligned(node.planes[plane].data()), Batch(scale_[axis][ray]), Batch(offset));
+                return multiply_add(Batch::load_aligned(node.planes[plane].data()), Batch(scale_[axis][ray]), Batch(offset));
             };
             near = xsimd::max(slab(axis + 3 * high, near_[axis][ray]), near);
             far = xsimd::min(slab(axis + 3 - 3 * high, far_[axis][ray]), far);
@@ -141,8 +141,8 @@ public:
     }
 
 private:
-    using Numbers = std::array<std::array<float, kMost>, 3>;
-    alignas(sizeof(Batch)) Numbers scale_, near_, far_, sign_; // not initialized, like the pairs
+    using PerRay = std::array<std::array<float, kCapacity>, 3>;
+    alignas(sizeof(Batch)) PerRay scale_, near_, far_, sign_; // not initialized, like the pairs
 };
 
 /// Traverses a streamable hierarchy with up to kSize rays.
@@ -150,22 +150,22 @@ class RayStream {
 public:
     static constexpr std::size_t kSize = 64;
 
-    /// Takes the rays with the indices `which`. run() finds for each what `find_closest` finds, and writes it to
+    /// Takes the rays with the indices `indices`. run() finds for each what `find_closest` finds, and writes it to
     /// `hits` at the same index.
-    RayStream(const Bvh& bvh, std::span<const Ray> rays, std::span<const std::uint32_t> which, std::span<Hit> hits)
-        : bvh_(bvh), rays_(rays), which_(which), hits_(hits) {
-        DUET_CHECK_LE(which.size(), kSize);
+    RayStream(const Bvh& bvh, std::span<const Ray> rays, std::span<const std::uint32_t> indices, std::span<Hit> hits)
+        : bvh_(bvh), rays_(rays), indices_(indices), hits_(hits) {
+        DUET_CHECK_LE(indices.size(), kSize);
     }
 
     void run() {
-        for (std::size_t i = 0; i < which_.size(); i += kLanes) start(i);
+        for (std::size_t i = 0; i < indices_.size(); i += kLanes) start(i);
         for (Pairs *level = &nodes_[0], *below = &nodes_[1]; level->size() > 0; std::swap(level, below)) {
             below->clear();
             for (std::size_t k = 0; k < level->size(); k += kChunk) enter(*level, k, *below);
         }
         test_leaves();
         test_spheres();
-        for (std::size_t i = 0; i < which_.size(); ++i) hits_[which_[i]] = best_[i].valid() ? best_[i] : Hit();
+        for (std::size_t i = 0; i < indices_.size(); ++i) hits_[indices_[i]] = best_[i].valid() ? best_[i] : Hit();
     }
 
 private:
@@ -177,12 +177,12 @@ private:
         bool operator()(const BvhInstance&, Hit&) const { return false; }
     };
 
-    using Pairs = StreamPairs<kSize * kMostNodes>;
-    using SomePairs = StreamPairs<512>;
+    using Pairs = StreamPairs<kSize * kMaxNodes>;
+    using LeafPairs = StreamPairs<512>;
     std::array<Pairs, 2> nodes_; // pairs of the current level and of the one below
-    SomePairs leaves_, spheres_; // pairs that are not tested yet
+    LeafPairs leaves_, spheres_; // pairs that are not tested yet
 
-    const Ray& ray(std::size_t i) const { return rays_[which_[i]]; }
+    const Ray& ray(std::size_t i) const { return rays_[indices_[i]]; }
     static_assert(offsetof(Ray, origin) == 0 && offsetof(Ray, direction) == 3 * sizeof(float) &&
                   offsetof(Ray, t_min) == 6 * sizeof(float) && offsetof(Ray, t_max) == 7 * sizeof(float));
     // Loads the components of the N rays at(0) to at(N - 1): a batch per component.
@@ -196,7 +196,7 @@ private:
     }
 
     [[gnu::flatten]] void start(std::size_t first) {
-        const std::size_t size = std::min(which_.size() - first, kLanes);
+        const std::size_t size = std::min(indices_.size() - first, kLanes);
         const auto [ox, oy, oz, dx, dy, dz, t_min, t_max] =
             columns<kLanes>([&](std::size_t i) -> const Ray& { return ray(first + (i < size ? i : 0)); });
         const Vec3T<Batch> direction(dx, dy, dz);
@@ -215,7 +215,7 @@ private:
     void enter(const Pairs& level, std::size_t first, Pairs& below) {
         if (!leaves_.has_room(kChunk)) test_leaves();
         Pairs::Writer nodes(below);
-        SomePairs::Writer leaves(leaves_);
+        LeafPairs::Writer leaves(leaves_);
         const std::size_t end = std::min(first + kChunk, level.size());
         for (std::size_t k = first; k < end; ++k) {
             const std::uint32_t i = level.ray(k);
@@ -238,7 +238,7 @@ private:
     }
     void test_leaves(std::size_t first, std::size_t end) {
         if (!spheres_.has_room(kChunk)) test_spheres();
-        SomePairs::Writer spheres(spheres_);
+        LeafPairs::Writer spheres(spheres_);
         for (std::size_t k = first; k < end; ++k) {
             const std::uint32_t i = leaves_.ray(k);
             const BvhRef leaf = BvhRef::from_bits(leaves_.other(k));
@@ -250,19 +250,19 @@ private:
     }
 
     // Appends the spheres of a block that the ray's line may hit.
-    [[gnu::always_inline]] void filter(std::uint32_t i, std::uint32_t index, SomePairs::Writer& spheres) const {
+    [[gnu::always_inline]] void filter(std::uint32_t i, std::uint32_t index, LeafPairs::Writer& spheres) const {
         const SphereBlock& block = bvh_.spheres[index];
         const Ray& line = ray(i);
         const auto along = [&](std::size_t axis) {
             return Batch::load_aligned(block.center[axis].data()) - Batch(line.origin[axis]);
         };
-        const unsigned met = may_meet<Batch>({along(0), along(1), along(2)}, spread<Batch>(line.direction),
-                                             Batch(scales_[i]), Batch::load_aligned(block.radius.data()));
+        const unsigned hit_lanes = may_hit<Batch>({along(0), along(1), along(2)}, broadcast<Batch>(line.direction),
+                                                  Batch(scales_[i]), Batch::load_aligned(block.radius.data()));
         using Whole = xsimd::make_sized_batch_t<std::uint32_t, kLanes>;
         alignas(32) static constexpr std::array<std::uint32_t, 8> kEach{0, 1, 2, 3, 4, 5, 6, 7};
-        alignas(32) BlockLanes<std::uint32_t> places;
-        (Whole::load_aligned(kEach.data()) + Whole(index * kBlockFloats)).store_aligned(places.data());
-        spheres.add(i, places.data(), met);
+        alignas(32) BlockLanes<std::uint32_t> offsets;
+        (Whole::load_aligned(kEach.data()) + Whole(index * kBlockFloats)).store_aligned(offsets.data());
+        spheres.add(i, offsets.data(), hit_lanes);
     }
 
     // Tests the listed spheres in double precision, as SphereBlockTest does.
@@ -278,28 +278,28 @@ private:
             };
             const SphereTest<DoubleBatch> test(
                 {sphere(0) - to_doubles(ox), sphere(1) - to_doubles(oy), sphere(2) - to_doubles(oz)},
-                SphereLine<DoubleBatch>({to_doubles(dx), to_doubles(dy), to_doubles(dz)}), sphere(3));
-            unsigned met = lane_bits(test.meets_ahead());
-            if (met == 0) continue;
+                SphereTestLine<DoubleBatch>({to_doubles(dx), to_doubles(dy), to_doubles(dz)}), sphere(3));
+            unsigned hit_lanes = lane_bits(test.hits_forward());
+            if (hit_lanes == 0) continue;
             const auto roots = test.roots();
             const NarrowBatch near = to_floats(roots.near), far = to_floats(roots.far);
             const NarrowBatch t = xsimd::select(near > t_min, near, far);
-            met &= lane_bits(t > t_min) & ((1u << std::min(spheres_.size() - k, kDoubles)) - 1);
+            hit_lanes &= lane_bits(t > t_min) & ((1u << std::min(spheres_.size() - k, kDoubles)) - 1);
             const Lanes<NarrowBatch> distances(t);
-            for (; met != 0; met &= met - 1) {
-                const auto lane = static_cast<std::size_t>(std::countr_zero(met));
+            for (; hit_lanes != 0; hit_lanes &= hit_lanes - 1) {
+                const auto lane = static_cast<std::size_t>(std::countr_zero(hit_lanes));
                 consider(spheres_.ray(k + lane), spheres_.other(k + lane), distances[lane]);
             }
         }
         spheres_.clear();
     }
-    void consider(std::uint32_t i, std::uint32_t place, float t) {
-        const Hit hit{bvh_.spheres[place / kBlockFloats].object[place % kBlockFloats], 0, 0, 0, t};
+    void consider(std::uint32_t i, std::uint32_t offset, float t) {
+        const Hit hit{bvh_.spheres[offset / kBlockFloats].object[offset % kBlockFloats], 0, 0, 0, t};
         if (precedes(hit, best_[i])) best_[i] = hit; // best_[i].t is the ray's end while there is no hit
     }
 
-    static NarrowBatch gathered(const float* from, const std::uint32_t* places) {
-        return _mm256_i32gather_ps(from, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(places)), 4);
+    static NarrowBatch gathered(const float* from, const std::uint32_t* offsets) {
+        return _mm256_i32gather_ps(from, _mm256_loadu_si256(reinterpret_cast<const __m256i*>(offsets)), 4);
     }
 
     // A sphere is identified by the index of its center's x among the floats of all blocks. Its y, z and radius
@@ -309,7 +309,7 @@ private:
 
     const Bvh& bvh_;
     const std::span<const Ray> rays_;
-    const std::span<const std::uint32_t> which_;
+    const std::span<const std::uint32_t> indices_;
     const std::span<Hit> hits_;
     SlabRays<kSize> slabs_;
     alignas(64) std::array<float, kSize> scales_; // values of filter_scale
@@ -319,14 +319,14 @@ private:
 } // namespace
 
 bool streamable(const Bvh& bvh) {
-    return bvh.use_tree() && bvh.nodes.size() <= kMostNodes && bvh.instances.empty() &&
-           bvh.spheres.size() > bvh.triangles.size() + bvh.quads.size() && expected_leaves(bvh) <= kMostLeaves;
+    return bvh.use_tree() && bvh.nodes.size() <= kMaxNodes && bvh.instances.empty() &&
+           bvh.spheres.size() > bvh.triangles.size() + bvh.quads.size() && expected_leaves(bvh) <= kMaxExpectedLeaves;
 }
 
-void find_closest_of_stream(const Bvh& bvh, std::span<const Ray> rays, std::span<const std::uint32_t> which,
+void find_closest_of_stream(const Bvh& bvh, std::span<const Ray> rays, std::span<const std::uint32_t> indices,
                             std::span<Hit> hits) {
-    for (; !which.empty(); which = which.subspan(std::min(which.size(), RayStream::kSize)))
-        RayStream(bvh, rays, which.first(std::min(which.size(), RayStream::kSize)), hits).run();
+    for (; !indices.empty(); indices = indices.subspan(std::min(indices.size(), RayStream::kSize)))
+        RayStream(bvh, rays, indices.first(std::min(indices.size(), RayStream::kSize)), hits).run();
 }
 
 #else // without AVX-512

@@ -20,11 +20,11 @@ bool streamable(const Bvh& bvh);
 
 /// Fewer rays than this are faster one by one. (Time of a stream relative to single rays, spheres.json, Zen 5: 1 ray
 /// 2.6, 2 rays 1.45, 3 rays 1.07, 4 rays 0.94, 5 rays 0.86, 8 rays 0.72, 64 rays 0.65.)
-inline constexpr std::size_t kFewestStreamed = 4;
+inline constexpr std::size_t kMinStreamSize = 4;
 
-/// Finds the closest hits of the rays with the indices `which`, bit-equal to those of `find_closest`, and writes
+/// Finds the closest hits of the rays with the indices `indices`, bit-equal to those of `find_closest`, and writes
 /// them to `hits` at the same indices. The hierarchy must be streamable.
-void find_closest_of_stream(const Bvh& bvh, std::span<const Ray> rays, std::span<const std::uint32_t> which,
+void find_closest_of_stream(const Bvh& bvh, std::span<const Ray> rays, std::span<const std::uint32_t> indices,
                             std::span<Hit> hits);
 
 } // namespace duet::raytrace

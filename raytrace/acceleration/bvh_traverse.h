@@ -19,11 +19,11 @@ inline const BvhNode& node_at(const Bvh& bvh, BvhRef ref) {
 inline void prefetch(const Bvh& bvh, BvhRef child) {
     const bool leaf = child.is_leaf();
     if (leaf && child.kind() != PrimitiveKind::kTriangle) return; // other leaves are few, and mostly in a cache
-    const char* place = leaf ? reinterpret_cast<const char*>(bvh.triangles.data() + child.index())
-                             : reinterpret_cast<const char*>(&node_at(bvh, child));
+    const char* address = leaf ? reinterpret_cast<const char*>(bvh.triangles.data() + child.index())
+                               : reinterpret_cast<const char*>(&node_at(bvh, child));
     constexpr std::size_t kLine = 64;
     for (std::size_t i = 0; i < (leaf ? sizeof(TriangleBlock) : sizeof(BvhNode)); i += kLine)
-        __builtin_prefetch(place + i);
+        __builtin_prefetch(address + i);
 }
 
 /// Components of a ray larger than this, and directions with all components smaller than its reciprocal, would
@@ -42,18 +42,18 @@ inline bool traceable(const Ray& ray) {
 /// Stores a child on the traversal stack: the distance at which the ray enters its box, and the reference to it.
 /// Both are in one integer, so that a stack is written and sorted at least cost: floats that are not negative have
 /// the same order as their bits.
-class Waiting {
+class StackEntry {
 public:
-    Waiting() = default; // not initialized, because that would clear a stack for each ray
-    Waiting(float entry, BvhRef child)
+    StackEntry() = default; // not initialized, because that would clear a stack for each ray
+    StackEntry(float entry, BvhRef child)
         : bits_(std::uint64_t{std::bit_cast<std::uint32_t>(entry)} << 32 | child.bits()) {}
 
     float entry() const { return std::bit_cast<float>(static_cast<std::uint32_t>(bits_ >> 32)); }
     BvhRef child() const { return BvhRef::from_bits(static_cast<std::uint32_t>(bits_)); }
-    bool nearer_than(Waiting other) const { return bits_ < other.bits_; }
+    bool nearer_than(StackEntry other) const { return bits_ < other.bits_; }
 
     /// Returns the nearer of two and sets `farther` to the other, without a branch.
-    friend Waiting take_nearer(Waiting a, Waiting b, Waiting& farther) {
+    friend StackEntry take_nearer(StackEntry a, StackEntry b, StackEntry& farther) {
         farther.bits_ = a.bits_ < b.bits_ ? b.bits_ : a.bits_;
         a.bits_ = a.bits_ < b.bits_ ? a.bits_ : b.bits_;
         return a;
@@ -84,7 +84,7 @@ bool find_closest(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& bes
     LeafTest<false, Instance> test_leaf(bvh, ray, object, instance);
 
     // A step down pushes at most kWidth − 1 children.
-    std::array<Waiting, (BvhNode::kWidth - 1) * Bvh::kMaxDepth + 1> stack;
+    std::array<StackEntry, (BvhNode::kWidth - 1) * Bvh::kMaxDepth + 1> stack;
     std::size_t size = 0;
     const SlabRay::Batch t_min(ray.t_min);
     BvhRef next = BvhRef::node(0);
@@ -104,12 +104,12 @@ bool find_closest(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& bes
             const auto take = [&] {
                 const auto child = static_cast<std::size_t>(std::countr_zero(children));
                 children &= children - 1;
-                return Waiting(entry[child], node.children[child]);
+                return StackEntry(entry[child], node.children[child]);
             };
             const std::size_t bottom = size;
-            Waiting nearest = take_nearer(Waiting(entry[first], node.children[first]), take(), stack[size++]);
+            StackEntry nearest = take_nearer(StackEntry(entry[first], node.children[first]), take(), stack[size++]);
             while (children != 0) {
-                Waiting other;
+                StackEntry other;
                 nearest = take_nearer(nearest, take(), other);
                 // The children are sorted so that the farthest is lowest on the stack.
                 std::size_t i = size++;

@@ -54,7 +54,7 @@ public:
     };
     Entering enter(const BvhNode& node, std::size_t child, Batch ends) const {
         const auto slab = [&](std::size_t plane, std::size_t axis, Batch offset) {
-            return fused(Batch(plane_of(node, plane)[child]), scale_[axis], offset);
+            return multiply_add(Batch(plane_of(node, plane)[child]), scale_[axis], offset);
         };
         const auto near_slab = [&](std::size_t axis) { return slab(near_plane_[axis], axis, near_offset_[axis]); };
         const auto far_slab = [&](std::size_t axis) { return slab(far_plane_[axis], axis, far_offset_[axis]); };
@@ -67,11 +67,13 @@ public:
     const std::optional<Vec3>& origin() const { return origin_; }
     /// Returns the shears of some of the rays, each repeated in its share of the lanes.
     template <std::size_t N> Shear<Batch> shears(const std::array<std::size_t, N>& rays) const {
-        const auto pick = [&](std::size_t k) { return share(lanes_[k], rays); };
+        const auto pick = [&](std::size_t k) { return lanes_of(lanes_[k], rays); };
         return {shear_.kx, shear_.ky, shear_.kz, {pick(0), pick(1), pick(2)}, pick(3), pick(4), pick(5), pick(6)};
     }
-    static Batch share(const Values& values, const std::array<std::size_t, 1>& rays) { return Batch(values[rays[0]]); }
-    static Batch share(const Values& values, const std::array<std::size_t, 2>& rays) {
+    static Batch lanes_of(const Values& values, const std::array<std::size_t, 1>& rays) {
+        return Batch(values[rays[0]]);
+    }
+    static Batch lanes_of(const Values& values, const std::array<std::size_t, 2>& rays) {
         return halves<kSize>(values[rays[0]], values[rays[1]]);
     }
 
@@ -115,9 +117,9 @@ private:
             const unsigned negative = lane_bits(direction[axis] < zero);
             const bool mixed = negative != 0 && negative != kAll;
             if (lane_bits(in_range) != kAll || (mixed && (one_octant || axis == z_axis))) return false;
-            backwards_[axis] = negative != 0;
-            near_plane_[axis] = sizeof(BvhNode::Lanes) * (axis + 3 * backwards_[axis]);
-            far_plane_[axis] = sizeof(BvhNode::Lanes) * (axis + 3 * !backwards_[axis]);
+            negative_[axis] = negative != 0;
+            near_plane_[axis] = sizeof(BvhNode::Lanes) * (axis + 3 * negative_[axis]);
+            far_plane_[axis] = sizeof(BvhNode::Lanes) * (axis + 3 * !negative_[axis]);
         }
         const Vec3T<Batch> size(xsimd::abs(direction.x), xsimd::abs(direction.y), xsimd::abs(direction.z));
         const unsigned x = lane_bits((size.x >= size.y) & (size.x >= size.z)), y = lane_bits(size.y >= size.z) & ~x;
@@ -129,7 +131,7 @@ private:
     // Computes for all rays what ShearedRay computes for one.
     Shear<Batch> sheared(const Vec3T<Batch>& origin, const Vec3T<Batch>& direction) {
         const std::size_t kz = shear_.kz, next = (kz + 1) % 3, after = (kz + 2) % 3;
-        const std::size_t kx = backwards_[kz] ? after : next, ky = backwards_[kz] ? next : after;
+        const std::size_t kx = negative_[kz] ? after : next, ky = negative_[kz] ? next : after;
         const Shear<Batch> shear{kx,
                                  ky,
                                  kz,
@@ -138,8 +140,8 @@ private:
                                  direction[ky] / direction[kz],
                                  Batch(1.0f) / direction[kz],
                                  xsimd::abs(direction[kz])};
-        const Batch values[] = {shear.origin.x, shear.origin.y, shear.origin.z, shear.sx,
-                                shear.sy,       shear.sz,       shear.speed};
+        const Batch values[] = {shear.origin.x, shear.origin.y, shear.origin.z,   shear.sx,
+                                shear.sy,       shear.sz,       shear.depth_per_t};
         for (std::size_t k = 0; k < std::size(values); ++k) values[k].store_aligned(lanes_[k].data());
         return shear;
     }
@@ -155,16 +157,16 @@ private:
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const float error =
                 (2 * extents[axis] + largest + sizes[axis]) * SlabError::kRelative + std::numeric_limits<float>::min();
-            const float sign = backwards_[axis] ? -1.0f : 1.0f, away = error * sign;
+            const float sign = negative_[axis] ? -1.0f : 1.0f, shift = error * sign;
             const Batch least(SlabError::least_divisor(extents[axis] + sizes[axis]));
             scale_[axis] = Batch(sign) / xsimd::max(xsimd::max(xsimd::abs(direction[axis]), smallest), least);
-            near_offset_[axis] = -(origin[axis] + Batch(away)) * scale_[axis];
-            far_offset_[axis] = -(origin[axis] - Batch(away)) * scale_[axis];
-            ahead[axis] = (backwards_[axis] ? origins.low[axis] : origins.high[axis]) + away;
-            behind[axis] = (backwards_[axis] ? origins.high[axis] : origins.low[axis]) - away;
+            near_offset_[axis] = -(origin[axis] + Batch(shift)) * scale_[axis];
+            far_offset_[axis] = -(origin[axis] - Batch(shift)) * scale_[axis];
+            ahead[axis] = (negative_[axis] ? origins.low[axis] : origins.high[axis]) + shift;
+            behind[axis] = (negative_[axis] ? origins.high[axis] : origins.low[axis]) - shift;
         }
-        const Lanes low(lowest_of_each(std::array{scale_[0], scale_[1], scale_[2], t_min_})),
-            minus_high(lowest_of_each(std::array{-scale_[0], -scale_[1], -scale_[2], t_min_}));
+        const Lanes low(reduce_min_of_each(std::array{scale_[0], scale_[1], scale_[2], t_min_})),
+            minus_high(reduce_min_of_each(std::array{-scale_[0], -scale_[1], -scale_[2], t_min_}));
         for (std::size_t axis = 0; axis < 3; ++axis) {
             near_interval_[axis] = {low[axis], -minus_high[axis], ahead[axis]};
             far_interval_[axis] = {low[axis], -minus_high[axis], behind[axis]};
@@ -172,8 +174,8 @@ private:
         first_ = low[3];
     }
     static Box3 extent_of(const Vec3T<Batch>& points) {
-        return {{lowest(points.x), lowest(points.y), lowest(points.z)},
-                {highest(points.x), highest(points.y), highest(points.z)}};
+        return {{reduce_min(points.x), reduce_min(points.y), reduce_min(points.z)},
+                {reduce_max(points.x), reduce_max(points.y), reduce_max(points.z)}};
     }
     static const float* plane_of(const BvhNode& node, std::size_t plane) {
         return reinterpret_cast<const float*>(reinterpret_cast<const char*>(&node) + plane);
@@ -182,7 +184,7 @@ private:
     static constexpr unsigned kAllRays = (1u << kSize) - 1;
 
     bool coherent_;
-    std::array<bool, 3> backwards_;
+    std::array<bool, 3> negative_;
     std::array<std::size_t, 3> near_plane_, far_plane_; // offsets in bytes from the node
     std::optional<Vec3> origin_;
     Shear<Batch> shear_;

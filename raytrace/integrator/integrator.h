@@ -3,8 +3,8 @@
 #pragma once
 
 #include "common/sampling/sampler.h"
-#include "raytrace/integrator/light_parts.h"
-#include "raytrace/plan.h"
+#include "raytrace/integrator/light_components.h"
+#include "raytrace/render_plan.h"
 
 #include <span>
 
@@ -28,16 +28,16 @@ struct RayCounts {
 // dimension that is not used somewhere does not shift the dimensions elsewhere.
 
 /// Holds the random samples in [0, 1) that a vertex uses. T is float, or a batch of floats for one vertex per lane.
-template <typename T> struct VertexNumbersT {
+template <typename T> struct VertexRandomSamplesT {
     Vec2T<T> bsdf, light;
     T light_choice, lobe, roulette;
 };
-using VertexNumbers = VertexNumbersT<float>;
+using VertexRandomSamples = VertexRandomSamplesT<float>;
 /// Returns the first sample dimension of the vertex after `depth` scatterings.
 inline std::uint32_t vertex_dimension(int depth) {
     return static_cast<std::uint32_t>(Sampler::kBlock) * static_cast<std::uint32_t>(depth + 1);
 }
-inline VertexNumbers vertex_numbers(Sampler& sampler, int depth) {
+inline VertexRandomSamples vertex_random_samples(Sampler& sampler, int depth) {
     sampler.set_dimension(vertex_dimension(depth));
     const Sampler::Block u = sampler.get_block();
     return {{u[0], u[1]}, {u[2], u[3]}, u[4], u[5], u[6]};
@@ -50,9 +50,9 @@ using RadianceFunction = Rgb (*)(const RenderPlan& plan, const Ray& ray, const H
 
 Rgb path_radiance(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);        ///< path.cpp
 Rgb unshadowed_radiance(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);  ///< unshadowed.cpp
-Rgb lights_radiance(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);      ///< single_part.cpp
-Rgb environment_radiance(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&); ///< single_part.cpp
-Rgb reflection_radiance(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);  ///< single_part.cpp
+Rgb lights_radiance(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);      ///< single_component.cpp
+Rgb environment_radiance(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&); ///< single_component.cpp
+Rgb reflection_radiance(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);  ///< single_component.cpp
 Rgb normal_color(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);         ///< surface_colors.cpp
 Rgb albedo_color(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);         ///< surface_colors.cpp
 
@@ -64,7 +64,7 @@ void path_radiances(const RenderPlan&, std::span<Ray> rays, std::span<Hit> hits,
 
 /// Computes path_radiance from the same random samples, split into components. Their sum equals path_radiance except
 /// for rounding.
-LightParts path_parts(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&); ///< path.cpp
+LightComponents path_components(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&); ///< path.cpp
 
 /// Returns the function of an integrator. Path, naive and direct share one function, because they differ only in
 /// their plans.

@@ -1,30 +1,30 @@
 #include "raytrace/integrator/light_sampling.h"
 
 #include "common/geometry/quad.h"
-#include "common/scene/lamp_texture.h"
+#include "common/scene/emitter_texture.h"
 #include "common/vec/robust.h"
 
 namespace duet::raytrace {
 
-std::optional<Arrival> sample_arrival(const Scene& scene, const LightChooser& lights, const LightReceiver& receiver,
-                                      float choice, Vec2 u) {
-    const std::optional<LightChoice> chosen = lights.sample(receiver, choice);
-    return chosen ? sample_arrival(scene, lights, receiver, *chosen, u) : std::nullopt;
+std::optional<LightLiSample> sample_li(const Scene& scene, const LightSampler& lights, const LightReceiver& receiver,
+                                       float choice, Vec2 u) {
+    const std::optional<SampledLight> chosen = lights.sample(receiver, choice);
+    return chosen ? sample_li(scene, lights, receiver, *chosen, u) : std::nullopt;
 }
 
-std::optional<Arrival> sample_arrival(const Scene& scene, const LightChooser& lights, const LightReceiver& receiver,
-                                      const LightChoice& chosen, Vec2 u) {
+std::optional<LightLiSample> sample_li(const Scene& scene, const LightSampler& lights, const LightReceiver& receiver,
+                                       const SampledLight& chosen, Vec2 u) {
     if (chosen.index == lights.environment_index()) {
         const std::optional<EnvironmentSample> s = sample(scene.environment, u);
         if (!s) return std::nullopt;
-        return Arrival{{s->wi, s->radiance, s->pdf * chosen.probability, false}, kInfinity, -1};
+        return LightLiSample{{s->wi, s->radiance, s->pdf * chosen.probability, false}, kInfinity, -1};
     }
     std::optional<LightSample> s = sample_light(scene.lights[chosen.index], receiver.p, u);
     if (!s) return std::nullopt;
-    if (scene.needs.lamp_textures)
+    if (scene.needs.emitter_textures)
         if (const auto* surface = std::get_if<SurfaceLight>(&scene.lights[chosen.index]))
             s->radiance = radiance_towards(scene, *surface, receiver.p, s->wi, s->distance);
-    return arrival(*s, chosen);
+    return light_sample(*s, chosen);
 }
 
 namespace {
@@ -32,7 +32,7 @@ namespace {
 // Returns the distance at which a ray toward a flat light hits it. It is computed by the test that decides all
 // other hits, so that surfaces in the light's plane are ordered before or behind the light as for any ray. A ray
 // toward the light's edge may miss it by a rounding error; then the result is `sampled`.
-float distance_along(const Ray& ray, const SurfaceLight& light, float sampled) {
+float distance_to_light(const Ray& ray, const SurfaceLight& light, float sampled) {
     if (const auto* quad = std::get_if<Quad>(&light.shape)) {
         if (const auto hit = intersect_quad(ShearedRay(ray), *quad)) return hit->t;
     } else if (const auto* t = std::get_if<SurfaceLight::Triangle>(&light.shape)) {
@@ -43,34 +43,35 @@ float distance_along(const Ray& ray, const SurfaceLight& light, float sampled) {
 
 } // namespace
 
-ShadowEnd::ShadowEnd(const Scene& scene, const Ray& ray, Vec3 p, const Arrival& arrival) : sampled_(arrival.distance) {
-    if (arrival.light >= 0)
-        light_ = std::get_if<SurfaceLight>(&scene.lights[static_cast<std::size_t>(arrival.light)]);
+ShadowRayEnd::ShadowRayEnd(const Scene& scene, const Ray& ray, Vec3 p, const LightLiSample& light_sample)
+    : sampled_distance_(light_sample.distance) {
+    if (light_sample.light >= 0)
+        light_ = std::get_if<SurfaceLight>(&scene.lights[static_cast<std::size_t>(light_sample.light)]);
     if (light_ == nullptr) {
         // A point light may lie in a surface, which then does not occlude it: the ray ends a rounding error before
         // it.
-        end_.t = arrival.delta ? arrival.distance * (1 - gamma_bound(8)) - length(ray.origin - p) : arrival.distance;
+        end_.t = light_sample.delta ? light_sample.distance * (1 - gamma_bound(8)) - length(ray.origin - p)
+                                    : light_sample.distance;
         return;
     }
     end_.object = light_->object;
     end_.primitive = light_->primitive;
     // Mostly nothing is hit before the light or just behind it. Then its exact distance does not matter.
-    end_.t = arrival.distance * 1.001f;
+    end_.t = light_sample.distance * 1.001f;
 }
 
-Hit ShadowEnd::exact(const Ray& ray) const {
+Hit ShadowRayEnd::exact(const Ray& ray) const {
     Hit end = end_;
-    if (light_ != nullptr) end.t = distance_along(ray, *light_, sampled_);
+    if (light_ != nullptr) end.t = distance_to_light(ray, *light_, sampled_distance_);
     return end;
 }
 
-bool reaches(const RenderPlan& plan, const Ray& ray, const ShadowEnd& end) {
-    if (!plan.prepared.accelerator.occluded(ray, end.about())) return true;
+bool unoccluded(const RenderPlan& plan, const Ray& ray, const ShadowRayEnd& end) {
+    if (!plan.prepared.accelerator.occluded(ray, end.conservative())) return true;
     return end.is_surface() && !plan.prepared.accelerator.occluded(ray, end.exact(ray));
 }
 
-float arrival_pdf(const Scene& scene, const LightChooser& lights, const LightReceiver& receiver,
-                  const SurfacePoint& point) {
+float pdf_li(const Scene& scene, const LightSampler& lights, const LightReceiver& receiver, const SurfacePoint& point) {
     const std::int64_t index = surface_light_index(scene, point.object, point.primitive);
     if (index < 0) return 0;
     const auto i = static_cast<std::size_t>(index);
@@ -78,7 +79,7 @@ float arrival_pdf(const Scene& scene, const LightChooser& lights, const LightRec
     return chosen > 0 ? chosen * light_pdf(std::get<SurfaceLight>(scene.lights[i]), receiver.p, point.p) : 0.0f;
 }
 
-float arrival_pdf(const Environment& environment, const LightChooser& lights, const LightReceiver& receiver, Vec3 w) {
+float pdf_li(const Environment& environment, const LightSampler& lights, const LightReceiver& receiver, Vec3 w) {
     const float density = pdf(environment, w);
     return density > 0 ? density * lights.probability(receiver, lights.environment_index()) : 0.0f;
 }

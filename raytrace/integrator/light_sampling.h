@@ -1,7 +1,7 @@
 // A vertex draws one light sample, which is weighted against BSDF sampling.
 #pragma once
 
-#include "common/light/light_choice.h"
+#include "common/light/light_sampler.h"
 #include "raytrace/integrator/vertex.h"
 
 namespace duet::raytrace {
@@ -14,29 +14,29 @@ template <typename T> struct LightLiSampleT {
     T pdf{};          ///< by solid angle, including the choice of the light; > 0
     MaskOf<T> delta = MaskOf<T>(false); ///< whether BSDF samples cannot find it
 };
-struct Arrival : LightLiSampleT<float> {
+struct LightLiSample : LightLiSampleT<float> {
     float distance = 0;      ///< infinity for the sun and the environment
     std::int64_t light = -1; ///< index into Scene::lights; −1: the environment
 };
 /// Returns the sample of a light that was chosen as described by `chosen`.
-inline Arrival arrival(const LightSample& s, const LightChoice& chosen) {
+inline LightLiSample light_sample(const LightSample& s, const SampledLight& chosen) {
     return {{s.wi, s.radiance, s.pdf * chosen.probability, s.delta}, s.distance, static_cast<std::int64_t>(chosen.index)};
 }
 /// Draws a light sample: `choice` in [0, 1) chooses the light, and `u` in [0, 1)² the point on it. Returns nothing
 /// if the chosen light sends no light to the receiver.
-std::optional<Arrival> sample_arrival(const Scene& scene, const LightChooser& lights, const LightReceiver& receiver,
-                                      float choice, Vec2 u);
+std::optional<LightLiSample> sample_li(const Scene& scene, const LightSampler& lights, const LightReceiver& receiver,
+                                       float choice, Vec2 u);
 /// Draws a sample of the light that was already chosen.
-std::optional<Arrival> sample_arrival(const Scene& scene, const LightChooser& lights, const LightReceiver& receiver,
-                                      const LightChoice& chosen, Vec2 u);
+std::optional<LightLiSample> sample_li(const Scene& scene, const LightSampler& lights, const LightReceiver& receiver,
+                                       const SampledLight& chosen, Vec2 u);
 
 /// Computes the end of a shadow ray from the surface point p to a light sample.
-class ShadowEnd {
+class ShadowRayEnd {
 public:
-    ShadowEnd(const Scene& scene, const Ray& ray, Vec3 p, const Arrival& arrival);
+    ShadowRayEnd(const Scene& scene, const Ray& ray, Vec3 p, const LightLiSample& light_sample);
     /// Returns the end of the ray or, for a surface light, a point just behind it. If nothing is hit before that,
     /// the light is visible.
-    const Hit& about() const { return end_; }
+    const Hit& conservative() const { return end_; }
     /// Returns the end at the light's exact distance along the ray.
     Hit exact(const Ray& ray) const;
     bool is_surface() const { return light_ != nullptr; }
@@ -45,23 +45,22 @@ public:
 
 private:
     const SurfaceLight* light_ = nullptr;
-    float sampled_;
+    float sampled_distance_;
     Hit end_;
 };
 
 /// Returns whether the light is visible from the vertex. This counts as one shadow ray.
-bool reaches(const RenderPlan& plan, const Ray& ray, const ShadowEnd& end); ///< `ray` leads to `end`
-inline bool reaches(const RenderPlan& plan, const Vertex& vertex, const Arrival& arrival) {
-    const Ray ray = spawn_ray(vertex, arrival.wi);
-    return reaches(plan, ray, ShadowEnd(plan.scene, ray, vertex.point.p, arrival));
+bool unoccluded(const RenderPlan& plan, const Ray& ray, const ShadowRayEnd& end); ///< `ray` leads to `end`
+inline bool unoccluded(const RenderPlan& plan, const Vertex& vertex, const LightLiSample& light_sample) {
+    const Ray ray = spawn_ray(vertex, light_sample.wi);
+    return unoccluded(plan, ray, ShadowRayEnd(plan.scene, ray, vertex.point.p, light_sample));
 }
 
-/// Returns the density by solid angle with which sample_arrival draws the direction to `point`, which is on an
+/// Returns the density by solid angle with which sample_li draws the direction to `point`, which is on an
 /// emissive surface. It is 0 if that is no light that is sampled (it moves, or does not emit toward the receiver).
-float arrival_pdf(const Scene& scene, const LightChooser& lights, const LightReceiver& receiver,
-                  const SurfacePoint& point);
-/// Returns the density by solid angle with which sample_arrival draws the direction w to the environment.
-float arrival_pdf(const Environment& environment, const LightChooser& lights, const LightReceiver& receiver, Vec3 w);
+float pdf_li(const Scene& scene, const LightSampler& lights, const LightReceiver& receiver, const SurfacePoint& point);
+/// Returns the density by solid angle with which sample_li draws the direction w to the environment.
+float pdf_li(const Environment& environment, const LightSampler& lights, const LightReceiver& receiver, Vec3 w);
 
 /// Returns the MIS weight of a sample that was drawn with density `own` and could have been drawn with density
 /// `other`: the power heuristic with β = 2 (Veach 1997, §9.2.4). `own` must be positive.

@@ -1,7 +1,7 @@
 // Paths are traced for a sum of light, for its components, or for a log of each step.
 #include "raytrace/integrator/path.h"
 
-#include "raytrace/integrator/path_gains.h"
+#include "raytrace/integrator/path_contributions.h"
 #include "raytrace/integrator/path_log.h"
 
 namespace duet::raytrace {
@@ -10,36 +10,36 @@ namespace {
 
 // This sink splits the light of a path into components. `bounces` is the number of scatterings between the light and
 // the camera.
-class Split {
+class ComponentSink {
 public:
-    static constexpr bool kTold = false;
+    static constexpr bool kLogsEvents = false;
     void start(const Bsdf& first) {
         diffuse_ = is_diffuse(first);
         specular_ = is_specular(first);
     }
-    void add(Rgb light, LightSource source, int bounces) { part(source, bounces) += light; }
+    void add(Rgb light, LightSource source, int bounces) { component(source, bounces) += light; }
     void add_shadowed(Rgb light, LightSource source, int bounces) {
-        if (bounces == 1 && source == LightSource::kLight) parts_.shadowed += light;
+        if (bounces == 1 && source == LightSource::kLight) components_.shadowed += light;
     }
-    const LightParts& result() const { return parts_; }
+    const LightComponents& result() const { return components_; }
 
 private:
-    Rgb& part(LightSource source, int bounces) {
-        if (bounces == 0) return parts_.emission;
-        if (bounces == 1 && source == LightSource::kLight && !specular_) return parts_.direct;
-        if (!diffuse_) return parts_.reflection;
-        return bounces == 1 && source == LightSource::kEnvironment ? parts_.environment : parts_.indirect;
+    Rgb& component(LightSource source, int bounces) {
+        if (bounces == 0) return components_.emission;
+        if (bounces == 1 && source == LightSource::kLight && !specular_) return components_.direct;
+        if (!diffuse_) return components_.reflection;
+        return bounces == 1 && source == LightSource::kEnvironment ? components_.environment : components_.indirect;
     }
 
-    LightParts parts_;
+    LightComponents components_;
     bool diffuse_ = false, specular_ = false; // about the BSDF of the first hit
 };
 
 // This sink adds up the light and logs each step.
-template <typename Log> class Told : public Sum {
+template <typename Log> class LoggingSink : public RadianceSum {
 public:
-    static constexpr bool kTold = true;
-    explicit Told(Log& log) : log_(log) {}
+    static constexpr bool kLogsEvents = true;
+    explicit LoggingSink(Log& log) : log_(log) {}
     Log& log() { return log_; }
 
 private:
@@ -47,30 +47,32 @@ private:
 };
 
 template <typename Sink>
-auto traced(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts,
-            Sink sink = {}) {
-    if (plan.insides) return Path<Sink, true>(plan, sampler, counts, sink).trace(sampler, ray, hit);
+auto trace_path(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts,
+                Sink sink = {}) {
+    if (plan.needs_medium_stack) return Path<Sink, true>(plan, sampler, counts, sink).trace(sampler, ray, hit);
     return Path<Sink, false>(plan, sampler, counts, sink).trace(sampler, ray, hit);
 }
 
 } // namespace
 
 Rgb path_radiance(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts) {
-    return traced<Sum>(plan, ray, hit, sampler, counts);
+    return trace_path<RadianceSum>(plan, ray, hit, sampler, counts);
 }
 
 Rgb logged_path_radiance(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, PathLog& log) {
     RayCounts counts;
-    return traced(plan, ray, hit, sampler, counts, Told(log));
+    return trace_path(plan, ray, hit, sampler, counts, LoggingSink(log));
 }
 
-void follow_path(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, PathGains& gains) {
+void record_path_contributions(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler,
+                               PathContributions& contributions) {
     RayCounts counts;
-    traced(plan, ray, hit, sampler, counts, Told(gains));
+    trace_path(plan, ray, hit, sampler, counts, LoggingSink(contributions));
 }
 
-LightParts path_parts(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts) {
-    return traced<Split>(plan, ray, hit, sampler, counts);
+LightComponents path_components(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler,
+                                RayCounts& counts) {
+    return trace_path<ComponentSink>(plan, ray, hit, sampler, counts);
 }
 
 } // namespace duet::raytrace

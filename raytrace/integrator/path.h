@@ -6,9 +6,9 @@
 // one path (T = float), and wavefront/batch.cpp for a batch of paths, one per SIMD lane. Every path runs through them.
 #pragma once
 
-#include "raytrace/integrator/insides.h"
 #include "raytrace/integrator/integrator.h"
 #include "raytrace/integrator/light_sampling.h"
+#include "raytrace/integrator/medium_stack.h"
 #include "raytrace/integrator/path_footprint.h"
 #include "raytrace/integrator/path_state.h"
 
@@ -35,8 +35,8 @@ inline T light_sample_weight(const AnyVertex& vertex, const LightLiSampleT<T>& l
 
 /// Returns the MIS weight of light that a ray has found, against light samples at the previous vertex. `light_pdf` is
 /// the density with which these draw the ray's direction.
-inline float found_light_weight(const Departure& departure, float light_pdf) {
-    return departure.certain ? 1 : mis_weight(departure.pdf, light_pdf);
+inline float found_light_weight(const PreviousVertex& previous, float light_pdf) {
+    return previous.no_light_sample ? 1 : mis_weight(previous.pdf, light_pdf);
 }
 
 /// Holds how a path leaves a vertex.
@@ -49,7 +49,7 @@ template <typename T> struct ScatteringT {
 
 /// Samples the next direction from the BSDF of the vertex and multiplies the path's throughput by the sample's weight.
 template <typename AnyVertex, typename T>
-inline ScatteringT<T> scatter(const AnyVertex& vertex, const VertexNumbersT<T>& u, PathThroughputT<T>& path) {
+inline ScatteringT<T> scatter(const AnyVertex& vertex, const VertexRandomSamplesT<T>& u, PathThroughputT<T>& path) {
     ScatteringT<T> next{sample(vertex.bsdf, vertex.wo, u.lobe, u.bsdf)};
     if (none_of(next.scatters)) return next;
     const BsdfSampleT<T>& s = *next.sample;
@@ -71,9 +71,9 @@ template <typename T> struct RouletteT {
     MaskOf<T> survives;
 };
 /// Decides by Russian roulette with the random number u whether the path continues, and weights survivors up for the
-/// paths that end. `worth` is RenderPlan::worth.
-template <typename T> inline RouletteT<T> russian_roulette(float worth, T u, PathThroughputT<T>& path) {
-    const T probability = survival(path.throughput, path.refraction, T(worth));
+/// paths that end. `survival_factor` is RenderPlan::survival_factor.
+template <typename T> inline RouletteT<T> russian_roulette(float survival_factor, T u, PathThroughputT<T>& path) {
+    const T probability = survival(path.throughput, path.refraction, T(survival_factor));
     const MaskOf<T> certain = !(probability < T(1)); // NaN survives, too, so that it is counted as invalid
     if (all(certain)) return {probability, certain};
     path.throughput *= select(certain, T(1), T(1) / probability);
@@ -82,9 +82,9 @@ template <typename T> inline RouletteT<T> russian_roulette(float worth, T u, Pat
 }
 
 // A sink receives the light that a path finds. For images, this one adds up all light, from any source.
-class Sum {
+class RadianceSum {
 public:
-    static constexpr bool kTold = false; // whether the sink has a log() of all events
+    static constexpr bool kLogsEvents = false; // whether the sink has a log() of all events
     void start(const Bsdf&) {}
     void add(Rgb light, LightSource, int) { total_ += light; }
     void add_shadowed(Rgb, LightSource, int) {}
@@ -95,49 +95,49 @@ private:
 };
 
 // Replaces the medium stack in scenes where no dielectric absorbs or has a priority. It is empty.
-struct NoInsides {
-    explicit NoInsides(const RenderPlan&) {}
+struct NoMediumStack {
+    explicit NoMediumStack(const RenderPlan&) {}
     static constexpr float relative_index() { return 0; }
 };
 
 // Returns the random samples of the vertex that a ray has hit, if it uses any.
-inline VertexNumbers numbers_at(const RenderPlan& plan, Sampler& sampler, const Hit& hit, int depth) {
-    return hit.valid() && depth < plan.max_depth ? vertex_numbers(sampler, depth) : VertexNumbers{};
+inline VertexRandomSamples random_samples_at(const RenderPlan& plan, Sampler& sampler, const Hit& hit, int depth) {
+    return hit.valid() && depth < plan.max_depth ? vertex_random_samples(sampler, depth) : VertexRandomSamples{};
 }
 
-/// Traces one path. kInsides is true in scenes where dielectrics absorb or have priorities, so that it has a medium
-/// stack.
-template <typename Sink, bool kInsides> class Path {
+/// Traces one path. kHasMediumStack is true in scenes where dielectrics absorb or have priorities, so that it has a
+/// medium stack.
+template <typename Sink, bool kHasMediumStack> class Path {
 public:
     Path(const RenderPlan& plan, const Sampler& sampler, RayCounts& counts, Sink sink = {})
-        : plan_(plan), counts_(counts), sink_(sink), insides_(plan), footprint_(plan, sampler.sample()) {}
+        : plan_(plan), counts_(counts), sink_(sink), medium_stack_(plan), footprint_(plan, sampler.sample()) {}
 
     /// Traces a camera ray, and returns the result of the sink.
     auto trace(Sampler& sampler, Ray ray, Hit hit) {
-        for (int depth = 0; advance(ray, hit, depth, numbers_at(plan_, sampler, hit, depth)); ++depth)
+        for (int depth = 0; advance(ray, hit, depth, random_samples_at(plan_, sampler, hit, depth)); ++depth)
             hit = plan_.prepared.accelerator.closest(ray);
         return result();
     }
 
     /// Processes what the ray has hit after `depth` scatterings: adds the light found there, and replaces the ray by
     /// the one that continues. Returns false if the path ends.
-    bool advance(Ray& ray, const Hit& nearest, int depth, const VertexNumbers& u) {
-        Hit reached;
-        if constexpr (kInsides) reached = arrive(ray, nearest);
-        const Hit& hit = kInsides ? std::as_const(reached) : nearest;
+    bool advance(Ray& ray, const Hit& nearest, int depth, const VertexRandomSamples& u) {
+        Hit boundary_hit;
+        if constexpr (kHasMediumStack) boundary_hit = skip_ignored_boundaries(ray, nearest);
+        const Hit& hit = kHasMediumStack ? std::as_const(boundary_hit) : nearest;
         if (!hit.valid()) {
-            if constexpr (Sink::kTold) sink_.log().escape(ray, depth);
+            if constexpr (Sink::kLogsEvents) sink_.log().escape(ray, depth);
             add_environment(ray.direction, depth);
             return false;
         }
-        const Vertex vertex(plan_, ray, hit, footprint_.arrive(ray, hit.t), insides_.relative_index());
-        if constexpr (Sink::kTold) sink_.log().vertex(vertex, hit, depth);
+        const Vertex vertex(plan_, ray, hit, footprint_.at_hit(ray, hit.t), medium_stack_.relative_index());
+        if constexpr (Sink::kLogsEvents) sink_.log().vertex(vertex, hit, depth);
         if (depth == 0) sink_.start(vertex.bsdf);
         add_emission(vertex, ray.direction, depth);
-        if (depth == plan_.max_depth) return tell_end("it is as long as it may be (--depth)");
-        const bool specular = is_specular(vertex.bsdf) && !plan_.mirror_light;
+        if (depth == plan_.max_depth) return log_end("it is as long as it may be (--depth)");
+        const bool specular = is_specular(vertex.bsdf) && !plan_.specular_light_samples;
         if (plan_.lights != nullptr && !specular) add_light_sample(vertex, u, depth);
-        if (depth + 1 == plan_.max_depth && !plan_.hits_find_light) return tell_end("nothing is left to find");
+        if (depth + 1 == plan_.max_depth && !plan_.hits_find_light) return log_end("nothing is left to find");
         if (!leave(vertex, u, ray)) return false;
         if (plan_.russian_roulette && depth > 0 && !survives(u.roulette)) return false;
         ++counts_.indirect;
@@ -152,17 +152,18 @@ public:
     /// Adds light that the ray has found after `bounces` scatterings. `light_pdf` is the density with which light
     /// samples at the previous vertex find it, if any compete.
     void add_found(Rgb emission, float light_pdf, LightSource source, int bounces) {
-        const float weight = found_light_weight(state_.departure, light_pdf);
+        const float weight = found_light_weight(state_.previous_vertex, light_pdf);
         const Rgb light = state_.throughput * emission * weight;
-        if constexpr (Sink::kTold) sink_.log().found(emission, weight, light);
+        if constexpr (Sink::kLogsEvents) sink_.log().light_found(emission, weight, light);
         sink_.add(light, source, bounces);
     }
 
 private:
     void add_environment(Vec3 w, int bounces) {
         if (plan_.environment == nullptr) return;
-        const Departure& from = state_.departure;
-        const float light_pdf = from.certain ? 0 : arrival_pdf(*plan_.environment, *plan_.lights, from.receiver, w);
+        const PreviousVertex& previous = state_.previous_vertex;
+        const float light_pdf =
+            previous.no_light_sample ? 0 : pdf_li(*plan_.environment, *plan_.lights, previous.receiver, w);
         add_found(radiance(*plan_.environment, w), light_pdf, LightSource::kEnvironment, bounces);
     }
 
@@ -170,53 +171,56 @@ private:
         if (!plan_.emission) return;
         const Rgb emission = emitted(vertex.material, plan_.scene.textures, vertex.point, -direction);
         if (is_black(emission)) return;
-        const Departure& from = state_.departure;
-        const float light_pdf = from.certain ? 0 : arrival_pdf(plan_.scene, *plan_.lights, from.receiver, vertex.point);
+        const PreviousVertex& previous = state_.previous_vertex;
+        const float light_pdf =
+            previous.no_light_sample ? 0 : pdf_li(plan_.scene, *plan_.lights, previous.receiver, vertex.point);
         add_found(emission, light_pdf, source_of(vertex.point), bounces);
     }
 
-    void add_light_sample(const Vertex& vertex, const VertexNumbers& u, int bounces) {
-        const auto arrival = sample_arrival(plan_.scene, *plan_.lights, light_receiver(vertex), u.light_choice, u.light);
-        if (!arrival) return tell_no_light_sample("the chosen light does not shine here");
-        Rgb scattered = scattered_light(vertex, *arrival);
-        if constexpr (kInsides) scattered *= left_on_the_way(vertex, *arrival);
+    void add_light_sample(const Vertex& vertex, const VertexRandomSamples& u, int bounces) {
+        const auto light_sample =
+            sample_li(plan_.scene, *plan_.lights, light_receiver(vertex), u.light_choice, u.light);
+        if (!light_sample) return log_no_light_sample("the chosen light does not shine here");
+        Rgb scattered = scattered_light(vertex, *light_sample);
+        if constexpr (kHasMediumStack) scattered *= transmittance_to_light(vertex, *light_sample);
         if (is_black(scattered) && !plan_.black_shadow_rays)
-            return tell_no_light_sample("the surface does not scatter the chosen light towards here");
-        const LightSource source = arrival->light < 0 ? LightSource::kEnvironment : LightSource::kLight;
+            return log_no_light_sample("the surface does not scatter the chosen light towards here");
+        const LightSource source = light_sample->light < 0 ? LightSource::kEnvironment : LightSource::kLight;
         ++counts_.shadow;
-        if (!reaches(plan_, vertex, *arrival)) {
-            if constexpr (Sink::kTold) sink_.log().light_sample(*arrival, scattered, false, 0, Rgb());
-            sink_.add_shadowed(state_.throughput * scattered / arrival->pdf, source, bounces + 1);
+        if (!unoccluded(plan_, vertex, *light_sample)) {
+            if constexpr (Sink::kLogsEvents) sink_.log().light_sample(*light_sample, scattered, false, 0, Rgb());
+            sink_.add_shadowed(state_.throughput * scattered / light_sample->pdf, source, bounces + 1);
             return;
         }
-        const float weight = light_sample_weight(vertex, *arrival);
-        const Rgb light = state_.throughput * scattered * (weight / arrival->pdf);
-        if constexpr (Sink::kTold) sink_.log().light_sample(*arrival, scattered, true, weight, light);
+        const float weight = light_sample_weight(vertex, *light_sample);
+        const Rgb light = state_.throughput * scattered * (weight / light_sample->pdf);
+        if constexpr (Sink::kLogsEvents) sink_.log().light_sample(*light_sample, scattered, true, weight, light);
         sink_.add(light, source, bounces + 1);
     }
 
     // Only the sink that splits the light needs the source, so that a sum does not look it up.
     LightSource source_of(const SurfacePoint& point) const {
-        if constexpr (std::is_same_v<Sink, Sum>) return LightSource::kLight;
+        if constexpr (std::is_same_v<Sink, RadianceSum>) return LightSource::kLight;
         const bool sampled = surface_light_index(plan_.scene, point.object, point.primitive) >= 0;
         return sampled ? LightSource::kLight : LightSource::kOther;
     }
 
     // Samples the next direction from the BSDF. Returns false if the path ends.
-    bool leave(const Vertex& vertex, const VertexNumbers& u, Ray& ray) {
+    bool leave(const Vertex& vertex, const VertexRandomSamples& u, Ray& ray) {
         const ScatteringT<float> next = scatter(vertex, u, state_);
-        if (!next.scatters) return tell_end("the surface absorbs it");
-        if (!next.continues) return tell_end("its direction lies between the horizons of both normals");
-        if constexpr (kInsides)
-            if (next.sample->transmitted && crosses(vertex)) insides_.cross(vertex.point.material, vertex.wo.z > 0);
-        if constexpr (Sink::kTold) sink_.log().scattered(vertex, *next.sample, next.wi, state_);
+        if (!next.scatters) return log_end("the surface absorbs it");
+        if (!next.continues) return log_end("its direction lies between the horizons of both normals");
+        if constexpr (kHasMediumStack)
+            if (next.sample->transmitted && has_interior(vertex))
+                medium_stack_.cross(vertex.point.material, vertex.wo.z > 0);
+        if constexpr (Sink::kLogsEvents) sink_.log().scattered(vertex, *next.sample, next.wi, state_);
         footprint_.scatter(next.sample->pdf, next.sample->specular);
         // Each number is written to where it is read next. If a whole ray were copied right after its components
         // were written, that load would wait for their stores.
-        state_.departure.certain = next.sample->specular || plan_.lights == nullptr;
-        if (!state_.departure.certain) {
-            state_.departure.receiver = light_receiver(vertex);
-            state_.departure.pdf = next.sample->pdf;
+        state_.previous_vertex.no_light_sample = next.sample->specular || plan_.lights == nullptr;
+        if (!state_.previous_vertex.no_light_sample) {
+            state_.previous_vertex.receiver = light_receiver(vertex);
+            state_.previous_vertex.pdf = next.sample->pdf;
         }
         ray.origin = offset_origin(vertex.point, next.wi);
         ray.direction = next.wi;
@@ -225,51 +229,51 @@ private:
     }
 
     // Continues the ray to the first boundary that is not ignored, in scenes with a medium stack.
-    Hit arrive(Ray& ray, const Hit& nearest) {
-        int passed = 0;
-        const Hit hit = insides_.arrive(ray, nearest, state_.throughput, passed);
-        counts_.indirect += passed;
+    Hit skip_ignored_boundaries(Ray& ray, const Hit& nearest) {
+        int ignored = 0;
+        const Hit hit = medium_stack_.skip_ignored_boundaries(ray, nearest, state_.throughput, ignored);
+        counts_.indirect += ignored;
         // No light sample competes beyond an ignored boundary, because shadow rays end at any boundary.
-        if (passed > 0) state_.departure.certain = true;
+        if (ignored > 0) state_.previous_vertex.no_light_sample = true;
         return hit;
     }
 
-    static bool crosses(const Vertex& vertex) {
+    static bool has_interior(const Vertex& vertex) {
         const auto* glass = std::get_if<Dielectric>(&vertex.material);
         return glass != nullptr && !glass->thin;
     }
 
     // Returns the transmittance of a light sample through the dielectric that the vertex is inside of, or the
     // dielectric on the other side of its surface.
-    Rgb left_on_the_way(const Vertex& vertex, const Arrival& arrival) const {
-        if (same_hemisphere(vertex.wo, vertex.frame.to_local(arrival.wi)) || !crosses(vertex))
-            return insides_.transmittance(arrival.distance);
-        Insides beyond = insides_;
+    Rgb transmittance_to_light(const Vertex& vertex, const LightLiSample& light_sample) const {
+        if (same_hemisphere(vertex.wo, vertex.frame.to_local(light_sample.wi)) || !has_interior(vertex))
+            return medium_stack_.transmittance(light_sample.distance);
+        MediumStack beyond = medium_stack_;
         beyond.cross(vertex.point.material, vertex.wo.z > 0);
-        return beyond.transmittance(arrival.distance);
+        return beyond.transmittance(light_sample.distance);
     }
 
     bool survives(float u) {
-        const auto [probability, survives] = russian_roulette(plan_.worth, u, state_);
-        if constexpr (Sink::kTold)
+        const auto [probability, survives] = russian_roulette(plan_.survival_factor, u, state_);
+        if constexpr (Sink::kLogsEvents)
             if (probability < 1) sink_.log().roulette(probability, survives);
         counts_.ended += !survives;
         return survives;
     }
 
-    bool tell_end([[maybe_unused]] const char* why) {
-        if constexpr (Sink::kTold) sink_.log().end(why);
+    bool log_end([[maybe_unused]] const char* why) {
+        if constexpr (Sink::kLogsEvents) sink_.log().end(why);
         return false;
     }
-    void tell_no_light_sample([[maybe_unused]] const char* why) {
-        if constexpr (Sink::kTold) sink_.log().no_light_sample(why);
+    void log_no_light_sample([[maybe_unused]] const char* why) {
+        if constexpr (Sink::kLogsEvents) sink_.log().no_light_sample(why);
     }
 
     const RenderPlan& plan_;
     RayCounts& counts_;
     Sink sink_;
     PathState state_;
-    std::conditional_t<kInsides, Insides, NoInsides> insides_;
+    std::conditional_t<kHasMediumStack, MediumStack, NoMediumStack> medium_stack_;
     PathFootprint footprint_;
 };
 

@@ -15,10 +15,10 @@ float mean_width(const RayFootprint& footprint) { return std::sqrt(length(footpr
 const RayFootprint* PathFootprint::widen(const Ray& ray, float t) {
     if (first_) {
         first_ = false;
-        footprint_ = pixel_->at(ray, t) * part_;
+        footprint_ = pixel_->at(ray, t) * fraction_;
         width_ = mean_width(footprint_);
         // The footprint of a ray widens in proportion to its length, but that of an orthographic camera does not.
-        spread_ = (mean_width(pixel_->at(ray, 2 * t) * part_) - width_) / t;
+        spread_ = (mean_width(pixel_->at(ray, 2 * t) * fraction_) - width_) / t;
         return &footprint_;
     }
     width_ += spread_ * t;
@@ -29,7 +29,7 @@ const RayFootprint* PathFootprint::widen(const Ray& ray, float t) {
 
 void PathFootprint::spread(float pdf) {
     constexpr float kWidest = 0.5f; // radians; textures behind diffuse bounces retain some detail
-    const float angle = 2 * std::sqrt(kInvPi / max(pdf, 1e-6f)) * part_;
+    const float angle = 2 * std::sqrt(kInvPi / max(pdf, 1e-6f)) * fraction_;
     spread_ = max(spread_, min(angle, kWidest));
 }
 

@@ -15,11 +15,12 @@ class PathFootprint {
 public:
     /// Starts the cone of the path of a pixel's `sample`.
     PathFootprint(const RenderPlan& plan, std::uint32_t sample)
-        : pixel_(plan.pixel ? &*plan.pixel : nullptr), part_(pixel_ ? footprint_width(sample) : 0) {}
+        : pixel_(plan.pixel_footprint ? &*plan.pixel_footprint : nullptr),
+          fraction_(pixel_ ? footprint_width(sample) : 0) {}
 
     /// Returns the footprint of the ray at a hit at distance t, or null if none is needed. It must be called once
     /// for each ray of the path, in order.
-    const RayFootprint* arrive(const Ray& ray, float t) { return pixel_ == nullptr ? nullptr : widen(ray, t); }
+    const RayFootprint* at_hit(const Ray& ray, float t) { return pixel_ == nullptr ? nullptr : widen(ray, t); }
     /// Continues the path in a direction that was drawn with density `pdf` by solid angle, or that is specular.
     void scatter(float pdf, bool specular) {
         if (pixel_ != nullptr && !specular) spread(pdf);
@@ -31,7 +32,7 @@ private:
     void spread(float pdf);
 
     const PixelFootprint* pixel_;
-    float part_; ///< fraction of the pixel's width
+    float fraction_; ///< fraction of the pixel's width
     RayFootprint footprint_;
     bool first_ = true;
     float width_ = 0, spread_ = 0; ///< cone width at the last vertex in meters, and its growth per meter

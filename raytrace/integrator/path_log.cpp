@@ -51,17 +51,17 @@ void PathLog::escape(const Ray& ray, int depth) {
     out_ << "\nvertex " << depth << ": none, the ray escapes towards " << text_of(ray.direction) << "\n";
 }
 
-void PathLog::found(Rgb emission, float weight, Rgb light) {
+void PathLog::light_found(Rgb emission, float weight, Rgb light) {
     out_ << "  emits        " << text_of(emission) << ", weight " << weight << ": adds " << text_of(light) << "\n";
 }
 
 void PathLog::no_light_sample(const char* why) { out_ << "  light sample none: " << why << "\n"; }
 
-void PathLog::light_sample(const Arrival& arrival, Rgb scattered, bool visible, float weight, Rgb light) {
-    out_ << "  light sample " << light_name(scene_, arrival.light) << " towards " << text_of(arrival.wi)
-         << ", distance " << arrival.distance << ", density " << arrival.pdf
-         << (arrival.delta ? " (from this direction only)" : "")
-         << "\n               scatters " << text_of(scattered)
+void PathLog::light_sample(const LightLiSample& light_sample, Rgb scattered, bool visible, float weight, Rgb light) {
+    out_ << "  light sample " << light_name(scene_, light_sample.light) << " towards " << text_of(light_sample.wi)
+         << ", distance " << light_sample.distance << ", density " << light_sample.pdf
+         << (light_sample.delta ? " (from this direction only)" : "") << "\n               scatters "
+         << text_of(scattered)
          << (visible ? message(", weight ", weight, ": adds ", text_of(light)) : ", hidden: adds nothing") << "\n";
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/material/bsdf.h"
-#include "raytrace/integrator/light_parts.h"
+#include "raytrace/integrator/light_components.h"
 #include "raytrace/integrator/light_sampling.h"
 #include "raytrace/integrator/path_state.h"
 
@@ -20,11 +20,11 @@ public:
     void escape(const Ray& ray, int depth);
     /// Logs light that the ray itself has found. `weight` is its MIS weight against light samples, and `light` is
     /// what it adds.
-    void found(Rgb emission, float weight, Rgb light);
+    void light_found(Rgb emission, float weight, Rgb light);
     void no_light_sample(const char* why);
     /// Logs a light sample and whether it is visible. `weight` is its MIS weight against BSDF samples, and `light`
     /// is what it adds.
-    void light_sample(const Arrival& arrival, Rgb scattered, bool visible, float weight, Rgb light);
+    void light_sample(const LightLiSample& light_sample, Rgb scattered, bool visible, float weight, Rgb light);
     void scattered(const Vertex& vertex, const BsdfSample& sample, Vec3 wi, const PathState& state);
     void roulette(float probability, bool survived);
     void end(const char* why);

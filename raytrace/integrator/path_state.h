@@ -7,10 +7,10 @@ namespace duet::raytrace {
 
 /// Holds how the ray left the previous vertex. MIS needs it to weight light that the ray finds against light samples
 /// at that vertex.
-struct Departure {
+struct PreviousVertex {
     LightReceiver receiver;
     float pdf = 0;
-    bool certain = true; ///< whether no light sample competes, as after a camera ray or a delta lobe
+    bool no_light_sample = true; ///< whether no light sample competes, as after a camera ray or a delta lobe
 };
 
 /// Holds what scattering multiplies. T is float, or a batch of floats for one path per lane.
@@ -19,14 +19,14 @@ template <typename T> struct PathThroughputT {
     T refraction = T(1.0f); ///< factor by which refractions have scaled the throughput
 };
 struct PathState : PathThroughputT<float> {
-    Departure departure;
+    PreviousVertex previous_vertex;
 };
 
 /// Returns the probability with which Russian roulette continues a path, where it is below 1. Survivors are weighted
-/// up for the paths that end. `worth` is RenderPlan::worth. The throughput is taken without the factor of
-/// refraction. T is float or a batch of floats.
-template <typename T> T survival(RgbT<T> throughput, T refraction, T worth) {
-    return max_component(throughput) * worth / refraction;
+/// up for the paths that end. `survival_factor` is RenderPlan::survival_factor. The throughput is taken without the
+/// factor of refraction. T is float or a batch of floats.
+template <typename T> T survival(RgbT<T> throughput, T refraction, T survival_factor) {
+    return max_component(throughput) * survival_factor / refraction;
 }
 
 } // namespace duet::raytrace

@@ -13,20 +13,21 @@ Material with_index(const Material& material, float eta) {
     return other;
 }
 
-const Bsdf& made_or_constant(const RenderPlan& plan, std::uint32_t material, const SurfacePoint& point,
-                             float relative_index, std::optional<Bsdf>& made) {
+const Bsdf& bsdf_of(const RenderPlan& plan, std::uint32_t material, const SurfacePoint& point, float relative_index,
+                    std::optional<Bsdf>& own_bsdf) {
     if (relative_index != 0)
-        return made.emplace(
+        return own_bsdf.emplace(
             bsdf_at(with_index(plan.scene.materials[material], relative_index), plan.scene.textures, point));
     if (const std::optional<Bsdf>& constant = (*plan.bsdfs)[material]) return *constant;
-    return made.emplace(bsdf_at(plan.scene.materials[material], plan.scene.textures, point));
+    return own_bsdf.emplace(bsdf_at(plan.scene.materials[material], plan.scene.textures, point));
 }
 
 } // namespace
 
 std::optional<RayFootprint> camera_footprint(const RenderPlan& plan, const Ray& ray, const Hit& hit,
                                              std::uint32_t sample) {
-    return plan.pixel ? std::optional(plan.pixel->at(ray, hit.t) * footprint_width(sample)) : std::nullopt;
+    return plan.pixel_footprint ? std::optional(plan.pixel_footprint->at(ray, hit.t) * footprint_width(sample))
+                                : std::nullopt;
 }
 
 SurfacePoint camera_surface_point(const RenderPlan& plan, const Ray& ray, const Hit& hit, std::uint32_t sample) {
@@ -45,6 +46,6 @@ Vertex::Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const Ray
     : point(surface_point(plan.scene, ray, hit, footprint, plan.details[material_index])),
       material(plan.scene.materials[material_index]), frame(frame_from_normal(point.ns)),
       wo(direction_to_viewer(frame, point.ng, ray.direction)),
-      bsdf(made_or_constant(plan, material_index, point, relative_index, made_)) {}
+      bsdf(bsdf_of(plan, material_index, point, relative_index, own_bsdf_)) {}
 
 } // namespace duet::raytrace

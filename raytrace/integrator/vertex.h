@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/vec/frame.h"
-#include "raytrace/plan.h"
+#include "raytrace/render_plan.h"
 
 #include <cmath>
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace duet::raytrace {
 class Vertex {
 public:
     /// Makes the vertex at a valid hit of a ray. `footprint` is the ray's footprint there, or null if the plan needs
-    /// none. `relative_index` is Insides::relative_index() for a dielectric inside another one, else 0. The vertex
+    /// none. `relative_index` is MediumStack::relative_index() for a dielectric inside another one, else 0. The vertex
     /// refers to the plan.
     Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint,
            float relative_index = 0);
@@ -27,7 +27,7 @@ public:
     const Vec3 wo;     ///< direction back along the ray; unit, in the local space
 
 private:
-    std::optional<Bsdf> made_; // the BSDF, where it is not constant
+    std::optional<Bsdf> own_bsdf_; // the BSDF, where it is not constant
 
 public:
     const Bsdf& bsdf;
@@ -43,7 +43,7 @@ private:
 /// Returns the direction back along a ray of the given direction (world space, unit) in a vertex's frame.
 template <typename T> inline Vec3T<T> direction_to_viewer(const FrameT<T>& frame, Vec3T<T> ng, Vec3T<T> ray_direction) {
     const Vec3T<T> wo = -ray_direction;
-    return lifted_above_horizon(frame.to_local(wo), select(dot(wo, ng) < T(0), T(-1), T(1)));
+    return clamp_to_visible_side(frame.to_local(wo), select(dot(wo, ng) < T(0), T(-1), T(1)));
 }
 /// Returns the light receiver: on the visible side of the surface, or on both sides if the BSDF transmits.
 template <typename AnyVertex> inline auto light_receiver(const AnyVertex& vertex) {
@@ -52,10 +52,10 @@ template <typename AnyVertex> inline auto light_receiver(const AnyVertex& vertex
     return LightReceiverT<T>{vertex.point.p, select(vertex.wo.z < T(0), -vertex.point.ng, vertex.point.ng)};
 }
 /// Returns whether wi is on the same side of the geometric surface and of the shading normal. `local` is wi in the
-/// frame. On the viewer's side, `horizon` takes the place of the geometric normal (shading-terminator fix).
+/// frame. On the viewer's side, `terminator_normal` takes the place of the geometric normal (shading-terminator fix).
 template <typename AnyVertex, typename T>
 inline MaskOf<T> is_consistent(const AnyVertex& vertex, Vec3T<T> wi, Vec3T<T> local) {
-    const Vec3T<T> normal = select(same_hemisphere(vertex.wo, local), vertex.point.horizon, vertex.point.ng);
+    const Vec3T<T> normal = select(same_hemisphere(vertex.wo, local), vertex.point.terminator_normal, vertex.point.ng);
     return dot(wi, normal) * local.z > T(0);
 }
 /// Returns f(wo, wi)·|cos θᵢ| for wi in world space (unit). It is black where the geometric and the shading normal

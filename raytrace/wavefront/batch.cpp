@@ -11,14 +11,14 @@ namespace duet::raytrace {
 
 namespace {
 
-bool is_specular(PlainSurfaces::Scattering scattering) {
-    return scattering == PlainSurfaces::Scattering::kMirror || scattering == PlainSurfaces::Scattering::kGlass;
+bool is_specular(BatchedSurfaces::BsdfKind scattering) {
+    return scattering == BatchedSurfaces::BsdfKind::kMirror || scattering == BatchedSurfaces::BsdfKind::kGlass;
 }
 
 } // namespace
 
-NumbersUsed numbers_used(const RenderPlan& plan, PlainSurfaces::Scattering scattering, int depth) {
-    using Scattering = PlainSurfaces::Scattering;
+UsedDimensions used_dimensions(const RenderPlan& plan, BatchedSurfaces::BsdfKind scattering, int depth) {
+    using Scattering = BatchedSurfaces::BsdfKind;
     const bool rough = !is_specular(scattering);
     return {rough, rough && plan.lights != nullptr,
             scattering == Scattering::kMetal || scattering == Scattering::kGlass, plan.russian_roulette && depth > 0};
@@ -30,13 +30,13 @@ using namespace lanes;
 
 namespace {
 
-// `fours` reads consecutive numbers across these members.
+// `load_four` reads consecutive numbers across these members.
 static_assert(offsetof(Ray, direction) == 3 * sizeof(float) && offsetof(Ray, t_min) == 6 * sizeof(float));
 static_assert(offsetof(PathThroughputT<float>, refraction) == 3 * sizeof(float));
-static_assert(offsetof(VertexNumbers, light) == offsetof(VertexNumbers, bsdf) + 2 * sizeof(float) &&
-              offsetof(VertexNumbers, light_choice) == offsetof(VertexNumbers, light) + 2 * sizeof(float) &&
-              offsetof(VertexNumbers, lobe) == offsetof(VertexNumbers, light) + 3 * sizeof(float) &&
-              offsetof(VertexNumbers, roulette) == offsetof(VertexNumbers, light) + 4 * sizeof(float));
+static_assert(offsetof(VertexRandomSamples, light) == offsetof(VertexRandomSamples, bsdf) + 2 * sizeof(float) &&
+              offsetof(VertexRandomSamples, light_choice) == offsetof(VertexRandomSamples, light) + 2 * sizeof(float) &&
+              offsetof(VertexRandomSamples, lobe) == offsetof(VertexRandomSamples, light) + 3 * sizeof(float) &&
+              offsetof(VertexRandomSamples, roulette) == offsetof(VertexRandomSamples, light) + 4 * sizeof(float));
 
 // Holds what the formulas of path.h need of a Vertex, in lanes.
 template <typename BsdfType> struct BatchVertex {
@@ -45,14 +45,14 @@ template <typename BsdfType> struct BatchVertex {
     const Vec wo;
     const BsdfType bsdf;
 
-    BatchVertex(std::span<const BatchPath> paths, PlainSurfaces::Form form, const BsdfType& bsdf_)
+    BatchVertex(std::span<const BatchPath> paths, BatchedSurfaces::Geometry form, const BsdfType& bsdf_)
         : point(surface_points(paths, form)), frame(frame_from_normal(point.ns)),
           wo(direction_to_viewer(frame, point.ng, directions(paths))), bsdf(bsdf_) {}
 
 private:
     static Vec directions(std::span<const BatchPath> paths) {
         const auto [x, y, z, t_min] =
-            fours(paths, [](const BatchPath& path) -> const float& { return path.ray->direction.x; });
+            load_four(paths, [](const BatchPath& path) -> const float& { return path.ray->direction.x; });
         return {x, y, z};
     }
 };
@@ -60,20 +60,20 @@ private:
 // Loads the BSDFs of the paths, which all hold the type BsdfT<float>, number by number.
 template <template <typename> typename BsdfT> auto numbers_of_bsdfs(std::span<const BatchPath> paths) {
     // The numbers are loaded in rows of four. The last row overlaps the one before, or ends behind a BSDF of fewer
-    // numbers, but within the Bsdf.
+    // random_samples, but within the Bsdf.
     constexpr std::size_t kRow = 4, kNumbers = std::max(sizeof(BsdfT<float>) / sizeof(float), kRow);
     static_assert(kNumbers * sizeof(float) <= sizeof(Bsdf));
     std::array<const float*, kLanes> first;
     for_lanes(paths, [&](std::size_t i, const BatchPath& path) {
         first[i] = reinterpret_cast<const float*>(&std::get<BsdfT<float>>(*path.bsdf));
     });
-    std::array<Floats, kNumbers> numbers;
+    std::array<Floats, kNumbers> random_samples;
     for (std::size_t done = 0; done < kNumbers; done += kRow) {
         const std::size_t k = std::min(done, kNumbers - kRow);
         const auto row = load_columns<kLanes>([&](std::size_t i) { return first[i] + k; });
-        std::copy(row.begin(), row.end(), numbers.begin() + static_cast<std::ptrdiff_t>(k));
+        std::copy(row.begin(), row.end(), random_samples.begin() + static_cast<std::ptrdiff_t>(k));
     }
-    return numbers;
+    return random_samples;
 }
 DiffuseBsdfT<Floats> diffuse_bsdfs(std::span<const BatchPath> paths) {
     const auto n = numbers_of_bsdfs<DiffuseBsdfT>(paths);
@@ -90,10 +90,10 @@ MetalBsdfT<Floats> metal_bsdfs(std::span<const BatchPath> paths) {
 
 template <typename BsdfType> class Batch {
 public:
-    Batch(const RenderPlan& plan, std::span<BatchPath> paths, PlainSurfaces::Form form, const BsdfType& bsdf)
+    Batch(const RenderPlan& plan, std::span<BatchPath> paths, BatchedSurfaces::Geometry form, const BsdfType& bsdf)
         : plan_(plan), paths_(paths), vertex_(paths, form, bsdf) {
         const auto [r, g, b, refraction] =
-            fours(paths, [](const BatchPath& path) -> const float& { return path.state->throughput.r; });
+            load_four(paths, [](const BatchPath& path) -> const float& { return path.state->throughput.r; });
         path_ = {{r, g, b}, refraction};
     }
 
@@ -103,15 +103,15 @@ public:
         const BatchLightSamples samples(plan_, paths_, vertex_.point.p);
         const LightLiSampleT<Floats> light = samples.lanes();
         const Color scattered = scattered_light(vertex_, light);
-        unsigned lit = samples.some() & ~lane_bits(is_black(scattered));
+        unsigned lit = samples.valid() & ~lane_bits(is_black(scattered));
         if (lit == 0) return;
         const Floats weight = light_sample_weight(vertex_, light);
-        const Columns found(path_.throughput * scattered * (weight / light.pdf)),
+        const LaneVectors found(path_.throughput * scattered * (weight / light.pdf)),
             origins(offset_origin(vertex_.point, light.wi)), p(vertex_.point.p);
         for (; lit != 0; lit &= lit - 1) {
             const auto i = static_cast<std::size_t>(std::countr_zero(lit));
             ++counts.shadow;
-            const Arrival sample = samples[i];
+            const LightLiSample sample = samples[i];
             Ray ray{origins.vec(i), sample.wi};
             ray.time = paths_[i].ray->time;
             shadows.add(paths_[i].index, ray, p.vec(i), sample, found.rgb(i));
@@ -120,49 +120,49 @@ public:
 
     // Replaces the ray of each path that continues. It is flattened, because functions take batches by memory.
     [[gnu::flatten]] void leave(int depth, RayCounts& counts) {
-        const VertexNumbersT<Floats> u = numbers();
+        const VertexRandomSamplesT<Floats> u = random_samples();
         const ScatteringT<Floats> next = scatter(vertex_, u, path_);
-        unsigned going = lane_bits(next.continues);
+        unsigned continuing = lane_bits(next.continues);
         if (plan_.russian_roulette && depth > 0) {
-            const unsigned survivors = lane_bits(russian_roulette(plan_.worth, u.roulette, path_).survives);
-            const unsigned mine = (1u << paths_.size()) - 1;
-            counts.ended += std::popcount(going & ~survivors & mine);
-            going &= survivors;
+            const unsigned survivors = lane_bits(russian_roulette(plan_.survival_factor, u.roulette, path_).survives);
+            const unsigned used_lanes = (1u << paths_.size()) - 1;
+            counts.ended += std::popcount(continuing & ~survivors & used_lanes);
+            continuing &= survivors;
         }
-        const Columns origins(offset_origin(vertex_.point, next.wi)), directions(next.wi),
+        const LaneVectors origins(offset_origin(vertex_.point, next.wi)), directions(next.wi),
             throughputs(path_.throughput);
-        const Column pdfs(next.sample->pdf), refractions(path_.refraction);
+        const LaneValues pdfs(next.sample->pdf), refractions(path_.refraction);
         for (std::size_t i = 0; i < paths_.size(); ++i) {
             BatchPath& path = paths_[i];
-            path.goes_on = (going >> i & 1u) != 0;
-            if (!path.goes_on) continue;
+            path.continues = (continuing >> i & 1u) != 0;
+            if (!path.continues) continue;
             ++counts.indirect;
             path.ray->origin = origins.vec(i);
             path.ray->direction = directions.vec(i);
             path.ray->t_min = 0;
             path.state->throughput = throughputs.rgb(i);
-            path.state->refraction = refractions.of[i];
-            path.state->departure.pdf = pdfs.of[i];
-            path.state->departure.certain = next.sample->specular || plan_.lights == nullptr;
+            path.state->refraction = refractions.values[i];
+            path.state->previous_vertex.pdf = pdfs.values[i];
+            path.state->previous_vertex.no_light_sample = next.sample->specular || plan_.lights == nullptr;
         }
     }
 
 private:
-    VertexNumbersT<Floats> numbers() const {
+    VertexRandomSamplesT<Floats> random_samples() const {
         const auto [bsdf_x, bsdf_y, light_x, light_y] =
-            fours(paths_, [](const BatchPath& path) -> const float& { return path.numbers->bsdf.x; });
+            load_four(paths_, [](const BatchPath& path) -> const float& { return path.random_samples->bsdf.x; });
         const auto [same_y, choice, lobe, roulette] =
-            fours(paths_, [](const BatchPath& path) -> const float& { return path.numbers->light.y; });
+            load_four(paths_, [](const BatchPath& path) -> const float& { return path.random_samples->light.y; });
         return {{bsdf_x, bsdf_y}, {light_x, light_y}, choice, lobe, roulette};
     }
 
     // Sets the light receivers of the paths. Each is also the previous vertex of the next ray, which MIS needs.
     void store_receivers() {
         const LightReceiverT<Floats> receiver = light_receiver(vertex_);
-        const Columns p(receiver.p), n(receiver.n);
+        const LaneVectors p(receiver.p), n(receiver.n);
         // The minimum avoids a GCC 12 warning about an overrun that cannot occur.
         const std::size_t count = std::min(paths_.size(), kLanes);
-        for (std::size_t i = 0; i < count; ++i) paths_[i].state->departure.receiver = {p.vec(i), n.vec(i)};
+        for (std::size_t i = 0; i < count; ++i) paths_[i].state->previous_vertex.receiver = {p.vec(i), n.vec(i)};
     }
 
     const RenderPlan& plan_;
@@ -173,24 +173,27 @@ private:
 
 } // namespace
 
-void advance_batch(const RenderPlan& plan, PlainSurfaces::Kind kind, std::span<BatchPath> paths, int depth,
+void advance_batch(const RenderPlan& plan, BatchedSurfaces::Kind kind, std::span<BatchPath> paths, int depth,
                    ShadowRays& shadows, RayCounts& counts) {
     const auto advance = [&](const auto& bsdf) {
-        Batch batch(plan, paths, kind.form, bsdf);
-        if (plan.lights != nullptr && !is_specular(kind.scattering)) batch.add_light_samples(shadows, counts);
+        Batch batch(plan, paths, kind.geometry, bsdf);
+        if (plan.lights != nullptr && !is_specular(kind.bsdf_kind)) batch.add_light_samples(shadows, counts);
         if (depth + 1 < plan.max_depth || plan.hits_find_light) batch.leave(depth, counts);
     };
-    switch (kind.scattering) {
-    case PlainSurfaces::Scattering::kMatt: return advance(diffuse_bsdfs(paths));
-    case PlainSurfaces::Scattering::kMetal:
-    case PlainSurfaces::Scattering::kMirror: return advance(metal_bsdfs(paths));
-    case PlainSurfaces::Scattering::kGlass: return advance(dielectric_bsdfs(paths));
+    switch (kind.bsdf_kind) {
+    case BatchedSurfaces::BsdfKind::kDiffuse:
+        return advance(diffuse_bsdfs(paths));
+    case BatchedSurfaces::BsdfKind::kMetal:
+    case BatchedSurfaces::BsdfKind::kMirror:
+        return advance(metal_bsdfs(paths));
+    case BatchedSurfaces::BsdfKind::kGlass:
+        return advance(dielectric_bsdfs(paths));
     }
 }
 
-#else // without AVX, RenderPlan::plain has no surfaces
+#else // without AVX, RenderPlan::batched has no surfaces
 
-void advance_batch(const RenderPlan&, PlainSurfaces::Kind, std::span<BatchPath>, int, ShadowRays&, RayCounts&) {}
+void advance_batch(const RenderPlan&, BatchedSurfaces::Kind, std::span<BatchPath>, int, ShadowRays&, RayCounts&) {}
 
 #endif
 

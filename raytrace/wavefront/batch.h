@@ -1,4 +1,4 @@
-// A batch advances several paths at surfaces of one kind (PlainSurfaces) together with SIMD, one path per lane.
+// A batch advances several paths at surfaces of one kind (BatchedSurfaces) together with SIMD, one path per lane.
 #pragma once
 
 #include "common/vec/simd.h"
@@ -20,23 +20,23 @@ struct BatchPath {
     const Hit* hit; ///< the hit of that ray
     const Shape* shape; ///< shape at the hit
     const Bsdf* bsdf;   ///< BSDF at the hit
-    const VertexNumbers* numbers;
+    const VertexRandomSamples* random_samples;
     PathState* state;
-    bool goes_on = false;
+    bool continues = false;
 };
 
-/// Says which pairs of VertexNumbers that are drawn for a batch.
-struct NumbersUsed {
+/// Says which pairs of VertexRandomSamples that are drawn for a batch.
+struct UsedDimensions {
     bool direction = false, light = false, lobe = false, roulette = false;
 };
 /// Returns what paths at surfaces of this scattering use after `depth` scatterings.
-NumbersUsed numbers_used(const RenderPlan& plan, PlainSurfaces::Scattering scattering, int depth);
+UsedDimensions used_dimensions(const RenderPlan& plan, BatchedSurfaces::BsdfKind scattering, int depth);
 
-/// Advances up to kPathLanes paths at surfaces of one kind of plan.plain, after `depth` < plan.max_depth scatterings, as
-/// Path::advance does one path. Shadow rays are added to `shadows`, to be traced later. The result for each path is
+/// Advances up to kPathLanes paths at surfaces of one kind of plan.batched, after `depth` < plan.max_depth scatterings,
+/// as Path::advance does one path. Shadow rays are added to `shadows`, to be traced later. The result for each path is
 /// bit-equal to that for the path alone: the formulas are the same templates (path.h), and all operations are rounded
 /// the same in every lane.
-void advance_batch(const RenderPlan& plan, PlainSurfaces::Kind kind, std::span<BatchPath> paths, int depth,
-                  ShadowRays& shadows, RayCounts& counts);
+void advance_batch(const RenderPlan& plan, BatchedSurfaces::Kind kind, std::span<BatchPath> paths, int depth,
+                   ShadowRays& shadows, RayCounts& counts);
 
 } // namespace duet::raytrace

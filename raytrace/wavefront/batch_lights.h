@@ -15,28 +15,30 @@ class BatchLightSamples {
 public:
     /// `p` are the points of the paths. Their light receivers must be in the paths' states.
     BatchLightSamples(const RenderPlan& plan, std::span<const BatchPath> paths, const Vec& p) {
-        pdf_.of.fill(1);
+        pdf_.values.fill(1);
         for (std::size_t i = 0; i < paths.size(); ++i) {
-            const auto choice = plan.lights->sample(paths[i].state->departure.receiver, paths[i].numbers->light_choice);
+            const auto choice =
+                plan.lights->sample(paths[i].state->previous_vertex.receiver, paths[i].random_samples->light_choice);
             if (!choice) continue;
             chosen_ |= 1u << i;
             choices_[i].index = choice->index;
             choices_[i].probability = choice->probability;
         }
-        const unsigned done = plan.scene.needs.lamp_textures ? 0 : sample_far_rectangles(plan.scene.lights, paths, p);
+        const unsigned done =
+            plan.scene.needs.emitter_textures ? 0 : sample_far_rectangles(plan.scene.lights, paths, p);
         for (unsigned left = chosen_ & ~done; left != 0; left &= left - 1) {
             const auto i = static_cast<std::size_t>(std::countr_zero(left));
-            if (const auto light = sample_arrival(plan.scene, *plan.lights, paths[i].state->departure.receiver,
-                                                  choices_[i], paths[i].numbers->light))
+            if (const auto light = sample_li(plan.scene, *plan.lights, paths[i].state->previous_vertex.receiver,
+                                             choices_[i], paths[i].random_samples->light))
                 set(i, *light);
         }
     }
 
     /// Returns a bit mask of the paths that have a light sample.
-    unsigned some() const { return some_; }
+    unsigned valid() const { return valid_; }
     /// Returns the light sample of path i, which must have one.
-    Arrival operator[](std::size_t i) const {
-        return {{wi_.vec(i), radiance_.rgb(i), pdf_.of[i], delta_.of[i] > 0}, distance_[i], light_[i]};
+    LightLiSample operator[](std::size_t i) const {
+        return {{wi_.vec(i), radiance_.rgb(i), pdf_.values[i], delta_.values[i] > 0}, distance_[i], light_[i]};
     }
     /// Returns the light samples in lanes. Lanes without one have a black sample.
     LightLiSampleT<Floats> lanes() const {
@@ -44,12 +46,12 @@ public:
     }
 
 private:
-    void set(std::size_t i, const Arrival& light) {
-        some_ |= 1u << i;
+    void set(std::size_t i, const LightLiSample& light) {
+        valid_ |= 1u << i;
         wi_.set(i, light.wi);
         radiance_.set(i, light.radiance);
-        pdf_.of[i] = light.pdf;
-        delta_.of[i] = light.delta ? 1.0f : 0.0f;
+        pdf_.values[i] = light.pdf;
+        delta_.values[i] = light.delta ? 1.0f : 0.0f;
         distance_[i] = light.distance;
         light_[i] = light.light;
     }
@@ -58,8 +60,8 @@ private:
     // mask of these paths.
     unsigned sample_far_rectangles(const std::vector<Light>& lights, std::span<const BatchPath> paths, const Vec& p) {
         unsigned rectangles = 0;
-        Columns corner, edge_u, edge_v;
-        Column ux, uy, two_sided;
+        LaneVectors corner, edge_u, edge_v;
+        LaneValues ux, uy, two_sided;
         for (unsigned left = chosen_; left != 0; left &= left - 1) {
             const auto i = static_cast<std::size_t>(std::countr_zero(left));
             if (choices_[i].index >= lights.size()) continue;
@@ -70,28 +72,28 @@ private:
             corner.set(i, quad->corner);
             edge_u.set(i, quad->u);
             edge_v.set(i, quad->v);
-            ux.of[i] = paths[i].numbers->light.x, uy.of[i] = paths[i].numbers->light.y;
-            two_sided.of[i] = light->two_sided ? 1.0f : 0.0f;
+            ux.values[i] = paths[i].random_samples->light.x, uy.values[i] = paths[i].random_samples->light.y;
+            two_sided.values[i] = light->two_sided ? 1.0f : 0.0f;
         }
         if (rectangles == 0) return 0;
         const QuadSeen<Doubles> seen(corner.doubles(), edge_u.doubles(), edge_v.doubles(), to_doubles(p));
         const unsigned far = rectangles & ~lane_bits(seen.near());
         const SolidAngleSampleT<Doubles> sample = seen.sample({ux.doubles(), uy.doubles()});
         const auto emits = seen.emits(two_sided.doubles() > Doubles(0.0));
-        const Columns wi(sample.wi);
-        const Column distances(sample.distance), pdfs(sample.pdf);
+        const LaneVectors wi(sample.wi);
+        const LaneValues distances(sample.distance), pdfs(sample.pdf);
         for (unsigned left = far & lane_bits(emits & is_usable_pdf(sample.pdf)); left != 0; left &= left - 1) {
             const auto i = static_cast<std::size_t>(std::countr_zero(left));
             const Rgb radiance = std::get<SurfaceLight>(lights[choices_[i].index]).radiance;
-            set(i, arrival({wi.vec(i), distances.of[i], radiance, pdfs.of[i], false}, choices_[i]));
+            set(i, light_sample({wi.vec(i), distances.values[i], radiance, pdfs.values[i], false}, choices_[i]));
         }
         return far;
     }
 
-    unsigned chosen_ = 0, some_ = 0; // bit masks of the paths that have a choice, and a light sample
-    std::array<LightChoice, kLanes> choices_;
-    Columns wi_, radiance_;
-    Column pdf_, delta_;
+    unsigned chosen_ = 0, valid_ = 0; // bit masks of the paths that have a choice, and a light sample
+    std::array<SampledLight, kLanes> choices_;
+    LaneVectors wi_, radiance_;
+    LaneValues pdf_, delta_;
     std::array<float, kLanes> distance_;
     std::array<std::int64_t, kLanes> light_;
 };

@@ -10,18 +10,18 @@ namespace duet::raytrace::lanes {
 
 #if XSIMD_WITH_AVX
 
-// `fours` reads consecutive numbers across these members.
+// `load_four` reads consecutive numbers across these members.
 static_assert(offsetof(Ray, direction) == offsetof(Ray, origin) + 3 * sizeof(float) &&
               offsetof(Ray, t_min) == offsetof(Ray, direction) + 3 * sizeof(float));
 static_assert(offsetof(Sphere, radius) == offsetof(Sphere, center) + 3 * sizeof(float));
 
 // Triangles and quads are mixed in a batch.
 inline SurfaceGeometryT<Floats> flat_points(std::span<const BatchPath> paths) {
-    Columns corner, base, a, b; // edges are a − base and b − base
-    Column u, v, quad;
+    LaneVectors corner, base, a, b; // edges are a − base and b − base
+    LaneValues u, v, quad;
     for_lanes(paths, [&](std::size_t i, const BatchPath& path) {
         const Hit& hit = *path.hit;
-        u.of[i] = hit.u, v.of[i] = hit.v;
+        u.values[i] = hit.u, v.values[i] = hit.v;
         if (const auto* mesh = std::get_if<Mesh>(path.shape)) {
             const auto& [ia, ib, ic] = mesh->triangles[hit.primitive];
             corner.set(i, mesh->positions[ia]);
@@ -33,7 +33,7 @@ inline SurfaceGeometryT<Floats> flat_points(std::span<const BatchPath> paths) {
             corner.set(i, q.corner);
             a.set(i, q.u);
             b.set(i, q.v);
-            quad.of[i] = 1;
+            quad.values[i] = 1;
         }
     });
     const Vecd from = base.doubles();
@@ -44,33 +44,33 @@ inline SurfaceGeometryT<Floats> flat_points(std::span<const BatchPath> paths) {
 inline SurfaceGeometryT<Floats> round_points(std::span<const BatchPath> paths) {
     const auto sphere = [](const BatchPath& path) -> const Sphere& { return std::get<Sphere>(*path.shape); };
     const auto [ox, oy, oz, dx] =
-        fours(paths, [](const BatchPath& path) -> const float& { return path.ray->origin.x; });
+        load_four(paths, [](const BatchPath& path) -> const float& { return path.ray->origin.x; });
     const auto [wx, wy, wz, t_min] =
-        fours(paths, [](const BatchPath& path) -> const float& { return path.ray->direction.x; });
+        load_four(paths, [](const BatchPath& path) -> const float& { return path.ray->direction.x; });
     const auto [cx, cy, cz, radius] =
-        fours(paths, [&](const BatchPath& path) -> const float& { return sphere(path).center.x; });
-    Column t;
-    for_lanes(paths, [&](std::size_t i, const BatchPath& path) { t.of[i] = path.hit->t; });
+        load_four(paths, [&](const BatchPath& path) -> const float& { return sphere(path).center.x; });
+    LaneValues t;
+    for_lanes(paths, [&](std::size_t i, const BatchPath& path) { t.values[i] = path.hit->t; });
     return surface_geometry(point_on_sphere(to_doubles(Vec(cx, cy, cz)), to_doubles(radius), to_doubles(Vec(ox, oy, oz)),
                                             to_doubles(Vec(wx, wy, wz)), t.doubles()));
 }
 
 inline SurfaceGeometryT<Floats> smooth_points(std::span<const BatchPath> paths) {
-    Columns direction;
-    std::array<Columns, 3> corners, normals;
-    Column u, v;
+    LaneVectors direction;
+    std::array<LaneVectors, 3> corners, normals;
+    LaneValues u, v;
     for_lanes(paths, [&](std::size_t i, const BatchPath& path) {
         const Hit& hit = *path.hit;
         const Mesh& mesh = std::get<Mesh>(*path.shape);
         const auto& index = mesh.triangles[hit.primitive];
         direction.set(i, path.ray->direction);
-        u.of[i] = hit.u, v.of[i] = hit.v;
+        u.values[i] = hit.u, v.values[i] = hit.v;
         for (std::size_t k = 0; k < 3; ++k) {
             corners[k].set(i, mesh.positions[index[k]]);
             normals[k].set(i, mesh.normals[index[k]]);
         }
     });
-    const auto doubles = [](const std::array<Columns, 3>& of) {
+    const auto doubles = [](const std::array<LaneVectors, 3>& of) {
         return std::array{of[0].doubles(), of[1].doubles(), of[2].doubles()};
     };
     return surface_geometry(point_on_smooth_triangle(doubles(corners), doubles(normals), u.doubles(), v.doubles(),
@@ -78,10 +78,12 @@ inline SurfaceGeometryT<Floats> smooth_points(std::span<const BatchPath> paths) 
 }
 
 /// Returns the geometry of the points that the paths have hit on surfaces of this form, one path per lane.
-inline SurfaceGeometryT<Floats> surface_points(std::span<const BatchPath> paths, PlainSurfaces::Form form) {
+inline SurfaceGeometryT<Floats> surface_points(std::span<const BatchPath> paths, BatchedSurfaces::Geometry form) {
     switch (form) {
-    case PlainSurfaces::Form::kFlat: return flat_points(paths);
-    case PlainSurfaces::Form::kSmooth: return smooth_points(paths);
+    case BatchedSurfaces::Geometry::kFlat:
+        return flat_points(paths);
+    case BatchedSurfaces::Geometry::kSmooth:
+        return smooth_points(paths);
     default: return round_points(paths);
     }
 }

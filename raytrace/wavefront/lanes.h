@@ -21,26 +21,26 @@ using Vecd = Vec3T<Doubles>;
 using Color = RgbT<Floats>;
 using Mask = MaskOf<Floats>;
 
-// A Column has one number per path, and Columns have three.
-struct Column {
-    alignas(sizeof(Doubles)) std::array<float, kLanes> of{};
+// LaneValues holds one number per path, and LaneVectors holds three.
+struct LaneValues {
+    alignas(sizeof(Doubles)) std::array<float, kLanes> values{};
 
-    Column() = default;
-    explicit Column(Floats lanes) { lanes.store_aligned(of.data()); }
-    explicit Column(Doubles lanes) { store_floats(lanes, of.data()); }
-    Floats floats() const { return Floats::load_aligned(of.data()); }
-    Doubles doubles() const { return load_doubles(of.data()); }
+    LaneValues() = default;
+    explicit LaneValues(Floats lanes) { lanes.store_aligned(values.data()); }
+    explicit LaneValues(Doubles lanes) { store_floats(lanes, values.data()); }
+    Floats floats() const { return Floats::load_aligned(values.data()); }
+    Doubles doubles() const { return load_doubles(values.data()); }
 };
-struct Columns {
-    Column x, y, z;
+struct LaneVectors {
+    LaneValues x, y, z;
 
-    Columns() = default;
-    template <typename T> explicit Columns(const Vec3T<T>& v) : x(v.x), y(v.y), z(v.z) {}
-    explicit Columns(const Color& c) : x(c.r), y(c.g), z(c.b) {}
-    void set(std::size_t i, Vec3 v) { x.of[i] = v.x, y.of[i] = v.y, z.of[i] = v.z; }
+    LaneVectors() = default;
+    template <typename T> explicit LaneVectors(const Vec3T<T>& v) : x(v.x), y(v.y), z(v.z) {}
+    explicit LaneVectors(const Color& c) : x(c.r), y(c.g), z(c.b) {}
+    void set(std::size_t i, Vec3 v) { x.values[i] = v.x, y.values[i] = v.y, z.values[i] = v.z; }
     void set(std::size_t i, Rgb c) { set(i, Vec3(c.r, c.g, c.b)); }
-    Vec3 vec(std::size_t i) const { return {x.of[i], y.of[i], z.of[i]}; }
-    Rgb rgb(std::size_t i) const { return {x.of[i], y.of[i], z.of[i]}; }
+    Vec3 vec(std::size_t i) const { return {x.values[i], y.values[i], z.values[i]}; }
+    Rgb rgb(std::size_t i) const { return {x.values[i], y.values[i], z.values[i]}; }
     Vec floats() const { return {x.floats(), y.floats(), z.floats()}; }
     Vecd doubles() const { return {x.doubles(), y.doubles(), z.doubles()}; }
     Color colors() const { return {x.floats(), y.floats(), z.floats()}; }
@@ -53,7 +53,7 @@ template <typename Set> void for_lanes(std::span<const BatchPath> paths, const S
 }
 
 // Loads four consecutive numbers of each path, starting at first(path), into four batches.
-template <typename First> std::array<Floats, 4> fours(std::span<const BatchPath> paths, const First& first) {
+template <typename First> std::array<Floats, 4> load_four(std::span<const BatchPath> paths, const First& first) {
     return load_columns<kLanes>([&](std::size_t i) { return &first(paths[i < paths.size() ? i : 0]); });
 }
 

@@ -6,27 +6,28 @@
 
 namespace duet::raytrace {
 
-void ShadowRays::look() {
+void ShadowRays::find_closest_hits() {
     if (!plan_.prepared.accelerator.few_primitives()) return;
-    for (std::size_t i = 0; i < rays_.size(); ++i) rays_[i].t_max = waiting_[i].end.about().t;
+    for (std::size_t i = 0; i < rays_.size(); ++i) rays_[i].t_max = pending_[i].end.conservative().t;
     hits_.resize(rays_.size());
-    all_.resize(rays_.size());
-    std::iota(all_.begin(), all_.end(), 0u);
-    plan_.prepared.accelerator.closest_of_scattered(rays_, all_, hits_);
-    for (Ray& ray : rays_) ray.t_max = kInfinity; // the exact end may be beyond about()
+    indices_.resize(rays_.size());
+    std::iota(indices_.begin(), indices_.end(), 0u);
+    plan_.prepared.accelerator.closest_of_incoherent(rays_, indices_, hits_);
+    for (Ray& ray : rays_) ray.t_max = kInfinity; // the exact end may be beyond conservative()
 }
 
-bool ShadowRays::reached(std::size_t i) const {
+bool ShadowRays::is_unoccluded(std::size_t i) const {
     const Ray& ray = rays_[i];
-    const ShadowEnd& end = waiting_[i].end;
-    if (!plan_.prepared.accelerator.few_primitives()) return reaches(plan_, ray, end);
+    const ShadowRayEnd& end = pending_[i].end;
+    if (!plan_.prepared.accelerator.few_primitives()) return unoccluded(plan_, ray, end);
     const Hit& nearest = hits_[i];
     if (!nearest.valid()) return true;
     if (!end.is_surface()) return false;
     if (!end.is_flat()) return !plan_.prepared.accelerator.occluded(ray, end.exact(ray));
     // exact() is where the ray itself hits a flat light. The light is visible if and only if the closest hit does
     // not precede it.
-    const bool is_end = nearest.object == end.about().object && nearest.primitive == end.about().primitive;
+    const bool is_end =
+        nearest.object == end.conservative().object && nearest.primitive == end.conservative().primitive;
     return is_end || !precedes(nearest, end.exact(ray));
 }
 

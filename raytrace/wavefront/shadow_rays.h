@@ -13,34 +13,35 @@ public:
 
     /// Adds a ray from the surface point p to a light sample, and the light that it adds to a path if it is not
     /// occluded.
-    void add(std::uint32_t path, const Ray& ray, Vec3 p, const Arrival& arrival, Rgb light) {
-        waiting_.push_back({path, light, ShadowEnd(plan_.scene, ray, p, arrival)});
+    void add(std::uint32_t path, const Ray& ray, Vec3 p, const LightLiSample& light_sample, Rgb light) {
+        pending_.push_back({path, light, ShadowRayEnd(plan_.scene, ray, p, light_sample)});
         rays_.push_back(ray);
     }
-    /// Traces all rays. Calls arrived(path, light) for each that is not occluded, in order. Then the list is empty.
-    template <typename Arrived> void send(const Arrived& arrived) {
-        look();
-        for (std::size_t i = 0; i < waiting_.size(); ++i)
-            if (reached(i)) arrived(waiting_[i].path, waiting_[i].light);
-        waiting_.clear();
+    /// Traces all rays. Calls on_unoccluded(path, light) for each that is not occluded, in order. Then the list is
+    /// empty.
+    template <typename Unoccluded> void trace(const Unoccluded& on_unoccluded) {
+        find_closest_hits();
+        for (std::size_t i = 0; i < pending_.size(); ++i)
+            if (is_unoccluded(i)) on_unoccluded(pending_[i].path, pending_[i].light);
+        pending_.clear();
         rays_.clear();
     }
 
 private:
-    struct Waiting {
+    struct PendingRay {
         std::uint32_t path;
         Rgb light;
-        ShadowEnd end;
+        ShadowRayEnd end;
     };
 
-    void look();
-    bool reached(std::size_t i) const; ///< see `reaches`
+    void find_closest_hits();
+    bool is_unoccluded(std::size_t i) const; ///< see `unoccluded`
 
     const RenderPlan& plan_;
-    std::vector<Waiting> waiting_;
-    std::vector<Ray> rays_;  ///< parallel to waiting_
+    std::vector<PendingRay> pending_;
+    std::vector<Ray> rays_;  ///< parallel to pending_
     std::vector<Hit> hits_;  ///< the closest hits, where they have been traced
-    std::vector<std::uint32_t> all_; ///< indices of all rays
+    std::vector<std::uint32_t> indices_; ///< indices of all rays
 };
 
 } // namespace duet::raytrace

@@ -13,23 +13,26 @@ using namespace duet::compare;
 
 namespace {
 
-constexpr raster::PartSet kLights{.emission = true, .direct = true, .environment = false, .reflection = false};
-constexpr raster::PartSet kEnvironment{.emission = false, .direct = false, .environment = true, .reflection = false};
-constexpr raster::PartSet kReflection{.emission = false, .direct = false, .environment = false, .reflection = true};
+constexpr raster::LightComponentSet kLights{
+    .emission = true, .direct = true, .environment = false, .reflection = false};
+constexpr raster::LightComponentSet kEnvironment{
+    .emission = false, .direct = false, .environment = true, .reflection = false};
+constexpr raster::LightComponentSet kReflection{
+    .emission = false, .direct = false, .environment = false, .reflection = true};
 
 Scene model(const std::string& name) {
     return load_scene(std::filesystem::path(DUET_SOURCE_DIR) / "models" / (name + ".json"));
 }
 
-raster::Settings sixteen(const raster::PartSet& parts) {
-    raster::Settings settings;
+raster::RasterSettings sixteen(const raster::LightComponentSet& parts) {
+    raster::RasterSettings settings;
     settings.samples_per_pixel = 16;
-    settings.parts = parts;
+    settings.components = parts;
     return settings;
 }
 
 ImageRgb traced(const Scene& scene, const View& view, raytrace::Integrator integrator, bool environment) {
-    raytrace::Settings settings;
+    raytrace::PathTracerSettings settings;
     settings.integrator = integrator;
     settings.samples_per_pixel = 256;
     settings.environment = environment;
@@ -37,7 +40,7 @@ ImageRgb traced(const Scene& scene, const View& view, raytrace::Integrator integ
     return raytrace::render(raytrace::prepare(scene, settings), view, settings, control).radiance;
 }
 
-double error(const Scene& scene, const View& view, const raster::Settings& settings, const ImageRgb& truth) {
+double error(const Scene& scene, const View& view, const raster::RasterSettings& settings, const ImageRgb& truth) {
     Control control;
     return error_metrics(raster::render(raster::prepare(scene, settings), view, settings, control).radiance, truth)
         .relmse;
@@ -54,7 +57,7 @@ TEST_SUITE("statistical") {
         const Scene scene = model("cornell");
         const View view = small(scene, 96);
         const ImageRgb truth = traced(scene, view, raytrace::Integrator::kLights, false);
-        raster::Settings settings = sixteen(kLights);
+        raster::RasterSettings settings = sixteen(kLights);
         const double with = error(scene, view, settings, truth);
         settings.shadows = false;
         const double without = error(scene, view, settings, truth);
@@ -67,7 +70,7 @@ TEST_SUITE("statistical") {
         const Scene scene = model("everything");
         const View view = small(scene, 96);
         const ImageRgb truth = traced(scene, view, raytrace::Integrator::kLights, false);
-        raster::Settings settings = sixteen(kLights);
+        raster::RasterSettings settings = sixteen(kLights);
         settings.environment = false;
         const double with = error(scene, view, settings, truth);
         settings.shadows = false;
@@ -80,7 +83,7 @@ TEST_SUITE("statistical") {
         const Scene scene = model("spheres");
         const View view = small(scene, 128);
         const ImageRgb truth = traced(scene, view, raytrace::Integrator::kEnvironment, true);
-        raster::Settings settings = sixteen(kEnvironment);
+        raster::RasterSettings settings = sixteen(kEnvironment);
         const double gtao = error(scene, view, settings, truth);
         settings.ambient_occlusion = raster::AmbientOcclusion::kSsao;
         const double ssao = error(scene, view, settings, truth);
@@ -96,7 +99,7 @@ TEST_SUITE("statistical") {
         const Scene scene = model("spheres");
         const View view = small(scene, 128);
         const ImageRgb truth = traced(scene, view, raytrace::Integrator::kReflection, true);
-        raster::Settings settings = sixteen(kReflection);
+        raster::RasterSettings settings = sixteen(kReflection);
         const double all = error(scene, view, settings, truth);
         settings.screen_reflections = false;
         const double prefiltered = error(scene, view, settings, truth);
@@ -111,7 +114,7 @@ TEST_SUITE("statistical") {
         const Scene scene = model("glass");
         const View view = small(scene, 96);
         const ImageRgb truth = traced(scene, view, raytrace::Integrator::kReflection, true);
-        raster::Settings settings = sixteen(kReflection);
+        raster::RasterSettings settings = sixteen(kReflection);
         const auto trimmed = [&] {
             Control control;
             return error_metrics(raster::render(raster::prepare(scene, settings), view, settings, control).radiance,
@@ -144,7 +147,7 @@ TEST_SUITE("statistical") {
         finish_scene(scene);
         const View view{scene.camera, 96, 72};
         const ImageRgb truth = traced(scene, view, raytrace::Integrator::kUnshadowed, false);
-        raster::Settings settings = sixteen(kLights);
+        raster::RasterSettings settings = sixteen(kLights);
         settings.shadows = false;
         const double cosines = error(scene, view, settings, truth);
         settings.transformed_cosines = false;
@@ -155,17 +158,17 @@ TEST_SUITE("statistical") {
 
     // The worst pixel in a thousand is trimmed: in such small images a light's reflection covers one pixel or none.
     TEST_CASE("all effects together bring the picture nearer to the path tracer's, in each scene") {
-        const auto trimmed = [](const Scene& scene, const View& view, const raster::Settings& settings,
+        const auto trimmed = [](const Scene& scene, const View& view, const raster::RasterSettings& settings,
                                 const ImageRgb& truth) {
             Control control;
-            const Rendering picture = raster::render(raster::prepare(scene, settings), view, settings, control);
-            return error_metrics(picture.radiance, truth).relmse_trimmed;
+            const Rendering image = raster::render(raster::prepare(scene, settings), view, settings, control);
+            return error_metrics(image.radiance, truth).relmse_trimmed;
         };
         for (const char* const name : {"cornell", "everything", "spheres"}) {
             const Scene scene = model(name);
             const View view = small(scene, 64);
             const ImageRgb truth = traced(scene, view, raytrace::Integrator::kPath, true);
-            raster::Settings settings = sixteen({});
+            raster::RasterSettings settings = sixteen({});
             const double with = trimmed(scene, view, settings, truth);
             settings.shadows = settings.prefiltered_environment = settings.transformed_cosines = false;
             settings.screen_reflections = false;

@@ -24,10 +24,10 @@ TEST_SUITE("unit") {
         ImageRgb a(3, 1, Rgb(1.0f)), b(3, 1, Rgb(1.0f));
         a[1] = Rgb(2.0f);
         b[2].g = std::numeric_limits<float>::quiet_NaN();
-        const ImageRgb picture = difference_picture(a, b, 1);
-        CHECK(luminance(picture[0]) > 0.85f);
-        CHECK(picture[1].r > picture[1].b);
-        CHECK(picture[2] == Rgb(1, 0, 1));
+        const ImageRgb image = difference_image(a, b, 1);
+        CHECK(luminance(image[0]) > 0.85f);
+        CHECK(image[1].r > image[1].b);
+        CHECK(image[2] == Rgb(1, 0, 1));
     }
 
     TEST_CASE("the range is a round number over the 99th percentile") {

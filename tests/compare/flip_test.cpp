@@ -2,7 +2,7 @@
 
 #include "common/image/image_file.h"
 #include "tests/compare/golden_figures.h"
-#include "tests/compare/test_pictures.h"
+#include "tests/compare/test_images.h"
 
 #include <doctest/doctest.h>
 
@@ -21,7 +21,7 @@ const bool kNoPair = !fs::exists(kPair / "a_ref.exr");
 
 /// Returns the values as stored in the file.
 ImageRgb stored(const fs::path& path) {
-    const PixelFile file = read_pixel_file(path);
+    const StoredImage file = read_stored_image(path);
     REQUIRE(file.channels == 3);
     ImageRgb image(file.width, file.height);
     for (std::size_t i = 0; i < image.size(); ++i)

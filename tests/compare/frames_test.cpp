@@ -19,9 +19,9 @@ const fs::path kMesh = fs::path(DUET_SOURCE_DIR) / "models/meshes/pear.obj";
 
 /// Returns whether llvmpipe is available here. Otherwise there is nothing to compare with.
 bool has_peer(const Scene& scene) {
-    if (!Peer::built()) return false;
+    if (!LlvmpipeRenderer::built()) return false;
     try {
-        const Peer peer(scene, frame_view(scene, FrameView::kWhole, 16, 16), 1);
+        const LlvmpipeRenderer peer(scene, frame_view(scene, FrameView::kWhole, 16, 16), 1);
         return true;
     } catch (const Error&) {
         return false;
@@ -34,17 +34,17 @@ TEST_SUITE("unit") {
 
     TEST_CASE("a frame's views show all of the mesh, and much more of it close up") {
         const Scene scene = frame_scene(kMesh);
-        raster::Settings settings;
-        settings.output = raster::Output::kNearness;
-        const raster::Prepared prepared = raster::prepare(scene, settings);
+        raster::RasterSettings settings;
+        settings.output = raster::Output::kReversedDepth;
+        const raster::RasterScene prepared = raster::prepare(scene, settings);
         Control control;
         const auto seen = [&](FrameView kind) {
             const View view = frame_view(scene, kind, 160, 90);
-            const ImageFloat nearness = raster::render(prepared, view, settings, control).nearness;
+            const ImageFloat reversed_depth = raster::render(prepared, view, settings, control).reversed_depth;
             int inside = 0, border = 0;
             for (int y = 0; y < 90; ++y)
                 for (int x = 0; x < 160; ++x)
-                    (x == 0 || y == 0 || x == 159 || y == 89 ? border : inside) += nearness(x, y) > 0;
+                    (x == 0 || y == 0 || x == 159 || y == 89 ? border : inside) += reversed_depth(x, y) > 0;
             return std::pair(inside, border);
         };
         const auto [whole, touching] = seen(FrameView::kWhole);
@@ -65,8 +65,8 @@ TEST_SUITE("unit") {
         settings.width = 320;
         settings.height = 180;
         settings.repeats = 1;
-        settings.burst = 1e-4;
-        const raster::Prepared prepared = raster::prepare(scene, {});
+        settings.burst_seconds = 1e-4;
+        const raster::RasterScene prepared = raster::prepare(scene, {});
         for (const FrameView view : {FrameView::kWhole, FrameView::kClose})
             for (const FrameRow& row :
                  measure_frames(scene, prepared, view, 1, {FrameWork::kPhong, FrameWork::kDepth}, settings)) {
@@ -84,7 +84,7 @@ TEST_SUITE("unit") {
         // The rasterizer renders a weaker sun, so its image must fail the comparison with the peer.
         Scene darker = frame_scene(kMesh);
         std::get<SunLight>(darker.lights[0]).irradiance = Rgb(2.0f);
-        const raster::Prepared other = raster::prepare(darker, {});
+        const raster::RasterScene other = raster::prepare(darker, {});
         const std::vector<FrameRow> rows =
             measure_frames(scene, other, FrameView::kWhole, 1, {FrameWork::kPhong}, settings);
         CHECK_FALSE(rows.at(0).difference->same());
@@ -100,7 +100,7 @@ TEST_SUITE("unit") {
         options.settings.width = 64;
         options.settings.height = 48;
         options.settings.repeats = 2;
-        options.settings.burst = 1e-4;
+        options.settings.burst_seconds = 1e-4;
         options.settings.peer = false;
         options.folder = folder;
         options.stats = (folder / "rows.json").string();

@@ -29,12 +29,12 @@ Quad facing(float x0, float x1, float y0, float y1, float z) { return {{x0, y0, 
 
 /// Returns the hits of an exact pipeline.
 Image<Hit> perfect_hits(const Scene& scene, const View& view) {
-    const ExactTracer tracer(scene, 0);
-    const Pinhole pinhole = CameraModel(view).through();
+    const ReferenceTracer tracer(scene, 0);
+    const Pinhole pinhole = CameraModel(view).pinhole();
     Image<Hit> hits(view.width, view.height);
     for (int y = 0; y < view.height; ++y)
         for (int x = 0; x < view.width; ++x) {
-            const ExactHit exact = tracer.nearest(pinhole.ray({x + 0.5, y + 0.5}));
+            const ReferenceHit exact = tracer.nearest(pinhole.ray({x + 0.5, y + 0.5}));
             if (exact.valid()) hits(x, y) = {exact.object, exact.primitive, 0, 0, static_cast<float>(exact.t)};
         }
     return hits;
@@ -98,7 +98,7 @@ TEST_SUITE("unit") {
         CHECK(result.listed[0].y == 30);
         CHECK(result.listed[0].raster.object == 1);
         CHECK(result.listed[0].exact.object == 0);
-        CHECK(result.verdicts(32, 30) == Verdict::kUnexplained);
+        CHECK(result.verdicts(32, 30) == HitVerdict::kUnexplained);
     }
 
     TEST_CASE("a silhouette: hit and miss are an edge; a miss in the middle of a surface is not") {
@@ -194,8 +194,8 @@ TEST_SUITE("unit") {
         test::add(scene, QuadList{{facing(-2, 2, -2, 2, 0)}}, start, &end);
         View view = plain_view();
         view.camera.shutter_open = 0.25; // the object is then at x = −5
-        const Pinhole pinhole = CameraModel(view).through();
-        const ExactTracer tracer(scene, CameraModel(view).time(0));
+        const Pinhole pinhole = CameraModel(view).pinhole();
+        const ReferenceTracer tracer(scene, CameraModel(view).time(0));
         CHECK(tracer.nearest(pinhole.ray({32 - 5.0, 32})).valid());
         CHECK_FALSE(tracer.nearest(pinhole.ray({32 - 10.0, 32})).valid());
         Image<Hit> raster(kWidth, kHeight), raytrace(kWidth, kHeight);

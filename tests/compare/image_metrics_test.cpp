@@ -2,7 +2,7 @@
 
 #include "compare/metrics/ssim.h"
 #include "tests/compare/golden_figures.h"
-#include "tests/compare/test_pictures.h"
+#include "tests/compare/test_images.h"
 
 #include <doctest/doctest.h>
 
@@ -24,7 +24,7 @@ void check_figure(double value, double expected, double rounding = 0) {
 /// that of one pixel, a small difference of float colors up to 100. Their rounding error is 1.5e-7 of the largest
 /// distance, and several errors add up.
 void check_golden(const std::string& pair, const ImageMetrics& metrics) {
-    for (const Figure& figure : figures(metrics)) {
+    for (const MetricValue& figure : metric_values(metrics)) {
         if (figure.name.rfind("z_", 0) == 0 || figure.name == "nan" || figure.name == "infinite" ||
             figure.name == "mean_signed_error")
             continue;
@@ -69,11 +69,11 @@ TEST_SUITE("unit") {
 
     TEST_CASE("figures have names of their own, the same with and without a z-test") {
         std::set<std::string> names;
-        for (const Figure& figure : figures({})) names.insert(figure.name);
-        CHECK(names.size() == figures({}).size());
+        for (const MetricValue& figure : metric_values({})) names.insert(figure.name);
+        CHECK(names.size() == metric_values({}).size());
         ImageMetrics tested;
         tested.z = ZTest{};
-        CHECK(figures(tested).size() == names.size());
+        CHECK(metric_values(tested).size() == names.size());
         for (const char* const name : {"mse", "psnr", "relmse", "smape", "ssim", "flip", "mean_signed_error", "z_p"})
             CHECK(names.count(name) == 1);
     }

@@ -3,7 +3,7 @@
 #include "common/image/image_file.h"
 #include "common/system/file.h"
 #include "compare/metrics/limits.h"
-#include "tests/compare/test_pictures.h"
+#include "tests/compare/test_images.h"
 #include "tests/support/scratch.h"
 
 #include <doctest/doctest.h>
@@ -82,7 +82,7 @@ TEST_SUITE("unit") {
         metrics.errors.mse = 0.25;
         metrics.errors.psnr = 20;
         metrics.ssim = 0.75;
-        const std::vector<Figure> found = figures(metrics);
+        const std::vector<MetricValue> found = metric_values(metrics);
         const auto said = [&](const char* limit) { return exceeded({parse_limit(limit)}, found); };
         CHECK(said("mse=0.25").empty());
         CHECK(said("psnr=20").empty());
@@ -94,7 +94,7 @@ TEST_SUITE("unit") {
         CHECK(said("ssim=1").size() == 1);
         CHECK(said("z_p=0").size() == 1); // no z-test, so no value
         metrics.errors.psnr = std::numeric_limits<double>::infinity();
-        CHECK(exceeded({parse_limit("psnr=1000")}, figures(metrics)).empty());
+        CHECK(exceeded({parse_limit("psnr=1000")}, metric_values(metrics)).empty());
     }
 
     TEST_CASE("compare images: sizes that differ are refused with both") {

@@ -2,7 +2,7 @@
 #include "compare/ladder/ladder.h"
 
 #include "common/image/image_file.h"
-#include "common/light/lambert.h"
+#include "common/light/form_factor.h"
 #include "common/system/file.h"
 #include "compare/ladder/code_lines.h"
 #include "compare/ladder/shares.h"
@@ -49,8 +49,8 @@ SceneBuilder floor_scene(const Material& material, bool blocker) {
     return builder;
 }
 
-LadderPictures climb_scene(const Scene& scene, int spp = 64, int threads = 0, bool effects = false) {
-    PipelineSettings settings;
+LadderImages ladder_scene(const Scene& scene, int spp = 64, int threads = 0, bool effects = false) {
+    ComparisonSettings settings;
     settings.raytrace_spp = spp;
     settings.raster_spp = 64;
     settings.threads = threads;
@@ -63,7 +63,7 @@ LadderPictures climb_scene(const Scene& scene, int spp = 64, int threads = 0, bo
     Control control;
     const View view{scene.camera, kSize, kSize};
     ImageRgb first = raster::render(pair.raster, view, pair.raster_settings, control).radiance;
-    return climb(std::move(first), pair, view, control);
+    return evaluate_ladder(std::move(first), pair, view, control);
 }
 
 double share_of(const Shares& shares, const char* id) {
@@ -109,12 +109,12 @@ TEST_SUITE("unit") {
         SceneBuilder builder = floor_scene(Diffuse{{Rgb(kAlbedo)}}, true);
         builder.scene.lights.push_back(PointLight{{0, 2, 0}, Rgb(10)});
         const Scene scene = builder.finish();
-        const LadderPictures pictures = climb_scene(scene, 16);
+        const LadderImages pictures = ladder_scene(scene, 16);
         const Shares s = shares(pictures);
         CHECK(std::abs(s.sum - 1) < 1e-12);
         CHECK(share_of(s, "shadows") > 0.999);
         CHECK(others(s, "shadows") < 1e-3);
-        const ImageRgb before = pictures.picture(3), after = pictures.picture(4);
+        const ImageRgb before = pictures.image(3), after = pictures.image(4);
         double taken = 0, expected = 0;
         for (int y = 0; y < kSize; ++y)
             for (int x = 0; x < kSize; ++x) {
@@ -133,14 +133,14 @@ TEST_SUITE("unit") {
         SceneBuilder builder = floor_scene(Diffuse{{Rgb(kAlbedo)}}, true);
         builder.scene.lights.push_back(PointLight{{0, 2, 0}, Rgb(10)});
         const Scene scene = builder.finish();
-        const LadderPictures with = climb_scene(scene, 16, 0, true), without = climb_scene(scene, 16);
+        const LadderImages with = ladder_scene(scene, 16, 0, true), without = ladder_scene(scene, 16);
         CHECK(with.invalid_samples == 0);
         double before = 0, after = 0, change = 0;
-        const ImageRgb last = with.picture(kRungCount);
+        const ImageRgb last = with.image(kRungCount);
         for (std::size_t i = 0; i < last.size(); ++i) {
             before += sqr(static_cast<double>(without.first[i].g - last[i].g));
             after += sqr(static_cast<double>(with.first[i].g - last[i].g));
-            change += std::abs(static_cast<double>(with.picture(3)[i].g - with.picture(2)[i].g));
+            change += std::abs(static_cast<double>(with.image(3)[i].g - with.image(2)[i].g));
         }
         CHECK(after < 0.02 * before); // the remainder is the shadow's edge, blurred over some texels
         // Rung 3 replaces unshadowed light by equal unshadowed light.
@@ -152,14 +152,14 @@ TEST_SUITE("unit") {
         SceneBuilder builder = floor_scene(Diffuse{{Rgb(kAlbedo)}}, true);
         builder.scene.environment = ConstantEnvironment{Rgb(1.5f)};
         const Scene scene = builder.finish();
-        const LadderPictures pictures = climb_scene(scene, 256);
+        const LadderImages pictures = ladder_scene(scene, 256);
         const Shares s = shares(pictures);
         CHECK(std::abs(s.sum - 1) < 1e-12);
         CHECK(share_of(s, "environment") > 0.98);
         CHECK(others(s, "environment") < 1e-3);
         const std::array<Vec3, 4> square = {Vec3(-0.5f, 1, 0.5f), Vec3(0.5f, 1, 0.5f), Vec3(0.5f, 1, -0.5f),
                                             Vec3(-0.5f, 1, -0.5f)};
-        const ImageRgb before = pictures.picture(4), after = pictures.picture(5);
+        const ImageRgb before = pictures.image(4), after = pictures.image(5);
         double hidden = 0, expected = 0;
         for (int y = 20; y < 28; ++y)
             for (int x = 20; x < 28; ++x) {
@@ -176,14 +176,14 @@ TEST_SUITE("unit") {
         SceneBuilder builder = floor_scene(Metal{{Rgb(0.9f)}, 0}, true);
         builder.scene.environment = ConstantEnvironment{Rgb(1.5f)};
         const Scene scene = builder.finish();
-        const LadderPictures pictures = climb_scene(scene, 16);
+        const LadderImages pictures = ladder_scene(scene, 16);
         const Shares s = shares(pictures);
         CHECK(std::abs(s.sum - 1) < 1e-12);
         CHECK(share_of(s, "reflections") > 0.999);
         CHECK(others(s, "reflections") < 1e-3);
         // The mirror shows the square as black with a side of 12 pixels.
         CHECK(map_causes(pictures).visible == doctest::Approx(144.0 / (kSize * kSize)).epsilon(1e-6));
-        CHECK(pictures.picture(7)(kSize / 2, kSize / 2).g == 0);
+        CHECK(pictures.image(7)(kSize / 2, kSize / 2).g == 0);
     }
 
     // The floor and the wall illuminate each other, and nothing occludes the sun.
@@ -195,7 +195,7 @@ TEST_SUITE("unit") {
         builder.scene.lights.push_back(SunLight{normalize(Vec3(0, -1, -1)), Rgb(2)});
         look_down(builder.scene);
         const Scene scene = builder.finish();
-        const Shares s = shares(climb_scene(scene, 256));
+        const Shares s = shares(ladder_scene(scene, 256));
         CHECK(std::abs(s.sum - 1) < 1e-12);
         CHECK(share_of(s, "everything") > 0.9);
         CHECK(others(s, "everything") < 1e-3);
@@ -206,21 +206,21 @@ TEST_SUITE("unit") {
         SceneBuilder builder = floor_scene(Diffuse{{Rgb(kAlbedo)}}, false);
         builder.scene.lights.push_back(SunLight{normalize(Vec3(0, -1, -1)), Rgb(2)});
         const Scene scene = builder.finish();
-        const Shares s = shares(climb_scene(scene, 4));
-        CHECK(s.none);
+        const Shares s = shares(ladder_scene(scene, 4));
+        CHECK(s.negligible);
         CHECK(s.sum == 0);
     }
 
     TEST_CASE("the last picture is the path tracer's; for any number of threads the same bits") {
         const Scene scene = load_scene(fs::path(DUET_SOURCE_DIR) / "models" / "cornell.json");
-        const LadderPictures pictures = climb_scene(scene, 8, 1);
-        raytrace::Settings settings;
+        const LadderImages pictures = ladder_scene(scene, 8, 1);
+        raytrace::PathTracerSettings settings;
         settings.samples_per_pixel = 8;
         settings.aovs.variance = true;
         Control control;
         const View view{scene.camera, kSize, kSize};
         const ImageRgb path = raytrace::render(raytrace::prepare(scene, settings), view, settings, control).radiance;
-        const ImageRgb last = pictures.picture(kRungCount);
+        const ImageRgb last = pictures.image(kRungCount);
         double largest = 0;
         for (std::size_t i = 0; i < path.size(); ++i)
             for (std::size_t c = 0; c < 3; ++c)
@@ -229,7 +229,7 @@ TEST_SUITE("unit") {
                                           (static_cast<double>(path[i][c]) + 1e-3));
         CHECK(largest < 2e-6);
         CHECK(pictures.invalid_samples == 0);
-        const LadderPictures again = climb_scene(scene, 8, 7);
+        const LadderImages again = ladder_scene(scene, 8, 7);
         for (std::size_t half = 0; half < 2; ++half)
             for (std::size_t k = 0; k < kRungCount; ++k)
                 CHECK(pictures.halves[half][k].pixels() == again.halves[half][k].pixels());
@@ -237,9 +237,9 @@ TEST_SUITE("unit") {
 
     TEST_CASE("rung 2 computes with the path tracer's surfaces: nothing changes, for the code is shared") {
         const Scene scene = load_scene(fs::path(DUET_SOURCE_DIR) / "models" / "everything.json");
-        const LadderPictures pictures = climb_scene(scene, 4);
+        const LadderImages pictures = ladder_scene(scene, 4);
         CHECK(pictures.halves[0][0].pixels() == pictures.halves[0][1].pixels());
-        CHECK(pictures.picture(1).pixels() != pictures.picture(0).pixels());
+        CHECK(pictures.image(1).pixels() != pictures.image(0).pixels());
         const Shares s = shares(pictures);
         CHECK(std::abs(s.sum - 1) < 1e-12);
     }

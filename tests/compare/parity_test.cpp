@@ -1,7 +1,7 @@
 // These tests compare the two pipelines: their hits and their direct light must be equal.
 
 #include "compare/hits/hit_agreement.h"
-#include "compare/pipeline.h"
+#include "compare/renderer.h"
 #include "raster/render.h"
 #include "raytrace/render.h"
 
@@ -50,7 +50,7 @@ View reduced_view(const Scene& scene, int side) {
 std::string describe(const Hit& hit) {
     return hit.valid() ? message("object ", hit.object, " primitive ", hit.primitive, " t ", hit.t) : "nothing";
 }
-std::string describe(const ExactHit& hit) {
+std::string describe(const ReferenceHit& hit) {
     return hit.valid() ? message("object ", hit.object, " primitive ", hit.primitive, " t ", hit.t) : "nothing";
 }
 
@@ -66,9 +66,9 @@ std::string describe(const HitAgreement& agreement) {
 
 HitAgreement agreement_of(const Scene& scene, const View& view) {
     Control control;
-    const PipelineSettings settings;
-    const Image<Hit> raster = raster_pipeline(scene, settings).hits(view, control).hit;
-    const Image<Hit> raytrace = raytrace_pipeline(scene, settings).hits(view, control).hit;
+    const ComparisonSettings settings;
+    const Image<Hit> raster = raster_renderer(scene, settings).render_hits(view, control).hit;
+    const Image<Hit> raytrace = raytrace_renderer(scene, settings).render_hits(view, control).hit;
     return compare_hits(scene, view, raster, raytrace);
 }
 
@@ -110,10 +110,10 @@ TEST_SUITE("statistical") {
         const Scene scene = load_scene(fs::path(DUET_SOURCE_DIR) / "models" / "cornell.json");
         const View view{scene.camera, 96, 96};
         Control control;
-        raster::Settings closed;
+        raster::RasterSettings closed;
         closed.environment = closed.shadows = false;
         closed.aovs.hit = true;
-        raytrace::Settings sampled;
+        raytrace::PathTracerSettings sampled;
         sampled.integrator = raytrace::Integrator::kUnshadowed;
         sampled.sampler = SamplerKind::kCenter;
         sampled.samples_per_pixel = 1024;

@@ -146,7 +146,7 @@ TEST_SUITE("unit") {
         CHECK(text.rfind("<!doctype html>", 0) == 0);
         for (const char* const mark : {"{{title}}", "{{css}}", "{{data}}", "{{js}}"})
             CHECK(text.find(mark) == std::string::npos);
-        for (const char* const script : {"base.js", "decode.js", "paint.js", "view.js", "stage.js", "hands.js",
+        for (const char* const script : {"base.js", "decode.js", "paint.js", "view.js", "stage.js", "input.js",
                                          "metrics.js", "panels.js", "inspector.js", "histogram.js", "main.js"})
             CHECK_MESSAGE(text.find(script) != std::string::npos, script, " is missing");
         CHECK(tag_fault("<p><b></p>") == "</p> closes <b>"); // the check can fail

@@ -54,18 +54,18 @@ SkipCase find_case(const std::vector<SkipCase>& cases, const std::string& pipeli
 }
 
 std::int64_t count_of(const Rendering& rendering, const std::string& what) {
-    for (const Skipped& s : rendering.statistics.skipped)
+    for (const SkippedWork& s : rendering.statistics.skipped)
         if (s.what == what) return s.count;
     return 0;
 }
 
-MeasureOptions quick() {
-    MeasureOptions options;
+SkipMeasureSettings quick() {
+    SkipMeasureSettings options;
     options.repeats = 2;
     return options;
 }
 
-SkipMeasurement measured(const SkipCase& skip, const View& view, const MeasureOptions& options) {
+SkipMeasurement measured(const SkipCase& skip, const View& view, const SkipMeasureSettings& options) {
     Control control;
     return measure_skip(skip, view, options, control);
 }
@@ -97,7 +97,7 @@ TEST_SUITE("unit") {
                 const SkipMeasurement m = measured(skip, view, quick());
                 CHECK(m.proved);
                 CHECK(m.pixels_differ == 0);
-                CHECK(m.pictures == 2);
+                CHECK(m.image_pairs == 2);
             }
         }
     }
@@ -128,17 +128,17 @@ TEST_SUITE("unit") {
         for (const char* const name : {"shadow_rays", "russian_roulette"})
             CHECK(measured(find_case(skip_cases(cornell, {}), "raytrace", name), view,
                            [] {
-                               MeasureOptions options = quick();
+                               SkipMeasureSettings options = quick();
                                options.budget = 0;
                                return options;
                            }())
                       .rays_saved > 0);
         // Only light samples find a point light, so a depth of one needs no indirect rays.
         const Scene scene = tori();
-        raytrace::Settings settings;
+        raytrace::PathTracerSettings settings;
         settings.samples_per_pixel = 2;
         settings.max_depth = 1;
-        const raytrace::Prepared prepared = raytrace::prepare(scene, settings);
+        const raytrace::PathTracerScene prepared = raytrace::prepare(scene, settings);
         Control control;
         const Rendering with = render(prepared, view, settings, control);
         settings.skips.last_bounce = false;
@@ -168,7 +168,7 @@ TEST_SUITE("unit") {
         // Red differences are ±0.02 around 0.01, green ones are 0, and blue is black.
         for (int i = 0; i < 200; ++i) {
             test.add({1.01 + (i % 2 == 0 ? 0.02 : -0.02), 2, 0}, {1, 2, 0});
-            if (i < kFewestPairs - 1) CHECK(std::isinf(test.detectable()));
+            if (i < kMinPairs - 1) CHECK(std::isinf(test.detectable()));
         }
         CHECK(test.bias().r == doctest::Approx(0.01));
         CHECK(test.bias().g == 0);
@@ -197,7 +197,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("too little time for the power is no proof") {
         const Scene scene = load_scene(kModels / "cornell.json");
-        MeasureOptions options = quick();
+        SkipMeasureSettings options = quick();
         options.budget = 0;
         const SkipMeasurement m = measured(find_case(skip_cases(scene, {1, 1, 0}), "raytrace", "russian_roulette"),
                                            {scene.camera, 16, 16}, options);
@@ -256,8 +256,8 @@ TEST_SUITE("statistical") {
                 even.add({noise(), noise(), noise()}, {1, 1, 1});
                 uneven.add({right(), right(), right()}, {1, 1, 1});
             }
-            alarms += even.p() < kFalseAlarm;
-            skewed_alarms += uneven.p() < kFalseAlarm;
+            alarms += even.p() < kFalseAlarmProbability;
+            skewed_alarms += uneven.p() < kFalseAlarmProbability;
         }
         CHECK(alarms <= 25);
         CHECK(skewed_alarms <= 25);
@@ -276,7 +276,7 @@ TEST_SUITE("statistical") {
                 for (int pair = 0; pair < 64; ++pair) draws.push_back(0.01 * (skewed(random) - 2));
                 for (const double d : draws) noise.add({1 + d, 1, 1}, {1, 1, 1});
                 for (const double d : draws) biased.add({1 + d + sign * noise.detectable(), 1, 1}, {1, 1, 1});
-                missed += !(biased.p() < kFalseAlarm);
+                missed += !(biased.p() < kFalseAlarmProbability);
             }
             CHECK(missed <= 10);
         }
@@ -286,7 +286,7 @@ TEST_SUITE("statistical") {
     TEST_CASE("Russian roulette and culled back faces are proved, with a planted bias of 0.3 % they are found out") {
         const Scene cornell = load_scene(kModels / "cornell.json");
         const SkipCase roulette = find_case(skip_cases(cornell, {1, 4, 0}), "raytrace", "russian_roulette");
-        MeasureOptions options = quick();
+        SkipMeasureSettings options = quick();
         options.bias = 0.003;
         options.seed = 7000;
         options.budget = 1e4;
@@ -301,13 +301,13 @@ TEST_SUITE("statistical") {
                                                view, options);
         CHECK_FALSE(wrong.proved);
         REQUIRE(wrong.bias.has_value());
-        CHECK(wrong.bias->p() < kFalseAlarm);
+        CHECK(wrong.bias->p() < kFalseAlarmProbability);
         CHECK(wrong.bias->bias().g == doctest::Approx(-0.003).epsilon(0.5));
 
         const Scene scene = tori();
         const SkipCase back_faces = find_case(skip_cases(scene, {1, 1, 0}), "raster", "back_faces");
         const SkipMeasurement faces = measured(back_faces, {scene.camera, 240, 180}, options);
         CHECK(faces.proved);
-        MESSAGE("back faces: ", faces.pixels_differ, " pixels of ", faces.pictures, " pictures differ");
+        MESSAGE("back faces: ", faces.pixels_differ, " pixels of ", faces.image_pairs, " pictures differ");
     }
 }

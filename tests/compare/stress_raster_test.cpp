@@ -1,10 +1,10 @@
 // These tests check the oracles of the stress suite's raster tests. The oracles must be right in known cases and must
 // detect errors.
-#include "compare/stress/book_raster.h"
-#include "compare/stress/book_trace.h"
 #include "compare/stress/coverage_meshes.h"
 #include "compare/stress/projection_scenes.h"
 #include "compare/stress/random_scene.h"
+#include "compare/stress/textbook_rasterizer.h"
+#include "compare/stress/textbook_tracer.h"
 
 #include <doctest/doctest.h>
 
@@ -24,7 +24,7 @@ int turns(const std::vector<GridTriangle>& mesh, std::int64_t x, std::int64_t y)
 
 const View kView{{.eye = {0, 0, 0}, .look_at = {0, 0, -1}, .fov_degrees = 90, .near = 0.5}, 100, 100};
 
-Vec3 seen_at(double x, double y, double depth) { return point_at(CameraModel(kView).through(), {x, y}, depth); }
+Vec3 seen_at(double x, double y, double depth) { return point_at(CameraModel(kView).pinhole(), {x, y}, depth); }
 
 } // namespace
 
@@ -101,7 +101,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("a projected triangle knows its outline in pixels, and what is where in it") {
-        const ProjectedTriangle t(CameraModel(kView).through(),
+        const ProjectedTriangle t(CameraModel(kView).pinhole(),
                                   {seen_at(20, 20, 2), seen_at(60, 20, 2), seen_at(20, 60, 4)});
         CHECK(t.inside({30, 30}) == doctest::Approx(10).epsilon(1e-5));
         CHECK(t.inside({15, 30}) == doctest::Approx(-5).epsilon(1e-5));
@@ -119,7 +119,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("a projected triangle ends at the near plane, and is right with corners behind the eye or on its plane") {
-        const Pinhole pinhole = CameraModel(kView).through();
+        const Pinhole pinhole = CameraModel(kView).pinhole();
         // The floor is half a meter below the eye, from z = 5 (behind) to −5. Beyond the near plane it is visible
         // below y = 50.
         const ProjectedTriangle floor(pinhole, {Vec3(-100, -0.5f, 5), Vec3(100, -0.5f, 5), Vec3(0, -0.5f, -5)});
@@ -138,24 +138,24 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("a displaced coverage and a wrong depth are seen: the books' rasterizer fails by known amounts") {
-        const Pinhole pinhole = CameraModel(kView).through();
+        const Pinhole pinhole = CameraModel(kView).pinhole();
         const Mat4 matrix(pinhole.world_to_pixel);
         const std::array<Vec3, 3> corners{seen_at(20, 20, 1), seen_at(60, 20, 1), seen_at(20, 60, 100)};
-        const BookTriangle book{book_project(matrix, corners[0]), book_project(matrix, corners[1]),
-                                book_project(matrix, corners[2])};
-        CHECK(book_covers(book, {30, 30}));
-        CHECK_FALSE(book_covers(book, {15, 30}));
-        CHECK(book_covers(book, {20, 30})); // on an edge: covered by both triangles that share it
+        const TextbookTriangle textbook{textbook_project(matrix, corners[0]), textbook_project(matrix, corners[1]),
+                                        textbook_project(matrix, corners[2])};
+        CHECK(textbook_covers(textbook, {30, 30}));
+        CHECK_FALSE(textbook_covers(textbook, {15, 30}));
+        CHECK(textbook_covers(textbook, {20, 30})); // on an edge: covered by both triangles that share it
         // The interpolation is affine: it gives half of v where perspective gives 1/101.
-        CHECK(book_barycentrics(book, {20, 40}).z == doctest::Approx(0.5f).epsilon(1e-4));
+        CHECK(textbook_barycentrics(textbook, {20, 40}).z == doctest::Approx(0.5f).epsilon(1e-4));
         CHECK(ProjectedTriangle(pinhole, corners).at({20, 40}).v == doctest::Approx(1.0 / 101).epsilon(1e-4));
-        CHECK(book_z(0.1f, 0.1f, 1e5f) == doctest::Approx(-1.0f));
-        CHECK(book_z(1e5f, 0.1f, 1e5f) == doctest::Approx(1.0f));
-        CHECK(book_z(9e4f, 0.1f, 1e5f) == book_z(9.01e4f, 0.1f, 1e5f)); // 100 meters apart, but equal depths
+        CHECK(textbook_z(0.1f, 0.1f, 1e5f) == doctest::Approx(-1.0f));
+        CHECK(textbook_z(1e5f, 0.1f, 1e5f) == doctest::Approx(1.0f));
+        CHECK(textbook_z(9e4f, 0.1f, 1e5f) == textbook_z(9.01e4f, 0.1f, 1e5f)); // 100 meters apart, but equal depths
     }
 
     TEST_CASE("random scenes are the same for the same numbers, and seen from both outside and within") {
-        const SceneParts all{.soup = true, .meshes = true, .spheres = true, .quads = true, .instances = true};
+        const SceneContents all{.soup = true, .meshes = true, .spheres = true, .quads = true, .instances = true};
         TrialRandom first(3), second(3);
         const TrialScene a = random_scene(first, all, {}, 32, 24), b = random_scene(second, all, {}, 32, 24);
         REQUIRE(a.scene.objects.size() == b.scene.objects.size());
@@ -177,8 +177,8 @@ TEST_SUITE("unit") {
     TEST_CASE("the books' tracer hits what is there at the scale of the books, and nothing below a millimetre") {
         TrialRandom random(4);
         const TrialScene scene = random_scene(random, {.quads = true}, {}, 32, 24);
-        const BookTracer tracer(scene.scene);
-        const Corners wall = primitive_corners(scene.scene.shapes[0], 2);
+        const TextbookTracer tracer(scene.scene);
+        const PrimitiveVertices wall = primitive_vertices(scene.scene.shapes[0], 2);
         const Vec3d middle = (Vec3d(wall.p[0]) + Vec3d(wall.p[2])) * 0.5;
         const Vec3d n = normalize(cross(Vec3d(wall.p[1] - wall.p[0]), Vec3d(wall.p[3] - wall.p[0])));
         Ray ray;

@@ -1,10 +1,10 @@
 // These tests check the stress suite's framework: what counts as a failure, equal rows for any thread count, and
 // names.
 #include "common/system/error.h"
+#include "compare/stress/accelerated_scene.h"
 #include "compare/stress/errors.h"
+#include "compare/stress/log_p_value.h"
 #include "compare/stress/naive.h"
-#include "compare/stress/odds.h"
-#include "compare/stress/stage.h"
 #include "compare/stress/trials.h"
 
 #include <doctest/doctest.h>
@@ -30,8 +30,8 @@ StressResult uniform_errors(double bound, const StressSetting& setting) {
     return run_trials(test_of(bound), setting, [](Trial& trial) {
         const double error = static_cast<double>(trial.random.uniform());
         trial.note("error ", error, " in trial ", trial.number());
-        trial.careful(error);
-        trial.naive(2 * error);
+        trial.record(error);
+        trial.record_naive(2 * error);
     });
 }
 
@@ -65,29 +65,29 @@ TEST_SUITE("unit") {
     TEST_CASE("a trial's largest error counts, once; a trial without any is not counted; none at all is a failure") {
         const StressResult result = run_trials(test_of(1), {}, [](Trial& trial) {
             if (trial.number() % 2) return;
-            for (const double error : {0.5, 3.0, 2.0}) trial.careful(error);
-            trial.naive(kNan);
-            trial.naive(0.0);
+            for (const double error : {0.5, 3.0, 2.0}) trial.record(error);
+            trial.record_naive(kNan);
+            trial.record_naive(0.0);
         });
         CHECK(result.trials == 500);
-        CHECK(result.careful.failures == 500);
-        CHECK(result.careful.worst == 3);
+        CHECK(result.library.failures == 500);
+        CHECK(result.library.worst == 3);
         REQUIRE(result.naive.has_value());
         CHECK(result.naive->failures == 500);
         CHECK(std::isnan(result.naive->worst));
         CHECK(result.failed());
         CHECK(run_trials(test_of(1), {}, [](Trial&) {}).failed());
-        CHECK_FALSE(run_trials(test_of(1, ""), {}, [](Trial& trial) { trial.careful(1); }).naive.has_value());
+        CHECK_FALSE(run_trials(test_of(1, ""), {}, [](Trial& trial) { trial.record(1); }).naive.has_value());
     }
 
     TEST_CASE("a row whose trials judge less often than it says fails; one of few trials may be unlucky") {
         const auto run = [](double judged, double share, double factor) {
             StressTest test = test_of(1);
-            test.judged = judged;
+            test.required_fraction = judged;
             StressSetting setting;
             setting.factor = factor;
             return run_trials(test, setting, [&](Trial& trial) {
-                if (static_cast<double>(trial.random.uniform()) < share) trial.careful(0);
+                if (static_cast<double>(trial.random.uniform()) < share) trial.record(0);
             });
         };
         CHECK(run(0.99, 0.9, 1).failed());
@@ -103,7 +103,7 @@ TEST_SUITE("unit") {
         CHECK_FALSE(result.failed());
         CHECK(result.naive->failures > 400);
         CHECK(result.naive->failures < 600);
-        CHECK(result.account.empty());
+        CHECK(result.details.empty());
     }
 
     TEST_CASE("a row depends on seed and factor, not on threads; the first failure explains itself") {
@@ -113,21 +113,21 @@ TEST_SUITE("unit") {
         many.threads = 7;
         const StressResult a = uniform_errors(0.9, one), b = uniform_errors(0.9, many);
         CHECK(a.trials == 1000);
-        CHECK(a.careful.failures == b.careful.failures);
-        CHECK(a.careful.worst == b.careful.worst);
-        CHECK(a.careful.first_failure == b.careful.first_failure);
+        CHECK(a.library.failures == b.library.failures);
+        CHECK(a.library.worst == b.library.worst);
+        CHECK(a.library.first_failure == b.library.first_failure);
         CHECK(a.naive->worst == b.naive->worst);
-        CHECK(a.account == b.account);
-        CHECK(a.account.find("in trial " + std::to_string(a.careful.first_failure)) != std::string::npos);
+        CHECK(a.details == b.details);
+        CHECK(a.details.find("in trial " + std::to_string(a.library.first_failure)) != std::string::npos);
         StressSetting other = one;
         other.seed = 1;
-        CHECK(uniform_errors(0.9, other).careful.worst != a.careful.worst);
+        CHECK(uniform_errors(0.9, other).library.worst != a.library.worst);
         StressSetting more = many;
         more.factor = 10;
         const StressResult ten = uniform_errors(0.9, more); // starts with the same trials
         CHECK(ten.trials == 10'000);
-        CHECK(ten.careful.first_failure == a.careful.first_failure);
-        CHECK(ten.careful.worst >= a.careful.worst);
+        CHECK(ten.library.first_failure == a.library.first_failure);
+        CHECK(ten.library.worst >= a.library.worst);
         more.factor = 1e-9;
         CHECK(uniform_errors(1, more).trials == 1);
     }
@@ -175,11 +175,11 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("NaN is the largest of errors, wherever it stands") {
-        CHECK(std::isnan(worse(kNan, 1)));
-        CHECK(std::isnan(worse(1, kNan)));
-        CHECK(worse(2, 1) == 2);
-        CHECK(worse(1, 2) == 2);
-        CHECK(std::isnan(family_odds(kNan, 5)));
+        CHECK(std::isnan(larger_error(kNan, 1)));
+        CHECK(std::isnan(larger_error(1, kNan)));
+        CHECK(larger_error(2, 1) == 2);
+        CHECK(larger_error(1, 2) == 2);
+        CHECK(std::isnan(family_log_p_value(kNan, 5)));
     }
 
     TEST_CASE("errors in ulp, relative, and as odds") {
@@ -191,17 +191,18 @@ TEST_SUITE("unit") {
         CHECK(std::isnan(ulps(std::numeric_limits<float>::quiet_NaN(), 1.0L)));
         CHECK(relative_error(0, 0) == 0);
         CHECK(relative_error(1.5, 1) == 0.5);
-        CHECK(family_odds(0.5, 1) == doctest::Approx(-std::log10(0.5)));
-        CHECK(family_odds(1e-9, 1000) == doctest::Approx(6).epsilon(1e-6));
-        CHECK(family_odds(1e-9, 1000) == doctest::Approx(-std::log10(1 - std::pow(1 - 1e-9, 1000))).epsilon(1e-6));
-        CHECK(family_odds(1, 20) == 0);
+        CHECK(family_log_p_value(0.5, 1) == doctest::Approx(-std::log10(0.5)));
+        CHECK(family_log_p_value(1e-9, 1000) == doctest::Approx(6).epsilon(1e-6));
+        CHECK(family_log_p_value(1e-9, 1000) ==
+              doctest::Approx(-std::log10(1 - std::pow(1 - 1e-9, 1000))).epsilon(1e-6));
+        CHECK(family_log_p_value(1, 20) == 0);
     }
 
     TEST_CASE("a trial's random numbers stay in their ranges") {
         TrialRandom random(42);
         float least = 1, most = 0;
         for (int i = 0; i < 10'000; ++i) {
-            const float x = random.magnitude(1e-3f, 1e3f);
+            const float x = random.log_uniform(1e-3f, 1e3f);
             REQUIRE((x > 0.99e-3f && x < 1.01e3f));
             REQUIRE(random.below(7) < 7);
             REQUIRE(std::abs(length(random.direction()) - 1) < 1e-6f);
@@ -221,7 +222,7 @@ TEST_SUITE("unit") {
         CHECK_FALSE(naive::intersect_triangle({{0.9f, 0.9f, 1}, {0, 0, -1}}, a, b, c).has_value());
         CHECK(naive::intersect_box({{-1, 0.5f, 0.5f}, {1, 0.1f, 0.1f}}, {{0, 0, 0}, {1, 1, 1}}));
         CHECK_FALSE(naive::intersect_box({{-1, 2.5f, 0.5f}, {1, 0.1f, 0.1f}}, {{0, 0, 0}, {1, 1, 1}}));
-        CHECK(is_closed_outwards(ball(1, 0.1f)));
-        CHECK(is_closed_outwards(placed(ball(2, 0.1f), 1, {1e5f, -1e5f, 1e5f})));
+        CHECK(is_closed_outwards(icosphere(1, 0.1f)));
+        CHECK(is_closed_outwards(scaled_and_moved(icosphere(2, 0.1f), 1, {1e5f, -1e5f, 1e5f})));
     }
 }

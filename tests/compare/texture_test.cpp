@@ -32,14 +32,14 @@ Scene slanted_checker(TextureFilter filter, int size = 100, double shift = 0) {
 View view_of(const Scene& scene) { return {scene.camera, 192, 108}; }
 
 ImageRgb raster_albedo(const Scene& scene, int samples = 1) {
-    raster::Settings settings;
+    raster::RasterSettings settings;
     settings.shading = raster::Shading::kAlbedo;
     settings.samples_per_pixel = samples;
     return test::render(scene, view_of(scene), settings).radiance;
 }
 
-ImageRgb raytrace_picture(const Scene& scene, raytrace::Integrator integrator, SamplerKind sampler, int samples) {
-    raytrace::Settings settings;
+ImageRgb raytrace_image(const Scene& scene, raytrace::Integrator integrator, SamplerKind sampler, int samples) {
+    raytrace::PathTracerSettings settings;
     settings.integrator = integrator;
     settings.sampler = sampler;
     settings.samples_per_pixel = samples;
@@ -82,8 +82,8 @@ double shimmer(TextureFilter filter, int samples = 1) {
 TEST_SUITE("image") {
 
     TEST_CASE("a slanted plane to the horizon: filters against the truth, integrated over pixels") {
-        const ImageRgb truth = raytrace_picture(slanted_checker(TextureFilter::kBilinear),
-                                                raytrace::Integrator::kAlbedo, SamplerKind::kSobol, 1024);
+        const ImageRgb truth = raytrace_image(slanted_checker(TextureFilter::kBilinear), raytrace::Integrator::kAlbedo,
+                                              SamplerKind::kSobol, 1024);
         const auto error_of = [&](TextureFilter filter) {
             return error(raster_albedo(slanted_checker(filter)), truth);
         };
@@ -109,8 +109,8 @@ TEST_SUITE("image") {
     TEST_CASE("both pipelines filter alike at what the camera sees") {
         for (const TextureFilter filter : {TextureFilter::kTrilinear, TextureFilter::kAnisotropic}) {
             const Scene scene = slanted_checker(filter);
-            const ImageRgb drawn = raster_albedo(scene), traced = raytrace_picture(scene, raytrace::Integrator::kAlbedo,
-                                                                                   SamplerKind::kCenter, 1);
+            const ImageRgb drawn = raster_albedo(scene),
+                           traced = raytrace_image(scene, raytrace::Integrator::kAlbedo, SamplerKind::kCenter, 1);
             int far = 0;
             for (std::size_t i = 0; i < drawn.size(); ++i) far += std::abs(drawn[i].g - traced[i].g) > 5e-3f;
             CHECK(far <= static_cast<int>(drawn.size()) / 1000); // pixels on the horizon
@@ -128,10 +128,10 @@ TEST_SUITE("image") {
         test::add(scene, Sphere{{0, 0, 0}, 1}, Mat4(), material);
         scene.camera = test::look({0, 0, 6}, {0, 0, 0}, 20); // half of the sphere is visible: u from 1/4 to 3/4
         finish_scene(scene);
-        for (const ImageRgb& picture :
-             {raster_albedo(scene), raytrace_picture(scene, raytrace::Integrator::kAlbedo, SamplerKind::kCenter, 1)}) {
+        for (const ImageRgb& image :
+             {raster_albedo(scene), raytrace_image(scene, raytrace::Integrator::kAlbedo, SamplerKind::kCenter, 1)}) {
             const auto shows = [&](int x, int y, Rgb color) {
-                return max_component(picture(x, y) - color) < 1e-3f && max_component(color - picture(x, y)) < 1e-3f;
+                return max_component(image(x, y) - color) < 1e-3f && max_component(color - image(x, y)) < 1e-3f;
             };
             CHECK(shows(81, 39, red));
             CHECK(shows(110, 39, green));
@@ -148,9 +148,9 @@ TEST_SUITE("image") {
             finish_scene(scene);
             const View view{scene.camera, 4000, 4000}; // so fine that steps approximate differentials
             const CameraModel camera(view);
-            const PixelFootprint pixel(camera.through(), 1);
-            raytrace::Settings settings;
-            const raytrace::Prepared prepared = raytrace::prepare(scene, settings);
+            const PixelFootprint pixel(camera.pinhole(), 1);
+            raytrace::PathTracerSettings settings;
+            const raytrace::PathTracerScene prepared = raytrace::prepare(scene, settings);
             int tested = 0;
             for (int i = 0; i < 400; ++i) {
                 const Vec2d at{1000.5 + 97 * (i % 20), 1000.5 + 103 * (i / 20)};
@@ -207,10 +207,10 @@ TEST_SUITE("image") {
         scene.maps[3].cutoff = 0.5f;
         scene.camera = test::look({0.2, 0.8, 4}, {0, 0, 0}, 45);
         finish_scene(scene);
-        raster::Settings drawn;
+        raster::RasterSettings drawn;
         drawn.aovs.hit = drawn.aovs.normal = true;
         const Rendering a = test::render(scene, view_of(scene), drawn);
-        raytrace::Settings traced;
+        raytrace::PathTracerSettings traced;
         traced.integrator = raytrace::Integrator::kNormal;
         traced.sampler = SamplerKind::kCenter;
         traced.samples_per_pixel = 1;

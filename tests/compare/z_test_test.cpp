@@ -1,6 +1,6 @@
 #include "compare/metrics/z_test.h"
 
-#include "compare/metrics/normal.h"
+#include "compare/metrics/normal_distribution.h"
 
 #include <doctest/doctest.h>
 
@@ -34,13 +34,13 @@ template <typename Draw> Noisy noisy(int width, int height, const Draw& draw) {
 /// Returns a standard deviation that varies by a factor of 1000 over the image, and by another 30 in single columns.
 double uneven_sigma(int x, int y) { return 0.01 * std::pow(1000.0, (x + y) / 126.0) * (x % 16 == 5 ? 30 : 1); }
 
-Noisy normal_picture(std::mt19937_64& random, double shift = 0) {
+Noisy normal_image(std::mt19937_64& random, double shift = 0) {
     std::normal_distribution<double> normal;
     return noisy(64, 64, [&](int x, int y, std::size_t) { return 1 + shift + uneven_sigma(x, y) * normal(random); });
 }
 
 /// Returns light that one of eight replicates finds, like that of a small mirror, with mean 1.
-Noisy rare_picture(std::mt19937_64& random) {
+Noisy rare_image(std::mt19937_64& random) {
     std::bernoulli_distribution seen(0.125);
     return noisy(64, 64, [&](int, int, std::size_t) { return seen(random) ? 8.0 : 0.0; });
 }
@@ -130,9 +130,9 @@ TEST_SUITE("statistical") {
         int both = 0, one = 0;
         const ImageRgb truth(64, 64, Rgb(1)), none;
         for (int i = 0; i < 1000; ++i) {
-            const Noisy a = normal_picture(random);
+            const Noisy a = normal_image(random);
             one += z_test(a, {truth, none}).p < 0.01;
-            if (i % 2 == 0) both += z_test(a, normal_picture(random)).p < 0.01;
+            if (i % 2 == 0) both += z_test(a, normal_image(random)).p < 0.01;
         }
         CHECK(one <= 25);
         CHECK(both <= 17); // of 500: odds below 3e-5
@@ -143,7 +143,7 @@ TEST_SUITE("statistical") {
         std::mt19937_64 random(12);
         int alarms = 0;
         const ImageRgb truth(64, 64, Rgb(1)), none;
-        for (int i = 0; i < 500; ++i) alarms += z_test(rare_picture(random), {truth, none}).p < 0.01;
+        for (int i = 0; i < 500; ++i) alarms += z_test(rare_image(random), {truth, none}).p < 0.01;
         // Skewness may double the 5 false alarms that are expected; with 10 expected the odds are below 1e-4.
         CHECK(alarms <= 25);
     }
@@ -154,9 +154,9 @@ TEST_SUITE("statistical") {
         std::mt19937_64 random(13);
         const ImageRgb truth(64, 64, Rgb(1)), none;
         // The noise of the estimate itself is 2 %.
-        const double shift = z_test(normal_picture(random), {truth, none}).detectable.g * 1.1;
+        const double shift = z_test(normal_image(random), {truth, none}).detectable.g * 1.1;
         int missed = 0;
-        for (int i = 0; i < 300; ++i) missed += !(z_test(normal_picture(random, shift), {truth, none}).p < 0.01);
+        for (int i = 0; i < 300; ++i) missed += !(z_test(normal_image(random, shift), {truth, none}).p < 0.01);
         CHECK(missed <= 10);
     }
 }

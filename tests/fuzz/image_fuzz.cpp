@@ -7,7 +7,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const duet::ImageBytes file{"fuzz", {reinterpret_cast<const char*>(data), size}};
     try {
         // A file without a signature is decoded as a TGA.
-        const duet::PixelFile picture = duet::decode_image(file, ".tga");
+        const duet::StoredImage picture = duet::decode_image(file, ".tga");
         const std::size_t pixels = static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
         if (picture.width < 1 || picture.height < 1 || picture.channels < 1 || picture.channels > 4 ||
             picture.values.size() != pixels * static_cast<std::size_t>(picture.channels))

@@ -25,13 +25,13 @@ inline bool send_bytes(int descriptor, const char* bytes, std::size_t size) {
     return true;
 }
 /// A message as it is sent: its length, then its bytes.
-inline std::string framed(const std::string& message) {
+inline std::string with_length_prefix(const std::string& message) {
     const std::uint64_t size = message.size();
     std::string bytes(reinterpret_cast<const char*>(&size), sizeof size);
     return bytes += message;
 }
 inline bool send(int descriptor, const std::string& message) {
-    const std::string bytes = framed(message);
+    const std::string bytes = with_length_prefix(message);
     return send_bytes(descriptor, bytes.data(), bytes.size());
 }
 

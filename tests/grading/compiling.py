@@ -20,9 +20,9 @@ import labs
 COMPILE_SECONDS = 60
 WALL_FACTOR = 5  # a compiler that waits for something uses no processor time
 COMPILE_MEMORY = 2 << 30
-LARGEST_SOURCE = 1 << 20
-LARGEST_OUTPUT = 256 << 20
-MOST_SAID = 1 << 18
+MAX_SOURCE_BYTES = 1 << 20
+MAX_OUTPUT_BYTES = 256 << 20
+MAX_MESSAGE = 1 << 18
 FLAGS = ["-std=c++20", "-O1", "-ffp-contract=off", "-w"]
 WORKER = "tests/grading/worker.cpp"
 FILE_NAME = re.compile(r"\w[\w., ()+-]*")
@@ -94,7 +94,7 @@ def plain_error(text, folder):
 
 def run_limited(command, folder):
     """Runs a command with limits. Returns its exit code, None where it took too long, and what it said first."""
-    limits = ["prlimit", f"--as={COMPILE_MEMORY}", f"--cpu={COMPILE_SECONDS}", f"--fsize={LARGEST_OUTPUT}", "--core=0"]
+    limits = ["prlimit", f"--as={COMPILE_MEMORY}", f"--cpu={COMPILE_SECONDS}", f"--fsize={MAX_OUTPUT_BYTES}", "--core=0"]
     with tempfile.TemporaryFile() as said: # no pipe: the size of a file is limited
         process = subprocess.Popen([*limits, *command], cwd=folder, stdin=subprocess.DEVNULL, stdout=said, stderr=said,
                                    start_new_session=True)
@@ -107,7 +107,7 @@ def run_limited(command, folder):
                 os.killpg(process.pid, signal.SIGKILL)
             process.wait()
         said.seek(0)
-        return code, said.read(MOST_SAID).decode(errors="replace")
+        return code, said.read(MAX_MESSAGE).decode(errors="replace")
 
 
 def run_compiler(build, arguments, what, folder):
@@ -117,7 +117,7 @@ def run_compiler(build, arguments, what, folder):
         return
     if code is None or re.search(r"signal terminated program|memory exhausted|out of memory", said):
         raise Refused(f"{what} can't be compiled within {COMPILE_SECONDS} s, {COMPILE_MEMORY >> 30} GiB of memory and "
-                      f"{LARGEST_OUTPUT >> 20} MiB of program. Is there a template without end, or a huge array?")
+                      f"{MAX_OUTPUT_BYTES >> 20} MiB of program. Is there a template without end, or a huge array?")
     if undefined := undefined_names(said):
         raise Refused(undefined)
     missing = re.search(r"^(?:\./)?(\S+?):(\d+):\d+: fatal error: (.*): (?:No such file|Permission|Is a dir)", said, re.MULTILINE)
@@ -141,8 +141,8 @@ def copy_submission(files, folder):
         name = "lab.cpp" if len(files) == 1 and not FILE_NAME.fullmatch(file.name) else file.name
         if not FILE_NAME.fullmatch(name):
             raise Refused(f"{file.name!r} is no name for a file of a submission; expected letters, digits, '.', '_' and '-'")
-        if file.stat().st_size > LARGEST_SOURCE:
-            raise Refused(f"{file.name} has {file.stat().st_size} bytes; at most {LARGEST_SOURCE} are compiled")
+        if file.stat().st_size > MAX_SOURCE_BYTES:
+            raise Refused(f"{file.name} has {file.stat().st_size} bytes; at most {MAX_SOURCE_BYTES} are compiled")
         shutil.copyfile(file, folder / name)
         copies.append(folder / name)
     return copies

@@ -17,7 +17,7 @@ import tempfile
 import labs
 
 # What no student gets: the repository's own answers, an instructor's hidden items, and the tests of the grader itself.
-KEPT_BACK = re.compile(r"tests/grading/answers/|.*/lab_test_hidden\.cpp$|tests/grading/\w+_test\.py$|tests/grading/(selftest|page_figures)\.py$")
+EXCLUDED = re.compile(r"tests/grading/answers/|.*/lab_test_hidden\.cpp$|tests/grading/\w+_test\.py$|tests/grading/(selftest|page_figures)\.py$")
 README = """# {lab} · {title}
 
 Write the functions that [{contract}](include/{contract}) declares into [lab.cpp](lab.cpp). Their comments say what each returns.
@@ -62,7 +62,7 @@ def write_template(folder):
         raise labs.Unusable(f"{labs.SOURCE} is no git clone; a template has the files that git tracks, so expected one")
     listed = listing.stdout
     for name in filter(None, listed.split("\0")):
-        if not KEPT_BACK.match(name) and (labs.SOURCE / name).is_file():
+        if not EXCLUDED.match(name) and (labs.SOURCE / name).is_file():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(labs.SOURCE / name, folder / name)
     for path in labs.all_folders().values():

@@ -10,7 +10,7 @@ namespace duet::grading {
 namespace {
 
 /// The largest side of an image that goes to the page.
-constexpr int kMostShownSide = 2048;
+constexpr int kMaxShownSide = 2048;
 /// The largest map that is printed; a larger picture is reduced, and a character stands for the worst of its pixels.
 constexpr int kMapWidth = 64, kMapHeight = 32;
 
@@ -97,7 +97,7 @@ std::string explain_components(const std::vector<double>& found, const std::vect
 }
 
 void Item::show(const std::string& name, const ImageRgb& image) {
-    if (image.empty() || std::max(image.width(), image.height()) > kMostShownSide) return;
+    if (image.empty() || std::max(image.width(), image.height()) > kMaxShownSide) return;
     const std::string file = message("item", index_, "-", images_.size(), ".png");
     ImageRgb finite = image;
     for (Rgb& pixel : finite.pixels())

@@ -29,14 +29,14 @@ template <typename T> struct Mistake {
 };
 
 /// A way to compute that is a typical mistake, and what to tell the student who does it so.
-template <typename Way> struct NamedWay {
+template <typename Way> struct WrongMethod {
     Way way;
     std::string text;
 };
 /// The text of the first way that gives all that was found: by(i, way) is what a way gives for found[i]. "" where none
 /// does.
 template <typename Way, typename By>
-std::string way_of(const std::vector<float>& found, const std::vector<NamedWay<Way>>& ways, const By& by) {
+std::string matching_mistake(const std::vector<float>& found, const std::vector<WrongMethod<Way>>& ways, const By& by) {
     for (const auto& [way, text] : ways) {
         bool explains = true;
         for (std::size_t i = 0; i < found.size() && explains; ++i) explains = is_near(found[i], by(i, way), 1e-4);
@@ -143,10 +143,10 @@ private:
 };
 
 /// A student's function, callable as if it were here.
-template <typename Function> class Remote;
-template <typename Result, typename... Args> class Remote<Result(Args...)> {
+template <typename Function> class RemoteFunction;
+template <typename Result, typename... Args> class RemoteFunction<Result(Args...)> {
 public:
-    explicit Remote(const char* name) : name_(name) {}
+    explicit RemoteFunction(const char* name) : name_(name) {}
     std::remove_cvref_t<Result> operator()(const std::type_identity_t<std::remove_cvref_t<Args>>&... args) const {
         Writer request;
         request.put(std::string(name_));
@@ -194,7 +194,7 @@ inline bool set_title(const char* id, const char* title) {
 #define DUET_GRADING_JOIN_(a, b) a##b
 #define DUET_GRADING_JOIN(a, b) DUET_GRADING_JOIN_(a, b)
 /// The function of the student's with that name.
-#define STUDENT(f) (::duet::grading::Remote<decltype(::duet::lab::f)>(#f))
+#define STUDENT(f) (::duet::grading::RemoteFunction<decltype(::duet::lab::f)>(#f))
 #define LAB_TITLE(id, title) [[maybe_unused]] static const bool duet_lab_title = ::duet::grading::set_title(id, title);
 #define LAB_ITEM(points, title)                                                                                        \
     static void DUET_GRADING_JOIN(duet_item_, __LINE__)(::duet::grading::Item & item);                                 \

@@ -58,7 +58,7 @@ Arguments read_arguments(int count, char** values) {
 }
 
 /// Text of unknown origin as valid UTF-8, which JSON asks for.
-std::string clean(const std::string& text) {
+std::string valid_utf8(const std::string& text) {
     return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
 }
 
@@ -71,7 +71,7 @@ Json failed_result(const ItemDefinition& definition, const std::string& text) {
 }
 
 /// A function that says not_attempted() has no answer yet: not even where what the starter returns happens to be right.
-void tell_not_attempted(Json& result, const std::vector<std::string>& functions) {
+void mark_not_attempted(Json& result, const std::vector<std::string>& functions) {
     if (functions.empty() || (result["status"] == "passed" && result["points"] == 0)) return;
     std::string text = "Not attempted yet: ";
     for (const std::string& function : functions) text += (&function == &functions[0] ? "" : ", ") + function;
@@ -100,18 +100,18 @@ Json run_item(const Arguments& arguments, int index, const ItemDefinition& defin
     try {
         definition.run(item);
     } catch (const ItemFailed& failed) {
-        result = failed_result(definition, clean(failed.text));
+        result = failed_result(definition, valid_utf8(failed.text));
         for (const auto& [key, text] :
              {std::pair{"expected", &failed.expected}, {"found", &failed.found}, {"map", &failed.map}})
-            if (!text->empty()) result[key] = clean(*text);
+            if (!text->empty()) result[key] = valid_utf8(*text);
     } catch (const CallFailed& failed) {
-        result = failed_result(definition, clean(failed.text + (item.about().empty() ? "" : " " + item.about())));
+        result = failed_result(definition, valid_utf8(failed.text + (item.about().empty() ? "" : " " + item.about())));
     }
-    tell_not_attempted(result, session.not_attempted());
+    mark_not_attempted(result, session.not_attempted());
     if (result["status"] != "passed") result["earned"] = 0;
-    if (const std::string printed = clean(session.printed()); !printed.empty()) result["printed"] = printed;
+    if (const std::string printed = valid_utf8(session.printed()); !printed.empty()) result["printed"] = printed;
     for (const ShownImage& image : item.images())
-        result["images"].push_back({{"name", clean(image.name)}, {"file", image.file}});
+        result["images"].push_back({{"name", valid_utf8(image.name)}, {"file", image.file}});
     return result;
 }
 
@@ -128,7 +128,7 @@ Json run_item(const Arguments& arguments, int index, const ItemDefinition& defin
     }
 }
 
-Json run_item_apart(const Arguments& arguments, int index, const ItemDefinition& definition) {
+Json run_item_in_process(const Arguments& arguments, int index, const ItemDefinition& definition) {
     int ends[2];
     if (::pipe2(ends, O_CLOEXEC) != 0) throw duet::Error("the grader can't make a pipe", 1);
     const pid_t child = ::fork();
@@ -147,7 +147,7 @@ Json run_item_apart(const Arguments& arguments, int index, const ItemDefinition&
 }
 
 /// Whether an item fails with the text that is waited for.
-bool says(const Json& result, const std::string& text) {
+bool fails_with(const Json& result, const std::string& text) {
     return !text.empty() && result["status"] != "passed" && result["points"] > 0 &&
            result["message"].get<std::string>().find(text) != std::string::npos;
 }
@@ -166,9 +166,9 @@ int judge(const Arguments& arguments) {
         const bool skipped =
             done || (definition.points == 0 && !arguments.until.empty()) || (definition.points > 0 && arguments.shown);
         Json result =
-            skipped ? failed_result(definition, "Not examined.") : run_item_apart(arguments, index, definition);
+            skipped ? failed_result(definition, "Not examined.") : run_item_in_process(arguments, index, definition);
         ++index;
-        done = done || says(result, arguments.until);
+        done = done || fails_with(result, arguments.until);
         earned += result["earned"].get<int>();
         points += definition.points;
         report["items"].push_back(std::move(result));

@@ -15,7 +15,7 @@ import labs
 import variants
 
 ANSWERS = labs.SOURCE / "tests" / "grading" / "answers"
-MOST_STARTER_POINTS = 20
+MAX_STARTER_POINTS = 20
 OTHER_SEEDS = (2, 3)  # beside 1, with which all else is examined
 NEVER = "no message has these words"
 
@@ -56,8 +56,8 @@ def check_starter(lab_id, build):
     if "error" in result:
         return [f"the starter doesn't compile: {result['error']}"]
     faults = [f"the item '{item['title']}' fails without a message" for item in failures(result) if not item.get("message")]
-    if result["earned"] > MOST_STARTER_POINTS:
-        faults.append(f"the starter gets {result['earned']} points; expected at most {MOST_STARTER_POINTS}")
+    if result["earned"] > MAX_STARTER_POINTS:
+        faults.append(f"the starter gets {result['earned']} points; expected at most {MAX_STARTER_POINTS}")
     if not any(item["status"] == "not_attempted" for item in result["items"]):
         faults.append("the starter isn't told apart as not attempted")
     if not any(item.get("images") for item in result["items"]):

@@ -15,13 +15,13 @@ namespace duet::grading {
 
 namespace {
 
-constexpr std::size_t kMostPrinted = 8192;
+constexpr std::size_t kMaxPrinted = 8192;
 constexpr int kPollMilliseconds = 20; ///< how often the worker's processor time is looked at
 constexpr double kWallFactor = 5;     ///< a worker that waits for nothing uses no processor time
 Session* g_session = nullptr;
 
 /// Thrown inside where the worker is gone or late.
-struct Silence {
+struct WorkerLost {
     bool late;
 };
 
@@ -65,7 +65,7 @@ Session& session() { return *g_session; }
 void set_session(Session* session) { g_session = session; }
 
 void Session::start() {
-    guarded_ = limits_.sandbox && sandbox_available();
+    sandboxed_ = limits_.sandbox && sandbox_available();
     int requests[2], replies[2], output[2];
     if (::pipe2(requests, O_CLOEXEC) != 0 || ::pipe2(replies, O_CLOEXEC) != 0 || ::pipe2(output, O_CLOEXEC) != 0)
         throw Error(message("the grader can't make a pipe: ", std::strerror(errno)), 1);
@@ -75,7 +75,7 @@ void Session::start() {
     ::close(requests[0]), ::close(replies[1]), ::close(output[1]);
     requests_ = requests[1], replies_ = replies[0], output_ = output[0];
     for (const int descriptor : {requests_, replies_, output_}) ::fcntl(descriptor, F_SETFL, O_NONBLOCK);
-    if (guarded_ && !let_execute_once(child_)) {
+    if (sandboxed_ && !let_execute_once(child_)) {
         child_ = -1;
         throw Error("the grader can't start the program of the submission: " + worker_, 1);
     }
@@ -106,7 +106,7 @@ void Session::take_printed() {
     char buffer[4096];
     for (ssize_t got = 0; output_ >= 0 && (got = ::read(output_, buffer, sizeof buffer)) != 0;) {
         if (got < 0) return; // nothing there now
-        printed_.append(buffer, std::min(static_cast<std::size_t>(got), kMostPrinted - printed_.size()));
+        printed_.append(buffer, std::min(static_cast<std::size_t>(got), kMaxPrinted - printed_.size()));
         if (wall_seconds() - call_began_at_ > kWallFactor * limits_.seconds) return; // it prints without end
     }
     close_if_open(output_);
@@ -116,16 +116,16 @@ void Session::take_printed() {
 void Session::wait_for(int descriptor, short events) {
     for (;;) {
         pollfd fds[2] = {{descriptor, events, 0}, {output_, POLLIN, 0}};
-        if (::poll(fds, output_ >= 0 ? 2 : 1, kPollMilliseconds) < 0 && errno != EINTR) throw Silence{false};
+        if (::poll(fds, output_ >= 0 ? 2 : 1, kPollMilliseconds) < 0 && errno != EINTR) throw WorkerLost{false};
         if (output_ >= 0 && fds[1].revents) take_printed();
         if (fds[0].revents & (events | POLLHUP | POLLERR)) return;
-        if (processor_seconds() - call_began_ > limits_.seconds) throw Silence{true};
-        if (wall_seconds() - call_began_at_ > kWallFactor * limits_.seconds) throw Silence{true};
+        if (processor_seconds() - call_began_ > limits_.seconds) throw WorkerLost{true};
+        if (wall_seconds() - call_began_at_ > kWallFactor * limits_.seconds) throw WorkerLost{true};
     }
 }
 
 std::string Session::exchange(const std::string& request) {
-    const std::string bytes = framed(request);
+    const std::string bytes = with_length_prefix(request);
     for (std::size_t sent = 0; sent < bytes.size();) {
         const ssize_t written = ::write(requests_, bytes.data() + sent, bytes.size() - sent);
         if (written > 0)
@@ -133,7 +133,7 @@ std::string Session::exchange(const std::string& request) {
         else if (written < 0 && errno == EAGAIN)
             wait_for(requests_, POLLOUT);
         else if (!(written < 0 && errno == EINTR))
-            throw Silence{false};
+            throw WorkerLost{false};
     }
     return read_reply();
 }
@@ -147,7 +147,7 @@ std::string Session::read_reply() {
         wait_for(replies_, POLLIN);
         const ssize_t got = ::read(replies_, buffer, sizeof buffer);
         if (got < 0 && (errno == EAGAIN || errno == EINTR)) continue;
-        if (got <= 0) throw Silence{false};
+        if (got <= 0) throw WorkerLost{false};
         bytes.append(buffer, static_cast<std::size_t>(got));
         if (bytes.size() < sizeof size) continue;
         std::memcpy(&size, bytes.data(), sizeof size);
@@ -158,7 +158,7 @@ std::string Session::read_reply() {
 }
 
 /// What became of a worker whose pipes are closed.
-std::string Session::how_it_ended() {
+std::string Session::describe_exit() {
     int status = 0;
     const double deadline = wall_seconds() + 0.5;
     pid_t ended = 0;
@@ -172,7 +172,7 @@ std::string Session::how_it_ended() {
 
 /// Adds up the time of the call that ended. The next one counts from here, so that what a worker does between two calls
 /// is counted, too.
-void Session::account() {
+void Session::add_call_time() {
     const double now = processor_seconds();
     last_seconds_ = now - call_began_;
     call_began_ = now;
@@ -185,7 +185,7 @@ std::string Session::call(const char* function, const std::string& request) {
     call_began_at_ = wall_seconds();
     try {
         const std::string reply = exchange(request);
-        account();
+        add_call_time();
         const double most = std::max(limits_.item_seconds, 3 * limits_.seconds);
         if (item_seconds_ > most || item_wall_seconds_ > kWallFactor * most)
             throw CallFailed{
@@ -200,10 +200,10 @@ std::string Session::call(const char* function, const std::string& request) {
             throw CallFailed{message(function, " asked for more memory than the ", limits_.memory_bytes >> 20,
                                      " MiB that it may have.")};
         throw CallFailed{message(function, " threw an exception: ", text)};
-    } catch (const Silence& silence) {
+    } catch (const WorkerLost& silence) {
         const std::string text =
             silence.late ? message("gave no answer within ", limits_.seconds, " s: an endless loop, or far too slow.")
-                         : how_it_ended();
+                         : describe_exit();
         stop();
         throw CallFailed{message(function, " ", text)};
     } catch (const WireError& error) {

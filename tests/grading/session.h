@@ -39,7 +39,7 @@ public:
     /// The functions, called since the start, that said not_attempted().
     const std::vector<std::string>& not_attempted() const { return not_attempted_; }
     /// Whether the kernel let the worker be shut off from files (seccomp).
-    bool guarded() const { return guarded_; }
+    bool sandboxed() const { return sandboxed_; }
     /// What the student's code printed, at most 8 KiB.
     std::string printed();
 
@@ -48,8 +48,8 @@ private:
     void stop();
     std::string exchange(const std::string& request);
     std::string read_reply();
-    void account();
-    std::string how_it_ended();
+    void add_call_time();
+    std::string describe_exit();
     double processor_seconds() const;
     void wait_for(int descriptor, short events);
     void take_printed();
@@ -59,7 +59,7 @@ private:
     pid_t child_ = -1;
     clockid_t clock_{}; ///< the worker's processor time
     int requests_ = -1, replies_ = -1, output_ = -1;
-    bool guarded_ = false;
+    bool sandboxed_ = false;
     std::vector<std::string> not_attempted_;
     std::string printed_;
     double call_began_ = 0, call_began_at_ = 0; ///< processor time of the worker, and time on the wall

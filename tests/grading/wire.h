@@ -138,7 +138,7 @@ public:
             return list;
         } else if constexpr (detail::kIsImage<T>) {
             const int width = get<int>(), height = get<int>();
-            if (width < 0 || height < 0 || width > kMaxPictureSide || height > kMaxPictureSide ||
+            if (width < 0 || height < 0 || width > kMaxRenderSide || height > kMaxRenderSide ||
                 static_cast<std::size_t>(width) * static_cast<std::size_t>(height) > bytes_.size())
                 throw WireError("an image is larger than the message that it came in");
             T image(width, height);

@@ -101,7 +101,7 @@ TEST_SUITE("lesson") {
             duet::Camera camera;
             camera.eye = Vec3d(view.eye), camera.look_at = Vec3d(view.look_at), camera.up = Vec3d(view.up);
             camera.fov_degrees = view.fov_degrees;
-            const Pinhole library = CameraModel({camera, width, height}).through();
+            const Pinhole library = CameraModel({camera, width, height}).pinhole();
             const float x = random(0, static_cast<float>(width)), y = random(0, static_cast<float>(height));
             const Ray ray = lesson::Camera(view, width, height).ray(x, y, Vec2(0, 0));
             const Vec3d place = library.project(Vec3d(ray.at(random(0.5f, 5))));

@@ -11,7 +11,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "compare" /
 import course  # noqa: E402
 import figures  # noqa: E402
 
-MOST_SECONDS = 300  # of all programs together, one after the other
+MAX_SECONDS = 300  # of all programs together, one after the other
 
 
 def faults_of(lesson, out, compare):
@@ -39,8 +39,8 @@ def main():
         faults += faults_of(lesson, folder, compare)
         print(f"{lesson.id:<12} {facts['seconds']:6.2f} s {facts['lines']:4} lines {len(lesson.figures()):3} figures")
     print(f"{'all':<12} {total:6.2f} s")
-    if total > MOST_SECONDS:
-        faults.append(f"all programs together ran for {total:.0f} s, at most {MOST_SECONDS}")
+    if total > MAX_SECONDS:
+        faults.append(f"all programs together ran for {total:.0f} s, at most {MAX_SECONDS}")
     print("\n".join(faults) or f"{count} figures are those of their programs")
     sys.exit(1 if faults or count == 0 else 0)
 

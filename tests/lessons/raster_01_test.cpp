@@ -51,7 +51,7 @@ TEST_SUITE("lesson") {
     TEST_CASE("raster-01: the library marks the pixels that the lesson draws") {
         const raster::SampleOffset center;
         const auto fixed = [&](int x, int y) {
-            return raster::FixedPoint{x * raster::kSubPixels + center.x, y * raster::kSubPixels + center.y};
+            return raster::FixedPoint{x * raster::kSubpixels + center.x, y * raster::kSubpixels + center.y};
         };
         int compared = 0;
         for (int dx = -kReach; dx <= kReach; ++dx)

@@ -1,5 +1,5 @@
 // The library's coverage and that of lesson raster-02 are one.
-#include "compare/stress/drawing.h"
+#include "compare/stress/raster_stages.h"
 #include "raster/lessons/02-triangles/triangle.h"
 
 #include <doctest/doctest.h>

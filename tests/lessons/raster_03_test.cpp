@@ -1,5 +1,5 @@
 // The library's visibility and the z-buffer of lesson raster-03 see the same triangles.
-#include "compare/stress/drawing.h"
+#include "compare/stress/raster_stages.h"
 #include "raster/lessons/03-z-buffer/framebuffer.h"
 
 #include <doctest/doctest.h>
@@ -50,9 +50,9 @@ TEST_SUITE("lesson") {
                 const auto k = static_cast<std::uint32_t>(i);
                 if (i % 3 == 2) mesh.triangles.push_back({k - 2, k - 1, k});
             }
-            const compare::Pile pile = compare::set_up(mesh, view, window.offset);
-            REQUIRE(pile.wholes.size() == kTriangles);
-            const auto tile = compare::draw(pile, view, window);
+            const compare::SetupTriangles setup = compare::set_up_triangles(mesh, view, window.offset);
+            REQUIRE(setup.source_triangles.size() == kTriangles);
+            const auto tile = compare::draw(setup, view, window);
             lesson::Framebuffer lesson(kSize, kSize, Rgb(-1)); // the color is the number of the triangle
             ImageFloat second(kSize, kSize, kInfinity);        // the depth of the nearest but one
             for (std::size_t i = 0; i < kTriangles; ++i) {
@@ -78,7 +78,7 @@ TEST_SUITE("lesson") {
                         continue;
                     }
                     REQUIRE(id == static_cast<std::uint32_t>(lesson.color(x, y).r));
-                    REQUIRE(std::abs(1 / tile->nearness(x, y) - lesson.depth(x, y)) < 1e-5f);
+                    REQUIRE(std::abs(1 / tile->reversed_depth(x, y) - lesson.depth(x, y)) < 1e-5f);
                 }
         }
         CHECK(seen > 80'000);

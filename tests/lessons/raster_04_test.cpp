@@ -30,7 +30,7 @@ TEST_SUITE("lesson") {
             if (length(cross(camera.up, way)) < 0.1) continue; // badly conditioned in float
             camera.fov_degrees = uniform(10, 120);
             const int width = 100 + i % 300, height = 100 + i % 170;
-            const Pinhole pinhole = CameraModel(View{camera, width, height}).through();
+            const Pinhole pinhole = CameraModel(View{camera, width, height}).pinhole();
 
             // The ray of a pixel and its points: the library's two directions are inverses of each other.
             const Vec2d pixel(uniform(0, width), uniform(0, height));

@@ -1,7 +1,7 @@
 // Lesson raster-06: normals of placed meshes are those of the library's surface points, and light falls alike.
 #include "common/geometry/surface_point.h"
 #include "raster/lessons/06-shading/shading.h"
-#include "raster/shader/phong.h"
+#include "raster/shading/phong_model.h"
 
 #include <doctest/doctest.h>
 

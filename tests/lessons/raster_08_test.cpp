@@ -51,7 +51,7 @@ TEST_SUITE("lesson") {
             set.textures.push_back(ImageTexture{.image = 0, .scale = {1, 1}, .filter = TextureFilter::kBilinear});
             SurfaceMaps maps;
             maps.normal = 0;
-            bend_normal(set, maps, ray.direction, at);
+            apply_normal_maps(set, maps, ray.direction, at);
 
             const Vec3 naive =
                 lesson::perturb(smooth, lesson::tangent_frame(triangle, smooth), lesson::decode_normal(texel));

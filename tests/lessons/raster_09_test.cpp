@@ -1,6 +1,6 @@
 // Lesson raster-09 and the library: the same depths in the map, and the same shadows away from their edges.
 #include "raster/lessons/09-shadow-maps/shadow.h"
-#include "raster/shadow/shadow_map.h"
+#include "raster/shadows/shadow_map.h"
 #include "tests/raster/shadow_floor.h"
 
 #include <doctest/doctest.h>
@@ -50,7 +50,7 @@ TEST_SUITE("lesson") {
 
     TEST_CASE("raster-09: the library's shadow map has the lesson's depths, and both agree with rays off the edges") {
         const RingScene scene;
-        const raster::Prepared prepared = raster::prepare(scene.library, {});
+        const raster::RasterScene prepared = raster::prepare(scene.library, {});
         for (const Vec3 direction : {Vec3{0.62f, 0.42f, 0.55f}, Vec3{0, 1, 0}, Vec3{-0.3f, 0.8f, -0.9f}}) {
             const Vec3 to_sun = normalize(direction), center{0, 0.5f, 0};
             const Mat4 matrix = lesson::sun_matrix(to_sun, center, kRadius);
@@ -68,12 +68,12 @@ TEST_SUITE("lesson") {
             int different = 0, seen = 0;
             for (int y = 0; y < kMapSide; ++y)
                 for (int x = 0; x < kMapSide; ++x) {
-                    const double nearness = static_cast<double>(library.nearness(x, y));
+                    const double reversed_depth = static_cast<double>(library.reversed_depth(x, y));
                     const double d = static_cast<double>(map.depth(x, y)) * map.size;
-                    const bool nothing = nearness == 0 || !(d > 1e-3);
-                    if (nothing && std::isinf(map.depth(x, y)) && nearness == 0) continue;
+                    const bool nothing = reversed_depth == 0 || !(d > 1e-3);
+                    if (nothing && std::isinf(map.depth(x, y)) && reversed_depth == 0) continue;
                     ++seen;
-                    different += nothing || std::abs(camera.near / nearness - d) > bound;
+                    different += nothing || std::abs(camera.near / reversed_depth - d) > bound;
                 }
             CHECK(seen > kMapSide * kMapSide / 2);
             CHECK(different < seen / 500);

@@ -36,7 +36,7 @@ ImageRgb draw_library(raster::AmbientOcclusion kind, float radius) {
     test::add(scene, QuadList{{{Vec3(-20, 0, 0), Vec3(40, 0, 0), Vec3(0, 1, 0)}}}, Mat4(), Diffuse{{Rgb(0.0f)}});
     scene.environment = ConstantEnvironment{Rgb(1.0f)};
     finish_scene(scene);
-    raster::Settings settings;
+    raster::RasterSettings settings;
     settings.ambient_occlusion = kind, settings.occlusion_radius = radius, settings.samples_per_pixel = 16;
     return test::render(scene, View{test::look({0, 3, 4}, {0, 0.3, 0.7}, kFov), kWidth, kHeight}, settings).radiance;
 }

@@ -1,5 +1,5 @@
 // Lesson raster-11: 32-bit edges, tiles and the library cover what lesson 02 covers.
-#include "compare/stress/drawing.h"
+#include "compare/stress/raster_stages.h"
 #include "raster/lessons/11-tiles-and-simd/tiles.h"
 
 #include <doctest/doctest.h>

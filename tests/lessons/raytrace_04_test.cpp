@@ -70,9 +70,9 @@ TEST_SUITE("lesson") {
         constexpr int kPerPixel = 100;
 #endif
         const Scene scene = load_scene(DUET_SOURCE_DIR "/models/spheres.json");
-        raytrace::Settings settings;
+        raytrace::PathTracerSettings settings;
         settings.samples_per_pixel = kPerPixel;
-        const raytrace::Prepared prepared = raytrace::prepare(scene, settings);
+        const raytrace::PathTracerScene prepared = raytrace::prepare(scene, settings);
         Control control;
         const auto mean_of = [](const ImageRgb& image) {
             Rgbd sum;

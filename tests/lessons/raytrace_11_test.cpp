@@ -81,7 +81,7 @@ TEST_SUITE("lesson") {
             const Vec3 p = lesson::random_unit_vector(random) * 3.0f, q = quad.corner + quad.u * 0.3f + quad.v * 0.6f;
             if (length(cross(quad.u, quad.v)) < 0.1f || std::abs(dot(quad.n, normalize(p - q))) < 0.02f) continue;
             const Vec3d to_q = Vec3d(q) - Vec3d(p);
-            const AreaSeen<double> seen{cross(Vec3d(quad.u), Vec3d(quad.v)), to_q};
+            const AreaSampling<double> seen{cross(Vec3d(quad.u), Vec3d(quad.v)), to_q};
             const double expected = dot(seen.area_vector, to_q) < 0 ? seen.pdf(to_q) : 0;
             REQUIRE(static_cast<double>(lesson::quad_density(quad, p, q)) == doctest::Approx(expected).epsilon(1e-3));
         }

@@ -4,10 +4,10 @@
 #include "common/image/image_file.h"
 #include "common/image/srgb.h"
 #include "common/system/file.h"
+#include "models/format_number.h"
+#include "models/image.h"
 #include "models/implicit.h"
-#include "models/picture.h"
 #include "models/random.h"
-#include "models/text.h"
 
 #include <doctest/doctest.h>
 
@@ -47,7 +47,7 @@ TEST_SUITE("unit") {
     TEST_CASE("the committed models are what the generator writes, byte for byte") {
         for (const Model& model : all_models()) {
             if (model.kind != Model::Kind::kCommitted) continue;
-            make(model, scratch());
+            generate_model(model, scratch());
             for (const std::string& file : model.files) {
                 CAPTURE(file);
                 const std::string committed = read_file(std::filesystem::path(DUET_SOURCE_DIR) / "models" / file);
@@ -59,12 +59,12 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("numbers are written in plain decimals") {
-        CHECK(number(0.25, 5) == "0.25");
-        CHECK(number(-3, 5) == "-3");
-        CHECK(number(-0.0000001, 5) == "0");
-        CHECK(number(100, 0) == "100");
-        CHECK(number(1.0 / 3.0, 4) == "0.3333");
-        CHECK(number(12345678.5, 3) == "12345678.5");
+        CHECK(format_number(0.25, 5) == "0.25");
+        CHECK(format_number(-3, 5) == "-3");
+        CHECK(format_number(-0.0000001, 5) == "0");
+        CHECK(format_number(100, 0) == "100");
+        CHECK(format_number(1.0 / 3.0, 4) == "0.3333");
+        CHECK(format_number(12345678.5, 3) == "12345678.5");
     }
 
     TEST_CASE("a polygonized ball is a ball") {
@@ -108,7 +108,7 @@ TEST_SUITE("unit") {
                 }
             }
             write_png(scratch() / "test.png", image);
-            const PixelFile file = read_pixel_file(scratch() / "test.png");
+            const StoredImage file = read_stored_image(scratch() / "test.png");
             REQUIRE(file.width == width);
             REQUIRE(file.height == 97);
             REQUIRE(file.channels == 3);

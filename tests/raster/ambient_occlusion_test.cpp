@@ -1,8 +1,8 @@
 // These tests compare the occlusion of the environment with form factors.
 #include "tests/raster/scenes.h"
 
-#include "raster/lanes.h"
-#include "raster/screen/ambient_occlusion.h"
+#include "raster/geometry/packet.h"
+#include "raster/screen_space/ambient_occlusion.h"
 
 #include <doctest/doctest.h>
 
@@ -13,7 +13,7 @@ namespace {
 
 /// Returns the visible fraction of a constant environment of radiance 1, as the radiance of a white floor.
 ImageRgb visible(const Scene& scene, const View& view, raster::AmbientOcclusion kind, int spp = 4, int threads = 0) {
-    raster::Settings settings;
+    raster::RasterSettings settings;
     settings.ambient_occlusion = kind;
     settings.occlusion_radius = kind == raster::AmbientOcclusion::kSsao ? 2 : 10;
     settings.samples_per_pixel = spp;
@@ -56,7 +56,7 @@ TEST_SUITE("unit") {
         add(scene, QuadList{{{Vec3(-20, 0, 0), Vec3(40, 0, 0), Vec3(0, 1, 0)}}}, Mat4(), Diffuse{{Rgb(0.0f)}});
         finish_scene(scene);
         const View view{look({0, 3, 4}, {0, 0.3, 0.7}, 50), 160, 120};
-        const Pinhole pinhole = CameraModel(view).through();
+        const Pinhole pinhole = CameraModel(view).pinhole();
         for (const raster::AmbientOcclusion kind : kBoth) {
             const ImageRgb found = visible(scene, view, kind, 16);
             int rows = 0;
@@ -86,18 +86,19 @@ TEST_SUITE("unit") {
         add(scene, QuadList{{{Vec3(-20, 0, 0), Vec3(40, 0, 0), Vec3(0, 1, 0)}}});
         finish_scene(scene);
         const View view{look({0, 3, 4}, {0, 0.3, 0.7}, 50), 640, 480};
-        raster::Settings depths;
-        depths.output = raster::Output::kNearness;
-        const raster::Screen screen(CameraModel(view).through(), {}, render(scene, view, depths).nearness);
+        raster::RasterSettings depths;
+        depths.output = raster::Output::kReversedDepth;
+        const raster::ScreenGBuffer gbuffer(CameraModel(view).pinhole(), {},
+                                            render(scene, view, depths).reversed_depth);
         for (const double z : {0.2, 0.7, 1.5}) {
             const auto all = [](Vec3 v) {
                 return Vec3T<raster::Floats>{raster::Floats(v.x), raster::Floats(v.y), raster::Floats(v.z)};
             };
-            const Vec3 p = screen.relative(Vec3(Vec3d(0.01, 0, z)));
-            raster::SkySeen mean{0, {}};
+            const Vec3 p = gbuffer.to_eye_relative(Vec3(Vec3d(0.01, 0, z)));
+            raster::SkyVisibility mean{0, {}};
             constexpr int kPatterns = raster::OcclusionPattern::kPatterns;
             for (int first = 0; first < kPatterns; first += static_cast<int>(raster::Floats::size)) {
-                const auto seen = raster::horizon_occlusion(screen, {all(p), all({0, 1, 0}), all(normalize(-p))},
+                const auto seen = raster::horizon_occlusion(gbuffer, {all(p), all({0, 1, 0}), all(normalize(-p))},
                                                             raster::OcclusionPattern::of_point(first), 10, 4, 400);
                 mean.visible += xsimd::hadd(seen.visible) / kPatterns;
                 const Vec3 hidden(xsimd::hadd(seen.hidden.x), xsimd::hadd(seen.hidden.y), xsimd::hadd(seen.hidden.z));
@@ -209,7 +210,7 @@ TEST_SUITE("unit") {
         finish_scene(scene);
         const View view{look({0, 8, 8}, {0, 0.5, 2}, 50), 96, 64}; // all of the floor near the wall
         const ImageRgb found = visible(scene, view, raster::AmbientOcclusion::kGtao, 4);
-        const Pinhole pinhole = CameraModel(view).through();
+        const Pinhole pinhole = CameraModel(view).pinhole();
         int rows = 0;
         for (int y = 0; y < view.height; ++y) {
             const Rayd ray = pinhole.ray({48, y + 0.5});
@@ -261,7 +262,7 @@ TEST_SUITE("unit") {
         view.camera.aperture_radius = 0.1;
         for (const raster::AmbientOcclusion kind : kBoth)
             CHECK(visible(scene, view, kind, 4, 1).pixels() == visible(scene, view, kind, 4, 5).pixels());
-        CHECK_THROWS_AS(raster::ambient_occlusion("hbao"), Error);
-        CHECK(raster::ambient_occlusion("ssao") == raster::AmbientOcclusion::kSsao);
+        CHECK_THROWS_AS(raster::parse_ambient_occlusion("hbao"), Error);
+        CHECK(raster::parse_ambient_occlusion("ssao") == raster::AmbientOcclusion::kSsao);
     }
 }

@@ -1,5 +1,5 @@
 // These tests compare the coverage of fixed-point edge functions with an oracle in wider integers.
-#include "compare/stress/drawing.h"
+#include "compare/stress/raster_stages.h"
 
 #include <doctest/doctest.h>
 
@@ -36,7 +36,7 @@ Image<int> expected(const std::vector<GridTriangle>& triangles, SampleOffset off
     for (const GridTriangle& t : triangles)
         for (int y = 0; y < kSize; ++y)
             for (int x = 0; x < kSize; ++x)
-                count(x, y) += compare::covers(t, x * kSubPixels + offset.x, y * kSubPixels + offset.y) ? 1 : 0;
+                count(x, y) += compare::covers(t, x * kSubpixels + offset.x, y * kSubpixels + offset.y) ? 1 : 0;
     return count;
 }
 
@@ -70,7 +70,7 @@ private:
     std::mt19937 engine_;
 };
 
-constexpr int kFull = kSize * kSubPixels;
+constexpr int kFull = kSize * kSubpixels;
 
 } // namespace
 
@@ -82,7 +82,7 @@ TEST_SUITE("unit") {
             // Triangle sizes range from sub-pixel to the size of the image and the largest that the guard band
             // allows.
             const int reach = std::array{200, 2000, kFull, 20 * kFull,
-                                         static_cast<int>(kGuardBand) * kSubPixels}[static_cast<std::size_t>(i) % 5];
+                                         static_cast<int>(kGuardBand) * kSubpixels}[static_cast<std::size_t>(i) % 5];
             const FixedPoint near = random.point(0, kFull);
             const auto corner = [&] {
                 return FixedPoint{near.x + random.integer(-reach, reach), near.y + random.integer(-reach, reach)};
@@ -99,8 +99,8 @@ TEST_SUITE("unit") {
         for (int i = 0; i < 1500; ++i) {
             const SampleOffset offset; // all vertices are on sample points, so every edge passes through some
             const auto corner = [&] {
-                return FixedPoint{random.integer(-4, kSize + 4) * kSubPixels + offset.x,
-                                  random.integer(-4, kSize + 4) * kSubPixels + offset.y};
+                return FixedPoint{random.integer(-4, kSize + 4) * kSubpixels + offset.x,
+                                  random.integer(-4, kSize + 4) * kSubpixels + offset.y};
             };
             const std::vector<GridTriangle> one{{corner(), corner(), corner()}};
             if (!has_area(one[0])) continue;
@@ -128,7 +128,7 @@ TEST_SUITE("unit") {
         const Interpolation sliver(vertex(19.9046225, 21.9291211, 5.91187377),
                                    vertex(17.0116565, 14.8682996, 7.53373377),
                                    vertex(19.755635, 21.5654896, 5.97815284), {4355, 3806});
-        const Interpolated at = sliver.at({18.5, 18.5}, Piece::kTriangle);
+        const Interpolated at = sliver.at({18.5, 18.5}, TriangleKind::kTriangle);
         const double depth = at.depth_sum / at.sum;
         const double x =
             (at.b0 * 19.9046225 * 5.91187377 + at.b1 * 17.0116565 * 7.53373377 + at.b2 * 19.755635 * 5.97815284) /
@@ -205,14 +205,14 @@ TEST_SUITE("unit") {
                 probe.draw(one[0]);
                 for (int y = rect.y0; y < rect.y1; ++y)
                     for (int x = rect.x0; x < rect.x1; ++x)
-                        wrong += probe.covers(x, y) != compare::covers(one[0], x * kSubPixels + offset.x,
-                                                                       y * kSubPixels + offset.y);
+                        wrong += probe.covers(x, y) !=
+                                 compare::covers(one[0], x * kSubpixels + offset.x, y * kSubpixels + offset.y);
             }
             REQUIRE(wrong == 0);
         }
     }
 
-    TEST_CASE("a batch's outlines, patches and fragments are sorted by tile, in their order within each") {
+    TEST_CASE("a batch's outlines, coverage_masks and fragments are sorted by tile, in their order within each") {
         Random random(7);
         TileSorter sorter;
         for (int trial = 0; trial < 20; ++trial) {
@@ -235,15 +235,15 @@ TEST_SUITE("unit") {
             }
             sorter.sort(batch, touches, patch_touches, kTiles);
             const std::vector<Batch> batches{batch};
-            TileLists outlines, patches, fragments;
+            TileLists outlines, coverage_masks, fragments;
             outlines.gather(batches, &Batch::triangle_segments, kTiles);
-            patches.gather(batches, &Batch::patch_segments, kTiles);
+            coverage_masks.gather(batches, &Batch::patch_segments, kTiles);
             fragments.gather(batches, &Batch::fragment_segments, kTiles);
             for (std::size_t tile = 0; tile < kTiles; ++tile) {
                 std::vector<std::uint32_t> found, found_patches, found_fragments;
                 for (const TileLists::Item& item : outlines.tile(tile))
                     for (std::uint32_t k = 0; k < item.count; ++k) found.push_back(batch.order[item.first + k]);
-                for (const TileLists::Item& item : patches.tile(tile))
+                for (const TileLists::Item& item : coverage_masks.tile(tile))
                     for (std::uint32_t k = 0; k < item.count; ++k)
                         found_patches.push_back(batch.patch_order[item.first + k]);
                 for (const TileLists::Item& item : fragments.tile(tile))
@@ -307,19 +307,19 @@ TEST_SUITE("unit") {
     TEST_CASE("of coincident surfaces the lower number wins in any order") {
         const auto vertex = [](double x, double y) { return PixelVertex{.xw = x, .yw = y, .w = 1, .depth = 1}; };
         const Viewport viewport{kSize, kSize, 0.5, true};
-        compare::Pile pile;
+        compare::SetupTriangles setup;
         const std::array<FixedPoint, 3> corners{{{0, 0}, {kFull, 0}, {0, kFull}}};
         for (std::uint32_t id = 0; id < 4; ++id) {
-            pile.wholes.push_back({vertex(0, 0), vertex(kSize, 0), vertex(0, kSize)});
-            pile.outlines.push_back(set_up(pile.wholes[id], corners, id, false, viewport));
+            setup.wholes.push_back({vertex(0, 0), vertex(kSize, 0), vertex(0, kSize)});
+            setup.triangles.push_back(set_up_triangles(setup.wholes[id], corners, id, false, viewport));
         }
         std::vector<std::size_t> order{0, 1, 2, 3};
         do {
             DepthTile tile;
             tile.reset(kPicture, {}, viewport);
-            for (const std::size_t i : order) tile.draw(pile.outlines[i], pile);
+            for (const std::size_t i : order) tile.draw(setup.triangles[i], setup);
             REQUIRE(tile.id(5, 5) == 0);
-            REQUIRE(tile.nearness(5, 5) == 0.5f);
+            REQUIRE(tile.reversed_depth(5, 5) == 0.5f);
         } while (std::next_permutation(order.begin(), order.end()));
     }
 }

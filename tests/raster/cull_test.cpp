@@ -3,7 +3,7 @@
 #include "tests/raster/scenes.h"
 
 #include "raster/geometry/cull.h"
-#include "raster/prepare.h"
+#include "raster/raster_scene.h"
 
 #include <doctest/doctest.h>
 
@@ -13,7 +13,7 @@ using namespace duet::test;
 namespace {
 
 std::int64_t skipped(const Rendering& rendering, const std::string& what) {
-    for (const Skipped& s : rendering.statistics.skipped)
+    for (const SkippedWork& s : rendering.statistics.skipped)
         if (s.what == what) return s.count;
     return 0;
 }
@@ -54,7 +54,7 @@ TEST_SUITE("unit") {
         for (int i = 0; i < 12; ++i) {
             const double angle = 0.6 * i;
             const View view{look({4 * std::cos(angle), 1.5, 4 * std::sin(angle)}, {0, 0, 0}, 40), 240, 180};
-            raster::Settings settings;
+            raster::RasterSettings settings;
             settings.aovs.hit = true;
             const Rendering with = render(scene, view, settings);
             settings.skips.frustum = settings.skips.back_faces = false;
@@ -152,13 +152,13 @@ TEST_SUITE("unit") {
         Scene scene;
         for (const QuadList& quads : {box, open, inside_out, twice, sheets}) add(scene, quads);
         finish_scene(scene);
-        const raster::Prepared prepared = raster::prepare(scene, {});
+        const raster::RasterScene prepared = raster::prepare(scene, {});
         for (std::size_t i = 0; i < 5; ++i) CHECK(prepared.data().objects[i].closed == (i == 0));
     }
 
     TEST_CASE("a box is outside the frustum only if no point of it can be seen") {
         const View view{look({0, 0, 5}, {0, 0, 0}, 40), 64, 48};
-        const Pinhole pinhole = CameraModel(view).through();
+        const Pinhole pinhole = CameraModel(view).pinhole();
         const raster::Viewport viewport{64, 48, pinhole.near};
         const auto outside = [&](Vec3 center, float half) {
             const Vec3 h(half, half, half);

@@ -11,17 +11,17 @@ using namespace duet::test;
 
 namespace {
 
-raster::Settings realtime() {
-    raster::Settings settings;
+raster::RasterSettings realtime() {
+    raster::RasterSettings settings;
     settings.quality = raster::Quality::kRealtime;
     return settings;
 }
 /// Returns settings of which only the direct light is left, without shadows.
-raster::Settings only_direct(raster::Quality quality) {
-    raster::Settings settings;
+raster::RasterSettings only_direct(raster::Quality quality) {
+    raster::RasterSettings settings;
     settings.quality = quality;
     settings.shadows = settings.indirect_light = false;
-    settings.parts.environment = settings.parts.reflection = false;
+    settings.components.environment = settings.components.reflection = false;
     return settings;
 }
 
@@ -39,7 +39,7 @@ double relmse(const ImageRgb& a, const ImageRgb& b) {
 }
 
 ImageRgb path_traced(const Scene& scene, const View& view, int spp) {
-    raytrace::Settings settings;
+    raytrace::PathTracerSettings settings;
     settings.samples_per_pixel = spp;
     Control control;
     return raytrace::render(raytrace::prepare(scene, settings), view, settings, control).radiance;
@@ -76,7 +76,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("the image is the same for any number of threads") {
         const Scene scene = varied_scene(24);
-        raster::Settings settings = realtime();
+        raster::RasterSettings settings = realtime();
         settings.threads = 1;
         const Rendering one = render(scene, perspective(), settings);
         settings.threads = 3;
@@ -86,7 +86,7 @@ TEST_SUITE("unit") {
     TEST_CASE("perspective and orthographic views of a varied scene agree with shading sample by sample") {
         const Scene scene = varied_scene(24);
         for (const View& view : {perspective(), orthographic()}) {
-            raster::Settings fast = realtime(), slow;
+            raster::RasterSettings fast = realtime(), slow;
             fast.indirect_light = false;
             fast.ambient_occlusion = slow.ambient_occlusion = raster::AmbientOcclusion::kNone;
             // Shadow edges differ: 4 × 4 texels are weighted alike, but the rules at facets are simpler here.
@@ -96,7 +96,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("several samples per pixel average images of one sample") {
         const Scene scene = varied_scene(16);
-        raster::Settings settings = realtime();
+        raster::RasterSettings settings = realtime();
         settings.samples_per_pixel = 4;
         const Rendering smooth = render(scene, {perspective().camera, 60, 40}, settings);
         CHECK(smooth.statistics.samples_per_pixel == 4);

@@ -1,13 +1,13 @@
 // These tests compare the direct light of deferred shading with closed forms in double, with integrals and BSDFs, and
 // with a loop over all lights.
-#include "common/light/lambert.h"
+#include "common/light/form_factor.h"
 #include "common/material/ggx_albedo.h"
 #include "common/material/metal.h"
 #include "common/sampling/hash.h"
 #include "common/vec/frame.h"
 #include "raster/gbuffer/gbuffer_pass.h"
 #include "raster/geometry/geometry.h"
-#include "raster/light/ggx_table.h"
+#include "raster/lighting/ggx_table.h"
 #include "raster/lighting/direct_light.h"
 #include "raster/lighting/light_set.h"
 #include "raster/lighting/lit_batch.h"
@@ -42,7 +42,7 @@ private:
 };
 
 Floats lanes_of(float x) { return Floats(x); }
-Vec3T<Floats> lanes_of(Vec3 v) { return spread<Floats>(v); }
+Vec3T<Floats> lanes_of(Vec3 v) { return broadcast<Floats>(v); }
 CosineSpaceT<Floats> lanes_of(const CosineSpaceT<float>& s) {
     const Floats flat = Floats(s.determinant / s.yy);
     return CosineSpaceT<Floats>::of(Floats(s.zz), Floats(-s.xz), flat / Floats(s.yy), Floats(-s.zx), Floats(s.xx));
@@ -77,8 +77,8 @@ template <typename Inside> double part_of_lobe(const CosineSpaceT<float>& lobe, 
 /// Holds the G-buffer of a scene.
 struct Frame1 {
     Scene scene;
-    Settings settings;
-    std::optional<Prepared> prepared;
+    RasterSettings settings;
+    std::optional<RasterScene> prepared;
     std::optional<GBuffer> gbuffer;
 
     Frame1(Scene loaded, int width, int height) : scene(std::move(loaded)) {
@@ -93,7 +93,7 @@ struct Frame1 {
                             .viewport = viewport_of(view, pinhole),
                             .samples = std::vector<SampleOffset>(1)};
         const TileGrid grid{{0, 0, width, height}};
-        GeometryLoan geometry(*prepared->data().geometries);
+        PooledGeometry geometry(*prepared->data().geometries);
         process_geometry(prepared->data(), grid, pass, settings, *geometry);
         gbuffer.emplace(ScreenProjection(pinhole, SampleOffset()), width, height, any_clear_coat(scene));
         Planes3 emission(width, height);
@@ -120,7 +120,7 @@ struct Frame1 {
 
 Scene model(const char* name) { return load_scene(std::string(DUET_SOURCE_DIR "/models/") + name); }
 
-bool same_bits(const Planes3& a, const Planes3& b) {
+bool bitwise_equal(const Planes3& a, const Planes3& b) {
     for (const auto plane : {&Planes3::x, &Planes3::y, &Planes3::z})
         for (int y = 0; y < a.x.height(); ++y)
             if (std::memcmp((a.*plane).row(y), (b.*plane).row(y),
@@ -185,7 +185,7 @@ struct OneBatch {
     static Pinhole pinhole() {
         Camera camera;
         camera.eye = {0, 0, 0}, camera.look_at = {0, 0, -1}, camera.fov_degrees = 1, camera.near = 0.1;
-        return CameraModel(View{camera, kWidth, 1}).through();
+        return CameraModel(View{camera, kWidth, 1}).pinhole();
     }
     static constexpr int kWidth = 16;
 };
@@ -325,7 +325,7 @@ TEST_SUITE("unit") {
                 };
                 check(t.m11, m.m11), check(t.m13, m.m13), check(t.m22, m.m22), check(t.m31, m.m31), check(t.m33, m.m33);
                 check(t.energy, albedo.energy), check(t.share, albedo.share), check(lost, 1 - albedo.energy);
-                check(t.mean_lost, ggx_means(alphas[k]).lost);
+                check(t.mean_lost, ggx_average_albedo(alphas[k]).lost);
             }
         }
         CHECK(worst < 2e-6);
@@ -396,12 +396,12 @@ TEST_SUITE("unit") {
     TEST_CASE("six lights of all kinds: rows as a loop over the lights; the same bits for any threads; half shadows") {
         Frame1 view(model("everything.json"), 200, 120);
         const DirectLight one = view.light(1), three = view.light(3);
-        CHECK(same_bits(one.unshadowed, three.unshadowed));
-        CHECK(same_bits(one.unshadowed, view.all_lights()));
+        CHECK(bitwise_equal(one.unshadowed, three.unshadowed));
+        CHECK(bitwise_equal(one.unshadowed, view.all_lights()));
         CHECK(one.shadowed.empty());
         const HalfShadows shadows;
         const DirectLight half = view.light(2, &shadows);
-        CHECK(same_bits(half.unshadowed, one.unshadowed));
+        CHECK(bitwise_equal(half.unshadowed, one.unshadowed));
         const Difference difference(half.shadowed, one.unshadowed);
         CHECK(difference.mean == doctest::Approx(0.5));
         CHECK(difference.worst == doctest::Approx(0.5));
@@ -410,7 +410,7 @@ TEST_SUITE("unit") {
     TEST_CASE("a thousand lights: clusters lose no light and err little; none if all lights have shadows") {
         Frame1 view(model("lanterns.json"), 200, 112);
         const DirectLight one = view.light(1), three = view.light(3);
-        CHECK(same_bits(one.unshadowed, three.unshadowed));
+        CHECK(bitwise_equal(one.unshadowed, three.unshadowed));
         const Planes3 all = view.all_lights();
         const Difference difference(one.unshadowed, all);
         CHECK(difference.mean < 5e-4);

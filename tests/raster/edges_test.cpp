@@ -9,7 +9,7 @@ using namespace duet::test;
 
 namespace {
 
-Rendering inked(const Scene& scene, const View& view, raster::Settings settings = {}) {
+Rendering inked(const Scene& scene, const View& view, raster::RasterSettings settings = {}) {
     settings.shading = raster::Shading::kEdges;
     settings.aovs.hit = true;
     return render(scene, view, settings);
@@ -63,7 +63,7 @@ TEST_SUITE("unit") {
         const View view{look({0, 0, 6}, {0, 0, 0}, 30), 240, 240};
         const Rendering picture = inked(scene, view);
         const auto near_point = [&](Vec3d p) {
-            const Vec3d at = CameraModel(view).through().project(p);
+            const Vec3d at = CameraModel(view).pinhole().project(p);
             return ink_near(picture.radiance, static_cast<int>(at.x), static_cast<int>(at.y));
         };
         for (const double along : {-0.7, -0.4, -0.2}) {
@@ -91,7 +91,7 @@ TEST_SUITE("unit") {
             scene.maps.resize(scene.materials.size());
             scene.maps[0].opacity = opacity;
             finish_scene(scene);
-            const Vec3d at = CameraModel(view).through().project({x, y, z});
+            const Vec3d at = CameraModel(view).pinhole().project({x, y, z});
             return ink_near(inked(scene, view).radiance, static_cast<int>(at.x), static_cast<int>(at.y));
         };
         const ScalarSlot half{1, 0};
@@ -119,7 +119,7 @@ TEST_SUITE("unit") {
                 }
         CHECK(silhouette > 400);
         CHECK(missing == 0);
-        raster::Settings settings;
+        raster::RasterSettings settings;
         settings.shading = raster::Shading::kPhong;
         const Rendering plain = render(scene, view, settings);
         settings.edges = true;

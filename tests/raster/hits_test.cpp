@@ -12,7 +12,7 @@ namespace {
 
 /// Renders and compares. At most the fraction `edges` of the pixels may differ because of an edge near the sample.
 Rendering check_hits(const Scene& scene, const View& view, double edges = 0.02, bool cull = true) {
-    raster::Settings settings = hits_only();
+    raster::RasterSettings settings = hits_only();
     settings.skips.frustum = settings.skips.back_faces = cull;
     Rendering rendering = render(scene, view, settings);
     const Agreement agreement = compare_hits(scene, view, rendering.hit);
@@ -120,11 +120,11 @@ TEST_SUITE("unit") {
         const View view{look({0.5, 0.3, 4}, {0, 0, 0}, 45), 96, 72};
         const Rendering rendering = check_hits(scene, view);
         const Oracle oracle(scene);
-        const Pinhole pinhole = CameraModel(view).through();
+        const Pinhole pinhole = CameraModel(view).pinhole();
         for (int y = 0; y < view.height; ++y)
             for (int x = 0; x < view.width; ++x) {
                 const Hit& hit = rendering.hit(x, y);
-                const ExactHit exact = oracle.trace(pinhole.ray({x + 0.5, y + 0.5}));
+                const ReferenceHit exact = oracle.trace(pinhole.ray({x + 0.5, y + 0.5}));
                 if (!hit.valid() || hit.primitive != exact.primitive || hit.object != exact.object) continue;
                 REQUIRE(hit.u == doctest::Approx(exact.u).epsilon(1e-6));
                 REQUIRE(hit.v == doctest::Approx(exact.v).epsilon(1e-6));
@@ -141,11 +141,11 @@ TEST_SUITE("unit") {
             const View view{look({0, 0, 3}, Vec3d(random.vector(1)), 70), 32, 24};
             const Rendering rendering = render(scene, view, hits_only());
             const Oracle oracle(scene);
-            const Pinhole pinhole = CameraModel(view).through();
+            const Pinhole pinhole = CameraModel(view).pinhole();
             for (int y = 0; y < view.height; ++y)
                 for (int x = 0; x < view.width; ++x) {
                     const Hit& hit = rendering.hit(x, y);
-                    const ExactHit exact = oracle.trace(pinhole.ray({x + 0.5, y + 0.5}));
+                    const ReferenceHit exact = oracle.trace(pinhole.ray({x + 0.5, y + 0.5}));
                     if (!hit.valid() || exact.object == kNoObject || exact.cosine < 0.01) continue;
                     REQUIRE(static_cast<double>(hit.t) == doctest::Approx(exact.t).epsilon(2e-6));
                     ++compared;
@@ -162,12 +162,12 @@ TEST_SUITE("unit") {
         const View view{look({0, 0, 5}, {0, 0, 0}, 60), 96, 72};
         const Rendering rendering = check_hits(scene, view, 0.05);
         const Oracle oracle(scene);
-        const Pinhole pinhole = CameraModel(view).through();
+        const Pinhole pinhole = CameraModel(view).pinhole();
         int compared = 0;
         for (int y = 0; y < view.height; ++y)
             for (int x = 0; x < view.width; ++x) {
                 const Hit& hit = rendering.hit(x, y);
-                const ExactHit exact = oracle.trace(pinhole.ray({x + 0.5, y + 0.5}));
+                const ReferenceHit exact = oracle.trace(pinhole.ray({x + 0.5, y + 0.5}));
                 if (!hit.valid() || hit.primitive != exact.primitive || exact.cosine < 0.05) continue;
                 REQUIRE(std::abs(static_cast<double>(hit.u) - exact.u) < 2e-6);
                 REQUIRE(std::abs(static_cast<double>(hit.v) - exact.v) < 2e-6);

@@ -9,7 +9,7 @@
 
 using namespace duet;
 using namespace duet::test;
-using raster::FixedPoint, raster::kSubPixels, raster::SampleOffset;
+using raster::FixedPoint, raster::kSubpixels, raster::SampleOffset;
 
 namespace {
 
@@ -25,14 +25,14 @@ Marks by_definition(FixedPoint a, FixedPoint b, SampleOffset offset) {
     if (steep) std::swap(u0, v0), std::swap(u1, v1);
     if (u0 > u1) std::swap(u0, u1), std::swap(v0, v1);
     for (std::int64_t column = 0; column < kSide; ++column) {
-        const std::int64_t u = column * kSubPixels;
+        const std::int64_t u = column * kSubpixels;
         if (u < u0 || u >= u1) continue;
         for (std::int64_t row = 0; row < kSide; ++row) {
             // The condition is |v(u) − 256 row| <= 128, where only the upper bound is included, with v(u) = v0 + (u −
             // u0)(v1 − v0)/(u1 − u0).
             // The value is multiplied by u1 − u0.
-            const std::int64_t apart = (v0 - row * kSubPixels) * (u1 - u0) + (u - u0) * (v1 - v0);
-            const std::int64_t half = kSubPixels / 2 * (u1 - u0);
+            const std::int64_t apart = (v0 - row * kSubpixels) * (u1 - u0) + (u - u0) * (v1 - v0);
+            const std::int64_t half = kSubpixels / 2 * (u1 - u0);
             if (apart <= half && apart > -half)
                 marks(static_cast<int>(steep ? row : column), static_cast<int>(steep ? column : row)) = 1;
         }
@@ -49,14 +49,14 @@ TEST_SUITE("unit") {
         const auto number = [&](int low, int high) { return std::uniform_int_distribution<int>(low, high)(engine); };
         int marked = 0;
         for (int trial = 0; trial < 20'000; ++trial) {
-            const int reach = std::array{300, 5000, kSide * kSubPixels, 1 << 24}[static_cast<std::size_t>(trial) % 4];
-            const FixedPoint middle{number(0, kSide * kSubPixels), number(0, kSide * kSubPixels)};
+            const int reach = std::array{300, 5000, kSide * kSubpixels, 1 << 24}[static_cast<std::size_t>(trial) % 4];
+            const FixedPoint middle{number(0, kSide * kSubpixels), number(0, kSide * kSubpixels)};
             const SampleOffset offset = trial % 3 == 0 ? SampleOffset{} : SampleOffset{number(0, 256), number(0, 256)};
             FixedPoint a{middle.x + number(-reach, reach), middle.y + number(-reach, reach)},
                 b{2 * middle.x - a.x + number(-9, 9), 2 * middle.y - a.y + number(-9, 9)};
             if (trial % 5 == 0) { // ends on samples and simple fractions as slopes, which cause ties
-                a = {number(-4, 44) * kSubPixels + offset.x, number(-4, 44) * kSubPixels + offset.y};
-                b = {a.x + number(-6, 6) * 2 * kSubPixels, a.y + number(-6, 6) * kSubPixels};
+                a = {number(-4, 44) * kSubpixels + offset.x, number(-4, 44) * kSubpixels + offset.y};
+                b = {a.x + number(-6, 6) * 2 * kSubpixels, a.y + number(-6, 6) * kSubpixels};
             }
             Marks marks(kSide, kSide, 0), reversed(kSide, kSide, 0);
             raster::draw_line(a, b, offset, marks);
@@ -74,8 +74,8 @@ TEST_SUITE("unit") {
         const auto number = [&](int low, int high) { return std::uniform_int_distribution<int>(low, high)(engine); };
         for (int trial = 0; trial < 300; ++trial) {
             std::vector<int> columns(kSide, 0);
-            FixedPoint from{-300, kSide * kSubPixels / 2};
-            while (from.x < kSide * kSubPixels + 300) {
+            FixedPoint from{-300, kSide * kSubpixels / 2};
+            while (from.x < kSide * kSubpixels + 300) {
                 const int dx = number(1, 900);
                 const FixedPoint to{from.x + dx, from.y + number(-dx, dx) / 2};
                 Marks marks(kSide, kSide * 40, 0);
@@ -140,7 +140,7 @@ TEST_SUITE("unit") {
         View view{look({0, 0, 4}, {0, 0, 0}, 40), 64, 64};
         view.camera.projection = Camera::Projection::kOrthographic;
         view.camera.height = 2.5;
-        raster::Settings settings;
+        raster::RasterSettings settings;
         settings.shading = raster::Shading::kLines;
         const Rendering picture = render(scene, view, settings);
         double sum = 0;

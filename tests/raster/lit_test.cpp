@@ -1,7 +1,7 @@
 // These tests compare the shading of simple scenes with closed forms.
 #include "tests/raster/scenes.h"
 
-#include "common/light/lambert.h"
+#include "common/light/form_factor.h"
 
 #include <doctest/doctest.h>
 
@@ -20,7 +20,7 @@ Scene floor_scene(Material material) {
 
 /// Returns the floor's point at the center of a pixel.
 Vec3 floor_point(const View& view, int x, int y) {
-    const Rayd ray = CameraModel(view).through().ray({x + 0.5, y + 0.5});
+    const Rayd ray = CameraModel(view).pinhole().ray({x + 0.5, y + 0.5});
     return Vec3(ray.at(-ray.origin.y / ray.direction.y));
 }
 
@@ -121,7 +121,7 @@ TEST_SUITE("unit") {
             add(scene, Sphere{Vec3(0, 1, 0), 0.5f}, Mat4(), white);
             scene.environment = ConstantEnvironment{Rgb(0.7f)};
             finish_scene(scene);
-            raster::Settings settings; // occlusion would darken the ring's inside
+            raster::RasterSettings settings; // occlusion would darken the ring's inside
             settings.ambient_occlusion = raster::AmbientOcclusion::kNone;
             const Rendering rendering = render(scene, {look({1, 2, 3}, {0, 0, 0}), 48, 32}, settings);
             for (const Rgb c : rendering.radiance) check_rgb(c, Rgb(0.7f), 1e-5);
@@ -158,7 +158,7 @@ TEST_SUITE("unit") {
             add(scene, Sphere{Vec3(0, 0, 0), 1}, Mat4(), white);
             scene.environment = ConstantEnvironment{Rgb(0.7f)};
             finish_scene(scene);
-            raster::Settings settings;
+            raster::RasterSettings settings;
             settings.ambient_occlusion = raster::AmbientOcclusion::kNone;
             settings.screen_reflections = false;
             const Rendering rendering = render(scene, {look({1, 2, 3}, {0, 0, 0}), 48, 32}, settings);
@@ -172,7 +172,7 @@ TEST_SUITE("unit") {
         finish_scene(scene);
         const View view{look({0, 1, 4}, {0, 1, 0}, 60), 16, 16};
         const Rendering rendering = render(scene, view, {});
-        const Pinhole pinhole = CameraModel(view).through();
+        const Pinhole pinhole = CameraModel(view).pinhole();
         for (int y = 0; y < 16; ++y)
             for (int x = 0; x < 16; ++x) {
                 Vec3 w(pinhole.ray({x + 0.5, y + 0.5}).direction);
@@ -184,7 +184,7 @@ TEST_SUITE("unit") {
                     continue;
                 check_rgb(rendering.radiance(x, y), radiance(scene.environment, w), 1e-4);
             }
-        raster::Settings off;
+        raster::RasterSettings off;
         off.environment = false;
         const Rendering dark = render(scene, view, off);
         CHECK(std::all_of(dark.radiance.begin(), dark.radiance.end(), [](Rgb c) { return c == Rgb(); }));
@@ -197,7 +197,7 @@ TEST_SUITE("unit") {
         finish_scene(with_lamp);
         with_sun.lights.push_back(SunLight{Vec3(0, -1, 0), Rgb(1000.0f) * (kPi * 1e-4f)});
         finish_scene(with_sun);
-        raster::Settings from_center;
+        raster::RasterSettings from_center;
         from_center.transformed_cosines = false;
         const Rendering lamp = render(with_lamp, kFromAbove, from_center), sun = render(with_sun, kFromAbove, {});
         const MetalBsdf bsdf{Rgb(0.9f, 0.7f, 0.4f), 0.25f};
@@ -228,7 +228,7 @@ TEST_SUITE("unit") {
             Emissive{.radiance = Rgb(9, 0, 0), .two_sided = true});
         finish_scene(scene);
         const View view = kFromAbove;
-        raster::Settings open; // the lights occlude each other
+        raster::RasterSettings open; // the lights occlude each other
         open.shadows = false;
         const Rendering rendering = render(scene, view, open);
         const Vec3 p = floor_point(view, 16, 12);
@@ -241,7 +241,7 @@ TEST_SUITE("unit") {
         Scene scene = floor_scene(Diffuse{{Rgb(0.1f, 0.2f, 0.3f)}});
         finish_scene(scene);
         View view{look({0, 3, 0}, {0, 0, 0}), 8, 8};
-        raster::Settings settings;
+        raster::RasterSettings settings;
         settings.aovs = {.depth = true, .normal = true, .albedo = true, .hit = true, .variance = true, .samples = true};
         settings.shading = raster::Shading::kNormal;
         const Rendering normal = render(scene, view, settings);
@@ -260,7 +260,7 @@ TEST_SUITE("unit") {
                 CHECK(normal.samples(x, y) == 1);
             }
         CHECK(normal.variance.empty());
-        CHECK_THROWS_AS(raster::shading("fancy"), Error);
-        CHECK(raster::shading("depth") == raster::Shading::kDepth);
+        CHECK_THROWS_AS(raster::parse_shading("fancy"), Error);
+        CHECK(raster::parse_shading("depth") == raster::Shading::kDepth);
     }
 }

@@ -2,7 +2,7 @@
 #include "raster/visibility/multisample.h"
 #include "tests/raster/varied_scene.h"
 
-#include "common/image/same_bits.h"
+#include "common/image/bitwise_equal.h"
 
 #include <doctest/doctest.h>
 
@@ -14,16 +14,16 @@ using namespace duet::test;
 namespace {
 
 /// Returns settings without effects that draw their own samples, because their noise does not come from silhouettes.
-raster::Settings plain(raster::Shading shading) {
-    raster::Settings settings;
+raster::RasterSettings plain(raster::Shading shading) {
+    raster::RasterSettings settings;
     settings.shading = shading;
     settings.shadows = false;
     settings.ambient_occlusion = raster::AmbientOcclusion::kNone;
     return settings;
 }
 
-raster::Settings multisampled(int count, raster::Shading shading, bool each_sample = false) {
-    raster::Settings settings = plain(shading);
+raster::RasterSettings multisampled(int count, raster::Shading shading, bool each_sample = false) {
+    raster::RasterSettings settings = plain(shading);
     settings.multisamples = count;
     settings.sample_shading = each_sample;
     return settings;
@@ -45,7 +45,7 @@ TEST_SUITE("unit") {
             std::set<int> columns, rows;
             for (const raster::SampleOffset offset : raster::multisample_pattern(count)) {
                 CHECK(offset.x >= 0);
-                CHECK(offset.y < raster::kSubPixels);
+                CHECK(offset.y < raster::kSubpixels);
                 columns.insert(offset.x);
                 rows.insert(offset.y);
             }
@@ -54,7 +54,7 @@ TEST_SUITE("unit") {
         }
         CHECK_THROWS_AS(raster::multisample_pattern(1), Error);
         CHECK_THROWS_AS(raster::multisample_pattern(5), Error);
-        raster::Settings both = multisampled(4, raster::Shading::kAlbedo);
+        raster::RasterSettings both = multisampled(4, raster::Shading::kAlbedo);
         both.samples_per_pixel = 2;
         CHECK_THROWS_AS(render(varied_scene(12), perspective(), both), Error);
     }
@@ -68,7 +68,7 @@ TEST_SUITE("unit") {
                     CAPTURE(count);
                     const Rendering once = render(scene, view, multisampled(count, raster::Shading::kAlbedo)),
                                     each = render(scene, view, multisampled(count, raster::Shading::kAlbedo, true));
-                    CHECK(same_bits(once.radiance, each.radiance));
+                    CHECK(bitwise_equal(once.radiance, each.radiance));
                 }
             }
         // The same comparison uses materials and lights: emissive surfaces in front of a constant sky.
@@ -76,15 +76,15 @@ TEST_SUITE("unit") {
         for (std::size_t i = 0; i < scene.materials.size(); ++i)
             scene.materials[i] = Emissive{.radiance = Rgb(0.3f + static_cast<float>(i), 1.7f, 0.9f), .two_sided = true};
         finish_scene(scene);
-        CHECK(same_bits(render(scene, perspective(), multisampled(8, raster::Shading::kLit)).radiance,
-                        render(scene, perspective(), multisampled(8, raster::Shading::kLit, true)).radiance));
+        CHECK(bitwise_equal(render(scene, perspective(), multisampled(8, raster::Shading::kLit)).radiance,
+                            render(scene, perspective(), multisampled(8, raster::Shading::kLit, true)).radiance));
     }
 
     TEST_CASE("silhouettes come as close to the truth as with as many samples shaded") {
         const Scene scene = varied_scene(60);
         const View view = perspective();
         for (const raster::Shading shading : {raster::Shading::kPhong, raster::Shading::kLit}) {
-            raster::Settings many = plain(shading);
+            raster::RasterSettings many = plain(shading);
             many.samples_per_pixel = 256;
             const ImageRgb truth = render(scene, view, many).radiance;
             many.samples_per_pixel = 1;
@@ -122,15 +122,15 @@ TEST_SUITE("unit") {
     TEST_CASE("the same bits for any number of threads; auxiliary pictures; memory that does not grow with samples") {
         const Scene scene = varied_scene(90);
         const View view = perspective();
-        raster::Settings settings = multisampled(8, raster::Shading::kPhong);
+        raster::RasterSettings settings = multisampled(8, raster::Shading::kPhong);
         settings.aovs = {
             .depth = true, .normal = true, .albedo = true, .hit = true, .variance = false, .samples = true};
         settings.threads = 1;
         const Rendering one = render(scene, view, settings);
         settings.threads = 7;
         const Rendering seven = render(scene, view, settings);
-        CHECK(same_bits(one.radiance, seven.radiance));
-        CHECK(same_bits(one.depth, seven.depth));
+        CHECK(bitwise_equal(one.radiance, seven.radiance));
+        CHECK(bitwise_equal(one.depth, seven.depth));
         settings.sample_shading = true;
         const Rendering each = render(scene, view, settings);
         int hits_differ = 0, far_apart = 0;

@@ -1,5 +1,5 @@
 // These tests check threads, samples, depth of field and motion blur.
-#include "common/image/same_bits.h"
+#include "common/image/bitwise_equal.h"
 #include "tests/raster/scenes.h"
 
 #include <doctest/doctest.h>
@@ -31,8 +31,8 @@ double mean(const ImageRgb& image, int row, int first, int last) {
 }
 
 /// Returns settings that show white objects on black, so the image is the coverage.
-raster::Settings silhouettes(int samples) {
-    raster::Settings settings;
+raster::RasterSettings silhouettes(int samples) {
+    raster::RasterSettings settings;
     settings.shading = raster::Shading::kAlbedo;
     settings.samples_per_pixel = samples;
     return settings;
@@ -49,7 +49,7 @@ TEST_SUITE("unit") {
             view.camera.aperture_radius = aperture;
             std::vector<Rendering> pictures;
             for (const int threads : {1, 2, 7}) {
-                raster::Settings settings;
+                raster::RasterSettings settings;
                 settings.threads = threads;
                 settings.samples_per_pixel = 5;
                 settings.aovs = {
@@ -57,11 +57,11 @@ TEST_SUITE("unit") {
                 pictures.push_back(render(scene, view, settings));
             }
             for (const Rendering& other : pictures) {
-                CHECK(same_bits(other.radiance, pictures[0].radiance));
-                CHECK(same_bits(other.depth, pictures[0].depth));
-                CHECK(same_bits(other.normal, pictures[0].normal));
-                CHECK(same_bits(other.albedo, pictures[0].albedo));
-                CHECK(same_bits(other.hit, pictures[0].hit));
+                CHECK(bitwise_equal(other.radiance, pictures[0].radiance));
+                CHECK(bitwise_equal(other.depth, pictures[0].depth));
+                CHECK(bitwise_equal(other.normal, pictures[0].normal));
+                CHECK(bitwise_equal(other.albedo, pictures[0].albedo));
+                CHECK(bitwise_equal(other.hit, pictures[0].hit));
                 CHECK(other.statistics.invalid_samples == 0);
             }
         }
@@ -71,14 +71,14 @@ TEST_SUITE("unit") {
         const Scene scene = varied();
         const View view{look({2, 2, 4}, {0, 0, 0}, 40), 60, 40};
         const auto picture = [&](int samples, std::uint64_t seed) {
-            raster::Settings settings;
+            raster::RasterSettings settings;
             settings.samples_per_pixel = samples;
             settings.seed = seed;
             return render(scene, view, settings).radiance;
         };
-        CHECK(same_bits(picture(1, 1), picture(1, 2)));
-        CHECK(same_bits(picture(4, 1), picture(4, 1)));
-        CHECK_FALSE(same_bits(picture(4, 1), picture(4, 2)));
+        CHECK(bitwise_equal(picture(1, 1), picture(1, 2)));
+        CHECK(bitwise_equal(picture(4, 1), picture(4, 1)));
+        CHECK_FALSE(bitwise_equal(picture(4, 1), picture(4, 2)));
     }
 
     TEST_CASE("many samples give a pixel the part of its area that is covered") {
@@ -168,10 +168,10 @@ TEST_SUITE("unit") {
     TEST_CASE("progress never decreases, reaches 1, and stopping keeps what is finished") {
         const Scene scene = varied();
         const View view{look({2, 2, 4}, {0, 0, 0}, 40), 450, 330};
-        raster::Settings settings;
+        raster::RasterSettings settings;
         settings.samples_per_pixel = 4;
         settings.threads = 3;
-        const raster::Prepared prepared = raster::prepare(scene, settings);
+        const raster::RasterScene prepared = raster::prepare(scene, settings);
         double last = 0;
         bool ordered = true;
         Control control;
@@ -202,7 +202,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("settings and sizes that can't be rendered are refused") {
         const Scene scene = varied();
-        raster::Settings settings;
+        raster::RasterSettings settings;
         CHECK_THROWS_AS(render(scene, {Camera{}, 0, 10}, settings), Error);
         CHECK_THROWS_AS(render(scene, {Camera{}, 10, 100000}, settings), Error);
         settings.samples_per_pixel = 0;

@@ -1,11 +1,11 @@
 // These tests check the maps over directions that probes hold, and where probes stand.
 #include "tests/raster/scenes.h"
 
-#include "raster/prepare.h"
 #include "raster/probes/irradiance_probes.h"
 #include "raster/probes/octahedral_map.h"
 #include "raster/probes/radiance_map.h"
 #include "raster/probes/solid_test.h"
+#include "raster/raster_scene.h"
 
 #include <doctest/doctest.h>
 
@@ -82,8 +82,8 @@ TEST_SUITE("unit") {
         add(scene, Sphere{Vec3(5, 0, 0), 1});
         add(scene, torus(24, 12));
         finish_scene(scene);
-        const raster::Prepared prepared = raster::prepare(scene, raster::Settings{});
-        const raster::PreparedData& data = prepared.data();
+        const raster::RasterScene prepared = raster::prepare(scene, raster::RasterSettings{});
+        const raster::RasterSceneData& data = prepared.data();
         CHECK(raster::inside_solid(data, {5.9, 0, 0.1}));
         CHECK_FALSE(raster::inside_solid(data, {6.1, 0, 0}));
         CHECK(raster::inside_solid(data, {1.01, 0.02, 0.03}));
@@ -98,9 +98,9 @@ TEST_SUITE("unit") {
         scene.environment = ConstantEnvironment{Rgb(1.0f)};
         scene.camera = look({0, 0, 3}, {0, 0, 0});
         finish_scene(scene);
-        raster::Settings settings;
+        raster::RasterSettings settings;
         settings.quality = raster::Quality::kRealtime;
-        const raster::Prepared prepared = raster::prepare(scene, settings);
+        const raster::RasterScene prepared = raster::prepare(scene, settings);
         const raster::IrradianceProbes& probes = *prepared.data().irradiance_probes;
         for (const Vec3 n : directions()) {
             const RgbT<Floats> e =

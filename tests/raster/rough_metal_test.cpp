@@ -1,13 +1,13 @@
 // These tests compare rough metal under environments and area lights with the exact integrals.
 #include "tests/raster/scenes.h"
 
-#include "common/light/lambert.h"
+#include "common/light/form_factor.h"
 #include "common/material/ggx.h"
 #include "common/sampling/hash.h"
 #include "common/sampling/warp.h"
-#include "raster/light/area_specular.h"
-#include "raster/light/ggx_fit.h"
-#include "raster/light/prefiltered.h"
+#include "raster/lighting/area_specular.h"
+#include "raster/lighting/ggx_fit.h"
+#include "raster/lighting/prefiltered_environment.h"
 
 #include <doctest/doctest.h>
 
@@ -66,7 +66,8 @@ TEST_SUITE("unit") {
                     CAPTURE(roughness);
                     CAPTURE(cosine);
                     const float alpha = roughness * roughness;
-                    const double found = static_cast<double>(MetalBsdf(Rgb(reflectance), alpha).albedo(cosine).g);
+                    const double found =
+                        static_cast<double>(MetalBsdf(Rgb(reflectance), alpha).directional_albedo(cosine).g);
                     CHECK(std::abs(found - reflected({Rgb(reflectance), alpha}, viewer(cosine))) < 0.015);
                     CHECK(found <= 1.0001);
                 }
@@ -157,7 +158,7 @@ TEST_SUITE("unit") {
         SurfaceLight lamp;
         lamp.radiance = Rgb(2.0f);
         lamp.shape = Quad{Vec3(-1e4f, 1, -1e4f), Vec3(2e4f, 0, 0), Vec3(0, 0, 2e4f)}; // emits downward
-        const float all = 2 * bsdf.albedo(point.wo.z).g;
+        const float all = 2 * bsdf.directional_albedo(point.wo.z).g;
         // The transformed cosine extends partly below the horizon.
         CHECK(raster::area_reflection(lamp, bsdf, point).g == doctest::Approx(all).epsilon(0.02));
         lamp.shape = Quad{Vec3(-1e4f, 1, -1e4f), Vec3(0, 0, 2e4f), Vec3(2e4f, 0, 0)};
@@ -198,7 +199,7 @@ TEST_SUITE("unit") {
             finish_scene(scene);
             const View view{look({0, 3 * side, 2}, {0, 0, 0}), 4, 4};
             const Rendering found = render(scene, view, {});
-            const Pinhole pinhole = CameraModel(view).through();
+            const Pinhole pinhole = CameraModel(view).pinhole();
             for (int i = 0; i < 4; ++i) {
                 const float cosine = static_cast<float>(std::abs(pinhole.ray({i + 0.5, i + 0.5}).direction.y));
                 const double expected = 0.5 * reflected({Rgb(1.0f), 0.36f}, viewer(cosine));
@@ -232,7 +233,7 @@ TEST_SUITE("unit") {
 
     // The scene is a mirror floor in front of an emissive wall. Below the wall's base the floor shows the wall upside
     // down.
-    TEST_CASE("screen reflections: a mirror shows the wall that the picture shows, elsewhere the sky") {
+    TEST_CASE("gbuffer reflections: a mirror shows the wall that the picture shows, elsewhere the sky") {
         Scene scene;
         add(scene, QuadList{{{Vec3(-5, 0, 5), Vec3(10, 0, 0), Vec3(0, 0, -10)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0});
         add(scene, QuadList{{{Vec3(-5, 0, -1), Vec3(10, 0, 0), Vec3(0, 1, 0)}}}, Mat4(),
@@ -240,12 +241,12 @@ TEST_SUITE("unit") {
         scene.environment = ConstantEnvironment{Rgb(0.25f)};
         finish_scene(scene);
         const View view{look({0, 1.5, 4}, {0, 0.5, 0}, 40), 96, 96};
-        raster::Settings settings;
+        raster::RasterSettings settings;
         settings.aovs.hit = true;
         const Rendering found = render(scene, view, settings);
         settings.screen_reflections = false;
         const Rendering without = render(scene, view, settings);
-        const Pinhole pinhole = CameraModel(view).through();
+        const Pinhole pinhole = CameraModel(view).pinhole();
         int wall = 0, sky = 0, wrong = 0;
         for (int y = 0; y < 96; ++y)
             for (int x = 4; x < 92; ++x) {
@@ -265,7 +266,7 @@ TEST_SUITE("unit") {
         CHECK(wall > 500);
         CHECK(sky > 500);
         CHECK(wrong == 0);
-        raster::Settings one;
+        raster::RasterSettings one;
         one.threads = 1;
         CHECK(render(scene, view, one).radiance.pixels() == found.radiance.pixels());
     }

@@ -70,27 +70,27 @@ inline Camera look(Vec3d eye, Vec3d at, double fov_degrees = 40) {
     return camera;
 }
 
-inline Rendering render(const Scene& scene, const View& view, const raster::Settings& settings) {
+inline Rendering render(const Scene& scene, const View& view, const raster::RasterSettings& settings) {
     Control control;
     return raster::render(raster::prepare(scene, settings), view, settings, control);
 }
 
 /// Returns settings without occlusion of the environment.
-inline raster::Settings plain() {
-    raster::Settings settings;
+inline raster::RasterSettings plain() {
+    raster::RasterSettings settings;
     settings.ambient_occlusion = raster::AmbientOcclusion::kNone;
     return settings;
 }
 
-inline raster::Settings hits_only() {
-    raster::Settings settings;
+inline raster::RasterSettings hits_only() {
+    raster::RasterSettings settings;
     settings.shading = raster::Shading::kDepth;
     settings.aovs.hit = settings.aovs.depth = true;
     return settings;
 }
 
 // Holds a hit that the oracle finds, in double precision.
-struct ExactHit {
+struct ReferenceHit {
     std::uint32_t object = kNoObject, primitive = 0;
     double u = 0, v = 0, t = std::numeric_limits<double>::infinity();
     double cosine = 1; ///< between the ray and the normal
@@ -103,8 +103,8 @@ public:
         for (std::uint32_t o = 0; o < scene.objects.size(); ++o) add_object(o, time);
     }
 
-    ExactHit trace(const Rayd& ray) const {
-        ExactHit nearest;
+    ReferenceHit trace(const Rayd& ray) const {
+        ReferenceHit nearest;
         for (const Facet& f : facets_) test(ray, f, nearest);
         for (const Ball& b : balls_) test(ray, b, nearest);
         return nearest;
@@ -141,19 +141,19 @@ private:
             return;
         }
         for (std::uint32_t k = 0; k < primitive_count(shape); ++k) {
-            const Corners corners = primitive_corners(shape, k);
+            const PrimitiveVertices corners = primitive_vertices(shape, k);
             const auto at = [&](std::size_t i) { return transform_point(to_world, Vec3d(corners.p[i])); };
             const bool quad = corners.count == 4;
             facets_.push_back({index, k, at(0), at(1) - at(0), at(quad ? 3 : 2) - at(0), quad});
         }
     }
 
-    static bool nearer(double t, std::uint32_t object, std::uint32_t primitive, const ExactHit& than) {
+    static bool nearer(double t, std::uint32_t object, std::uint32_t primitive, const ReferenceHit& than) {
         if (t != than.t) return t < than.t;
         return object != than.object ? object < than.object : primitive < than.primitive;
     }
 
-    static void test(const Rayd& ray, const Facet& f, ExactHit& nearest) {
+    static void test(const Rayd& ray, const Facet& f, ReferenceHit& nearest) {
         const Vec3d n = cross(f.a, f.b);
         const double towards = dot(ray.direction, n);
         if (towards == 0) return;
@@ -165,7 +165,7 @@ private:
         nearest = {f.object, f.primitive, u, v, t, std::abs(towards) / length(n)};
     }
 
-    static void test(const Rayd& ray, const Ball& ball, ExactHit& nearest) {
+    static void test(const Rayd& ray, const Ball& ball, ReferenceHit& nearest) {
         const Vec3d o = transform_point(ball.to_object, ray.origin) - Vec3d(ball.sphere.center);
         const Vec3d d = transform_vector(ball.to_object, ray.direction);
         const double r = static_cast<double>(ball.sphere.radius), a = dot(d, d), b = dot(o, d);
@@ -195,23 +195,23 @@ struct Agreement {
 /// 1/128 pixel hits it, and as a tie if its distance is equal within 1e-5.
 inline Agreement compare_hits(const Scene& scene, const View& view, const Image<Hit>& hits, double time = 0) {
     const CameraModel camera(view);
-    const Pinhole pinhole = camera.through();
+    const Pinhole pinhole = camera.pinhole();
     const Oracle oracle(scene, static_cast<float>(camera.time(time)));
     Agreement result;
     for (int y = 0; y < view.height; ++y)
         for (int x = 0; x < view.width; ++x) {
             const Hit& hit = hits(x, y);
-            const auto matches = [&](const ExactHit& e) {
+            const auto matches = [&](const ReferenceHit& e) {
                 return e.object == hit.object && (e.object == kNoObject || e.primitive == hit.primitive);
             };
-            const auto report = [&](const char* what, const ExactHit& e) {
+            const auto report = [&](const char* what, const ReferenceHit& e) {
                 if (result.first.empty())
                     result.first = message(what, " at pixel ", x, ", ", y, ": found object ", hit.object, " primitive ",
                                            hit.primitive, " t ", hit.t, " u ", hit.u, " v ", hit.v, "; exact: object ",
                                            e.object, " primitive ", e.primitive, " t ", e.t, " u ", e.u, " v ", e.v);
             };
             const Rayd ray = pinhole.ray({x + 0.5, y + 0.5});
-            const ExactHit exact = oracle.trace(ray);
+            const ReferenceHit exact = oracle.trace(ray);
             // The tolerance is 1e-5 of the distance plus the rounding of a float ray's origin, which matters close to
             // the eye.
             const double tolerance = 1e-5 * exact.t + 0x1p-22 * length(ray.origin);

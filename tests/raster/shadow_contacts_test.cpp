@@ -11,7 +11,7 @@ using namespace duet::test;
 namespace {
 
 /// Returns the fraction of the light that reaches each pixel that faces the light, and 0 elsewhere.
-ImageFloat arriving(const Scene& scene, const View& view, raster::Settings settings = {}) {
+ImageFloat arriving(const Scene& scene, const View& view, raster::RasterSettings settings = {}) {
     const ImageRgb shaded = render(scene, view, settings).radiance;
     settings.shadows = false;
     const ImageRgb open = render(scene, view, settings).radiance;
@@ -130,7 +130,7 @@ TEST_SUITE("unit") {
                 add(scene, QuadList{{{Vec3(0, 0, 2), Vec3(0, 0, -4), Vec3(0, 1, 0)}}}); // the wall, viewed from +x
                 add(scene, QuadList{{{Vec3(-0.2f, 1, 2), Vec3(3, 0, 0), Vec3(0, 0, -4)}}});
                 finish_scene(scene);
-                raster::Settings settings;
+                raster::RasterSettings settings;
                 settings.shadow_map_side = side;
                 Camera camera = look({0.5, 0.9, 0}, {0, 0.9, 0});
                 camera.projection = Camera::Projection::kOrthographic;
@@ -150,7 +150,7 @@ TEST_SUITE("unit") {
             scene.materials.front() = Diffuse{{Rgb(0)}}; // the ground's material
             add(scene, trough({0, 1, 0}, 2, 0, kPiDouble, facets));
             finish_scene(scene);
-            raster::Settings settings;
+            raster::RasterSettings settings;
             settings.shadow_map_side = 1024;
             const ImageRgb seen = render(scene, {look({1, 1, 0.5}, {-1.5, 2, 0}, 70), 200, 150}, settings).radiance;
             double sum = 0;
@@ -171,7 +171,7 @@ TEST_SUITE("unit") {
                 add(scene, QuadList{{{Vec3(0, 0, 2), Vec3(0, 0, -4), Vec3(0, 1, 0)}}}); // the wall, viewed from +x
                 add(scene, QuadList{{{Vec3(-0.008f, 1.02f, 2), Vec3(1, 0.5f, 0), Vec3(0, 0, -4)}}});
                 finish_scene(scene);
-                raster::Settings settings;
+                raster::RasterSettings settings;
                 settings.shadow_map_side = side;
                 Camera camera = look({0.5, 0.975, 0}, {0, 0.975, 0});
                 camera.projection = Camera::Projection::kOrthographic;
@@ -191,7 +191,7 @@ TEST_SUITE("unit") {
                 Scene scene = with_sun(way);
                 add(scene, trough({0, 3, 0}, 2, -0.75 * kPiDouble, -0.25 * kPiDouble, facets));
                 finish_scene(scene);
-                raster::Settings settings;
+                raster::RasterSettings settings;
                 settings.shadow_map_side = 256;
                 const ImageFloat found = arriving(scene, {look({0, 4, 0}, {0, 1, 0}, 40), 100, 100}, settings);
                 CAPTURE(facets);
@@ -207,7 +207,7 @@ TEST_SUITE("unit") {
             Scene scene = with_sun({-1, -1, 0.2f}); // steeper than any slope
             add(scene, relief(grid, 0.2f));
             finish_scene(scene);
-            raster::Settings settings;
+            raster::RasterSettings settings;
             settings.shadow_map_side = 128;
             const ImageFloat found = arriving(scene, {from_above(3, 1.6), 200, 200}, settings);
             const auto specks = std::ranges::count_if(found, [](float lit) { return lit < 0.9f; });
@@ -229,7 +229,7 @@ TEST_SUITE("unit") {
                 add(scene, trough({0, 3, 0}, 2, -0.75 * kPiDouble, -0.25 * kPiDouble, facets));
                 scene.camera = from_above(4, kWidth);
                 finish_scene(scene);
-                raster::Settings settings;
+                raster::RasterSettings settings;
                 settings.shadow_map_side = 256;
                 const ImageFloat found = arriving(scene, {scene.camera, kSide, kSide}, settings);
                 const Outline outline(2, facets, to_sun);

@@ -30,7 +30,7 @@ inline Scene floor_scene(float half = 4) {
 }
 
 /// Returns the fraction of the light that reaches each pixel.
-inline ImageFloat visible(const Scene& scene, const View& view, raster::Settings settings = {}) {
+inline ImageFloat visible(const Scene& scene, const View& view, raster::RasterSettings settings = {}) {
     const ImageRgb shaded = render(scene, view, settings).radiance;
     settings.shadows = false;
     const ImageRgb open = render(scene, view, settings).radiance;

@@ -1,9 +1,9 @@
 // These tests compare shadow maps with shadows of known silhouettes.
 #include "tests/raster/shadow_floor.h"
 
-#include "raster/prepare.h"
-#include "raster/shadow/shadow_map.h"
-#include "raster/shadow/shadows.h"
+#include "raster/raster_scene.h"
+#include "raster/shadows/shadow_map.h"
+#include "raster/shadows/shadows.h"
 
 #include <doctest/doctest.h>
 
@@ -18,7 +18,7 @@ TEST_SUITE("unit") {
         add(scene, Sphere{Vec3(0, 1, 0), 0.4f});
         scene.lights.push_back(PointLight{Vec3(0, 3, 0), Rgb(20)});
         finish_scene(scene);
-        raster::Settings settings;
+        raster::RasterSettings settings;
         settings.shadow_map_side = 1024;
         const double sine = radius / (height - center), edge = height * sine / std::sqrt(1 - sine * sine);
         const double texel = 2 * height / (settings.shadow_map_side / 2 - 8);
@@ -36,7 +36,7 @@ TEST_SUITE("unit") {
             else
                 scene.lights.push_back(SpotLight{Vec3(0, 3, 0), Vec3(0, -1, 0), Rgb(20), 0.8f, 0.7f});
             finish_scene(scene);
-            raster::Settings settings;
+            raster::RasterSettings settings;
             settings.shadow_map_side = 1024;
             const double half = sun ? 0.5 : 0.75;
             const Vec3d middle = sun ? Vec3d(0.4, 0, 0.2) : Vec3d();
@@ -61,7 +61,7 @@ TEST_SUITE("unit") {
                 scene.lights.push_back(PointLight{way * -20.0f, Rgb(20)});
                 scene.lights.push_back(SpotLight{way * -20.0f, way, Rgb(20), 0.99f, 0.98f});
                 finish_scene(scene);
-                raster::Settings settings;
+                raster::RasterSettings settings;
                 settings.shadow_map_side = side;
                 // The sphere's own shadow falls beyond the floor or onto it. The views show the sphere, and the floor
                 // where it is not in shadow.
@@ -84,7 +84,7 @@ TEST_SUITE("unit") {
             add(scene, QuadList{{Quad{middle - u * 0.5f - v * 0.5f, u, v}}});
             scene.lights.push_back(SunLight{way, Rgb(2)});
             finish_scene(scene);
-            raster::Settings settings;
+            raster::RasterSettings settings;
             settings.shadow_map_side = 512;
             for (const Vec3d eye : {Vec3d(4, 3, 4), Vec3d(-4, 3, -4)}) {
                 const View view{look(eye, {0, 0.2, 0}, 30), 160, 120};
@@ -92,7 +92,7 @@ TEST_SUITE("unit") {
                 float brightest = 0;
                 for (const Rgb& c : shaded) brightest = max(brightest, c.g);
                 CHECK(brightest < 1e-3); // at grazing angles below a thousandth, filters reach past the roof
-                raster::Settings open = settings;
+                raster::RasterSettings open = settings;
                 open.shadows = false;
                 CHECK(std::ranges::count_if(render(scene, view, open).radiance, [](Rgb c) { return c.g > 0; }) > 5000);
             }
@@ -104,7 +104,7 @@ TEST_SUITE("unit") {
         add(scene, QuadList{box_quads(Vec3(-0.5f, 0, -0.5f), Vec3(0.5f, 1, 0.5f))});
         scene.lights.push_back(SunLight{normalize(Vec3(1, -1, 0)), Rgb(2)}); // the shadow extends to x = 1.5
         finish_scene(scene);
-        raster::Settings settings;
+        raster::RasterSettings settings;
         settings.shadow_map_side = 1024;
         const double texel = 8.0 / settings.shadow_map_side;
         const ImageFloat found = visible(scene, over_floor(2), settings);
@@ -129,10 +129,10 @@ TEST_SUITE("unit") {
             scene.lights.push_back(
                 SpotLight{Vec3(0, 3 + 0.1f * static_cast<float>(i), 0), Vec3(0, -1, 0), Rgb(1), 0.8f, 0.7f});
         finish_scene(scene);
-        raster::Settings settings;
+        raster::RasterSettings settings;
         for (const bool moving : {false, true}) {
             settings.samples_per_pixel = moving ? 2 : 1;
-            const raster::Prepared prepared = raster::prepare(scene, settings);
+            const raster::RasterScene prepared = raster::prepare(scene, settings);
             const raster::Shadows& shadows = *prepared.data().shadows;
             CHECK(shadows.moments() == (moving ? raster::Shadows::kMoments : 1));
             CHECK(shadows.memory_bytes() > 100 << 20);
@@ -152,7 +152,7 @@ TEST_SUITE("unit") {
         ball.to_world_end = translation(Vec3(1, 1, 0));
         scene.lights.push_back(SunLight{normalize(Vec3(0.1f, -1, 0.1f)), Rgb(2)});
         finish_scene(scene);
-        raster::Settings settings;
+        raster::RasterSettings settings;
         settings.samples_per_pixel = 16;
         View from_above = over_floor(3);
         // In the middle of its path the sphere covers its own shadow except for the light's slant. Far beside it
@@ -181,7 +181,7 @@ TEST_SUITE("unit") {
         scene.lights.push_back(PointLight{Vec3(1, 2, 1), Rgb(3)});
         scene.lights.push_back(SunLight{normalize(Vec3(1, -1, 0)), Rgb(2)});
         finish_scene(scene);
-        raster::Settings settings;
+        raster::RasterSettings settings;
         settings.shadow_map_side = 256;
         settings.threads = 1;
         const Rendering one = render(scene, over_floor(2), settings);

@@ -59,11 +59,11 @@ struct Shimmer {
     double change = 0, due = 0; ///< mean change of a pixel from frame to frame: measured, and in the finer images
     double worst = 0;           ///< largest excess of a pixel's change
 };
-Shimmer shimmer(const Scene& scene, const raster::Settings& settings) {
-    raster::Settings fine = settings;
+Shimmer shimmer(const Scene& scene, const raster::RasterSettings& settings) {
+    raster::RasterSettings fine = settings;
     fine.multisamples = 0, fine.samples_per_pixel = 4;
     const Image<std::uint8_t> counts = silhouettes(scene);
-    const raster::Prepared prepared = raster::prepare(scene, settings), prepared_fine = raster::prepare(scene, fine);
+    const raster::RasterScene prepared = raster::prepare(scene, settings), prepared_fine = raster::prepare(scene, fine);
     Shimmer result;
     int pixels = 0;
     ImageRgb last, last_due;
@@ -85,9 +85,9 @@ Shimmer shimmer(const Scene& scene, const raster::Settings& settings) {
     return result;
 }
 
-raster::Settings only(bool direct, bool environment, bool reflection, int multisamples) {
-    raster::Settings settings;
-    settings.parts = {.emission = false, .direct = direct, .environment = environment, .reflection = reflection};
+raster::RasterSettings only(bool direct, bool environment, bool reflection, int multisamples) {
+    raster::RasterSettings settings;
+    settings.components = {.emission = false, .direct = direct, .environment = environment, .reflection = reflection};
     settings.multisamples = multisamples;
     if (multisamples == 0) settings.samples_per_pixel = 16;
     return settings;
@@ -102,7 +102,7 @@ TEST_SUITE("image") {
         struct Case {
             std::string name;
             const Scene& scene;
-            raster::Settings settings;
+            raster::RasterSettings settings;
             double worst; ///< bound for a pixel that changes by light of radiance 1
         };
         const std::array<Case, 5> cases{{{"soft shadows", matt, only(true, false, false, 0), 0.1},
@@ -119,7 +119,8 @@ TEST_SUITE("image") {
             CHECK(found.change < 1.2 * found.due + 1e-3);
             CHECK(found.worst < c.worst);
         }
-        raster::Settings hard = only(true, true, false, 0); // without smoothing: the measure must detect the shimmer
+        raster::RasterSettings hard =
+            only(true, true, false, 0); // without smoothing: the measure must detect the shimmer
         hard.samples_per_pixel = 1;
         const Shimmer found = shimmer(matt, hard);
         CHECK(found.worst > 0.6);

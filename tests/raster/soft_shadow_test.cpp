@@ -1,7 +1,7 @@
 // These tests compare soft shadows with the visible fraction of a light.
 #include "tests/raster/shadow_floor.h"
 
-#include "common/light/lambert.h"
+#include "common/light/form_factor.h"
 
 #include <doctest/doctest.h>
 
@@ -20,7 +20,7 @@ TEST_SUITE("unit") {
         add(scene, QuadList{{{Vec3(-kSide, kAbove, kSide), Vec3(2 * kSide, 0, 0), Vec3(0, 0, -2 * kSide)}}});
         finish_scene(scene);
         for (const int cells : {1, 2, 4}) {
-            raster::Settings settings;
+            raster::RasterSettings settings;
             settings.shadow_cells = cells;
             settings.shadow_map_side = 1024;
             const ImageFloat found = visible(scene, over_floor(), settings);
@@ -80,7 +80,7 @@ TEST_SUITE("unit") {
                 view.camera.eye *= size, view.camera.height *= size;
                 scene.camera = view.camera;
                 finish_scene(scene);
-                raster::Settings settings;
+                raster::RasterSettings settings;
                 settings.shadow_map_side = 1024;
                 settings.shadow_cells = 1;
                 const ImageFloat found = visible(scene, view, settings);
@@ -161,7 +161,7 @@ TEST_SUITE("unit") {
         add(scene, Sphere{Vec3(0.9f, 0.3f, 0), 0.3f});
         add(scene, QuadList{box_quads(Vec3(-1.2f, 0, -0.3f), Vec3(-0.6f, 0.6f, 0.3f))});
         finish_scene(scene);
-        raster::Settings settings;
+        raster::RasterSettings settings;
         settings.shadow_map_side = 1024;
         for (const int spp : {1, 4}) {
             settings.samples_per_pixel = spp;

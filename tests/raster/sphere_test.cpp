@@ -1,4 +1,4 @@
-// These tests compare the screen bounds of spheres and ellipsoids with a ray for every pixel.
+// These tests compare the G-buffer bounds of spheres and ellipsoids with a ray for every pixel.
 #include "raster/geometry/sphere.h"
 
 #include <doctest/doctest.h>
@@ -36,7 +36,7 @@ bool beyond_near(const Case& c, double near) {
 
 void check_bounds(const Case& c) {
     const View view{c.camera, 64, 48};
-    const Pinhole pinhole = CameraModel(view).through();
+    const Pinhole pinhole = CameraModel(view).pinhole();
     const Mat4d to_object = inverse_affine(c.to_world);
     const Viewport viewport{view.width, view.height, pinhole.near};
     const PixelRect bounds = sphere_bounds(c.sphere, pinhole.world_to_pixel * c.to_world, viewport);
@@ -153,7 +153,7 @@ TEST_SUITE("unit") {
             Camera c = camera(i % 3 == 0 ? Camera::Projection::kOrthographic : Camera::Projection::kPerspective,
                               i % 4 == 0 ? 1.5 : 1e-3);
             c.eye = c.eye + random.vector(1);
-            const Pinhole pinhole = CameraModel({c, 64, 48}).through();
+            const Pinhole pinhole = CameraModel({c, 64, 48}).pinhole();
             const double size = std::pow(10, random(-6, 6));
             DrawSphere sphere;
             // The sphere is around the line of sight or around the eye.
@@ -186,7 +186,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("what lies behind the eye or beside the picture has empty bounds") {
         const View view{camera(Camera::Projection::kPerspective, 1e-3), 64, 48};
-        const Pinhole pinhole = CameraModel(view).through();
+        const Pinhole pinhole = CameraModel(view).pinhole();
         const Viewport viewport{64, 48, pinhole.near};
         CHECK(sphere_bounds({Vec3(0, 0, 6), 1.9f}, pinhole.world_to_pixel, viewport).empty());
         CHECK(sphere_bounds({Vec3(50, 0, 0), 1}, pinhole.world_to_pixel, viewport).empty());

@@ -4,7 +4,7 @@
 // comparisons therefore fails by chance once in 5 times. The seeds are fixed. If a change of the random numbers makes
 // one comparison fail, a different seed shows whether that was chance.
 #include "common/light/environment.h"
-#include "common/light/lambert.h"
+#include "common/light/form_factor.h"
 #include "common/sampling/sampler.h"
 #include "tests/raytrace/estimates.h"
 #include "tests/raytrace/scene_builder.h"
@@ -141,7 +141,7 @@ double albedo_by_quadrature(const Bsdf& bsdf, Vec3 wo) {
 }
 
 Estimate rendered(const Scene& scene, Integrator integrator) {
-    Settings settings;
+    PathTracerSettings settings;
     settings.integrator = integrator;
     settings.sampler = SamplerKind::kIndependent;
     settings.samples_per_pixel = kSamples / (kSeeds * kSide * kSide);

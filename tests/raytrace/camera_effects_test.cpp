@@ -9,8 +9,8 @@ using namespace duet::raytrace;
 
 namespace {
 
-Settings emission_only(int samples) {
-    Settings settings;
+PathTracerSettings emission_only(int samples) {
+    PathTracerSettings settings;
     settings.max_depth = 0;
     settings.samples_per_pixel = samples;
     return settings;
@@ -65,7 +65,7 @@ TEST_SUITE("unit") {
         Control control;
         View view{scene.camera, 4, 4};
         view.camera.focus_distance = 2;
-        const Settings settings = emission_only(64);
+        const PathTracerSettings settings = emission_only(64);
         CHECK(mean_of(render(prepare(scene, settings), view, settings, control).radiance).g == 0);
     }
 
@@ -74,7 +74,7 @@ TEST_SUITE("unit") {
         builder.add(Sphere{{0, 0, 0}, 1}, builder.material(Diffuse{}));
         builder.scene.environment = SkyEnvironment{};
         Scene scene = builder.finish();
-        Settings settings;
+        PathTracerSettings settings;
         settings.samples_per_pixel = 4;
         const Rendering without = render_scene(scene, 16, settings);
         scene.needs.motion = true; // deliberately wrong, so that times are sampled

@@ -68,7 +68,8 @@ Image<double> sphere_truth() {
 }
 
 // Returns the mean squared error over pixels and seeds.
-double squared_error(const Prepared& prepared, const Scene& scene, const Image<double>& truth, Settings settings) {
+double squared_error(const PathTracerScene& prepared, const Scene& scene, const Image<double>& truth,
+                     PathTracerSettings settings) {
     constexpr int kSeeds = 2;
     double sum = 0;
     for (int seed = 1; seed <= kSeeds; ++seed) {
@@ -92,8 +93,8 @@ double slope(const std::vector<double>& log_errors) {
     return across / along / std::log(4.0);
 }
 
-void check_slope(const std::string& name, const Prepared& prepared, const Scene& scene, const Image<double>& truth,
-                 Settings settings) {
+void check_slope(const std::string& name, const PathTracerScene& prepared, const Scene& scene,
+                 const Image<double>& truth, PathTracerSettings settings) {
     std::vector<double> log_errors; // of the root mean squared error
     for (int spp = 16; spp <= 65536; spp *= 4) {
         settings.samples_per_pixel = spp;
@@ -117,14 +118,14 @@ TEST_SUITE("statistical") {
     TEST_CASE("direct light: every sampler, estimator and schedule converges to Lambert's formula") {
         const Scene scene = lit_floor();
         const Image<double> truth = floor_truth();
-        const Prepared prepared = prepare(scene, {});
+        const PathTracerScene prepared = prepare(scene, {});
         for (const SamplerKind sampler :
              {SamplerKind::kSobol, SamplerKind::kBlueNoise, SamplerKind::kStratified, SamplerKind::kIndependent}) {
-            Settings settings;
+            PathTracerSettings settings;
             settings.sampler = sampler;
             check_slope(message("path, ", sampler_name(sampler)), prepared, scene, truth, settings);
         }
-        Settings settings;
+        PathTracerSettings settings;
         settings.integrator = Integrator::kNaive;
         check_slope("naive, sobol", prepared, scene, truth, settings);
         settings.integrator = Integrator::kPath;
@@ -135,9 +136,9 @@ TEST_SUITE("statistical") {
     TEST_CASE("light of many bounces, ended by roulette, converges to the integrating sphere's") {
         const Scene scene = integrating_sphere();
         const Image<double> truth = sphere_truth();
-        const Prepared prepared = prepare(scene, {});
+        const PathTracerScene prepared = prepare(scene, {});
         for (const SamplerKind sampler : {SamplerKind::kSobol, SamplerKind::kIndependent}) {
-            Settings settings;
+            PathTracerSettings settings;
             settings.sampler = sampler;
             check_slope(message("roulette, ", sampler_name(sampler)), prepared, scene, truth, settings);
         }

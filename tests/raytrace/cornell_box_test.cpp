@@ -27,7 +27,7 @@ TEST_SUITE("statistical") {
     TEST_CASE("Cornell box, 512 x 512 at 35 degrees, 1024 samples: the published means") {
         Scene scene = load_scene(DUET_SOURCE_DIR "/models/cornell.json");
         scene.camera.fov_degrees = 35;
-        raytrace::Settings settings;
+        raytrace::PathTracerSettings settings;
         settings.samples_per_pixel = 1024;
         settings.max_depth = 64;
         Control control;

@@ -1,5 +1,5 @@
 // These tests compare direct light with closed forms.
-#include "common/light/lambert.h"
+#include "common/light/form_factor.h"
 #include "tests/raytrace/estimates.h"
 #include "tests/raytrace/scene_builder.h"
 
@@ -36,8 +36,8 @@ double closed_form(const Scene& scene) {
     return irradiance * static_cast<double>(kAlbedo) / kPiDouble;
 }
 
-Settings with(Integrator integrator, int samples) {
-    Settings settings;
+PathTracerSettings with(Integrator integrator, int samples) {
+    PathTracerSettings settings;
     settings.integrator = integrator;
     settings.samples_per_pixel = samples;
     settings.max_depth = 1;
@@ -140,7 +140,7 @@ TEST_SUITE("unit") {
         builder.scene.environment = ConstantEnvironment{Rgb(1.0f)};
         const Scene scene = builder.finish();
         for (const Integrator integrator : {Integrator::kPath, Integrator::kNaive, Integrator::kUnshadowed}) {
-            Settings settings = with(integrator, 4);
+            PathTracerSettings settings = with(integrator, 4);
             settings.environment = false;
             View view{scene.camera, 8, 8};
             for (const double look : {0.0, 1.0}) { // at the floor, and at the sky

@@ -14,7 +14,7 @@ inline Rgbd mean_of(const ImageRgb& image) {
     return sum / static_cast<double>(image.size());
 }
 
-inline Rendering render_scene(const Scene& scene, int size, const Settings& settings) {
+inline Rendering render_scene(const Scene& scene, int size, const PathTracerSettings& settings) {
     Control control;
     return render(prepare(scene, settings), View{scene.camera, size, size}, settings, control);
 }
@@ -23,7 +23,7 @@ inline Rendering render_scene(const Scene& scene, int size, const Settings& sett
 struct Estimate {
     double mean = 0, error = 0;
 };
-inline Estimate estimate(const Scene& scene, int size, Settings settings, int seeds = 10) {
+inline Estimate estimate(const Scene& scene, int size, PathTracerSettings settings, int seeds = 10) {
     std::vector<double> means;
     for (int seed = 0; seed < seeds; ++seed) {
         settings.seed = static_cast<std::uint64_t>(seed + 1);

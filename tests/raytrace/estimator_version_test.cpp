@@ -21,7 +21,7 @@ TEST_SUITE("statistical") {
         for (const Known& known :
              {Known{"everything.json", {0.27027, 1.1e-4}}, Known{"spheres.json", {0.33952, 2e-5}}}) {
             const Scene scene = load_scene(std::filesystem::path(DUET_SOURCE_DIR) / "models" / known.scene);
-            Settings settings;
+            PathTracerSettings settings;
             settings.samples_per_pixel = 256;
             const Estimate now = estimate(scene, 16, settings);
             CAPTURE(now.mean);

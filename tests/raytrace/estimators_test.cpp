@@ -53,7 +53,7 @@ Scene under_a_picture() {
 
 TEST_SUITE("unit") {
     TEST_CASE("an even sky has no shadow rays, a picture with a sun has") {
-        Settings settings;
+        PathTracerSettings settings;
         settings.samples_per_pixel = 4;
         const Rendering picture = render_scene(under_a_picture(), 16, settings);
         CHECK(picture.statistics.shadow_rays > 100);
@@ -64,7 +64,7 @@ TEST_SUITE("unit") {
         const Rendering even = render_scene(plain, 16, settings);
         CHECK(even.statistics.shadow_rays == 0);
         bool told = false;
-        for (const Skipped& s : even.statistics.skipped) told |= s.what == "light samples";
+        for (const SkippedWork& s : even.statistics.skipped) told |= s.what == "light samples";
         CHECK(told);
     }
 
@@ -75,7 +75,7 @@ TEST_SUITE("unit") {
         builder.scene.camera.eye = {0, 0, 2};
         builder.scene.camera.look_at = {0, 0, 0};
         const Scene scene = builder.finish();
-        Settings settings;
+        PathTracerSettings settings;
         settings.samples_per_pixel = 256;
         settings.max_depth = 0;
         const ImageRgb box = render_scene(scene, 8, settings).radiance;
@@ -99,7 +99,7 @@ TEST_SUITE("statistical") {
     TEST_CASE("light samples of many lamps, and of an environment's peaks, give what chance finds") {
         const std::pair<Scene, int> scenes[] = {{many_lamps(), 128}, {under_a_picture(), 256}};
         for (const auto& [scene, naive_samples] : scenes) {
-            Settings settings;
+            PathTracerSettings settings;
             settings.samples_per_pixel = 32;
             settings.max_depth = 4;
             const Estimate path = estimate(scene, 24, settings);
@@ -115,7 +115,7 @@ TEST_SUITE("statistical") {
 
     TEST_CASE("blue noise estimates what other samplers do") {
         const Scene scene = many_lamps();
-        Settings settings;
+        PathTracerSettings settings;
         settings.samples_per_pixel = 16;
         settings.max_depth = 4;
         const Estimate sobol = estimate(scene, 24, settings);

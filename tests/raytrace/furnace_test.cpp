@@ -79,7 +79,7 @@ TEST_SUITE("unit") {
     TEST_CASE("naive path tracing of lossless surfaces in a constant environment: 1 without variance") {
         for (const Case& c : lossless_cases()) {
             CAPTURE(c.name);
-            Settings settings;
+            PathTracerSettings settings;
             settings.integrator = Integrator::kNaive;
             settings.russian_roulette = false;
             settings.max_depth = 100000;
@@ -94,7 +94,7 @@ TEST_SUITE("unit") {
         for (const Case& c : lossless_cases()) {
             if (c.diffuse) continue;
             CAPTURE(c.name);
-            Settings settings;
+            PathTracerSettings settings;
             settings.samples_per_pixel = 4;
             settings.max_depth = 100000;
             settings.russian_roulette = false;
@@ -104,7 +104,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("in a glowing cavity each scattering event adds its power of the albedo: the depth limit counts them") {
         const Scene scene = glowing_cavity(0.5f);
-        Settings settings;
+        PathTracerSettings settings;
         settings.integrator = Integrator::kNaive;
         settings.russian_roulette = false;
         settings.samples_per_pixel = 2;
@@ -132,7 +132,7 @@ TEST_SUITE("statistical") {
         for (const Case& c : cases) {
             if (!c.diffuse) continue;
             CAPTURE(c.name);
-            Settings settings;
+            PathTracerSettings settings;
             settings.samples_per_pixel = 64;
             settings.aovs.hit = true;
             const Rendering r = render_scene(furnace(c), 32, settings);
@@ -161,7 +161,7 @@ TEST_SUITE("statistical") {
              {Sum{Integrator::kPath, 0, 1.0}, Sum{Integrator::kPath, 1, 1.5}, Sum{Integrator::kPath, 2, 1.75},
               Sum{Integrator::kPath, 3, 1.875}, Sum{Integrator::kPath, 64, 2.0}, Sum{Integrator::kDirect, 64, 1.5}}) {
             CAPTURE(sum.depth);
-            Settings settings;
+            PathTracerSettings settings;
             settings.integrator = sum.integrator;
             settings.max_depth = sum.depth;
             settings.samples_per_pixel = 16;

@@ -46,7 +46,7 @@ TEST_SUITE("statistical") {
                                          Material(pane), Material(Coated{{Rgb(0.7f)}, 0.4f}), Material(paint)}) {
             CAPTURE(material.index());
             const Scene scene = ball(material);
-            Settings settings;
+            PathTracerSettings settings;
             settings.samples_per_pixel = 64;
             settings.max_depth = 12;
             const Estimate path = estimate(scene, 16, settings);

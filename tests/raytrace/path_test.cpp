@@ -55,9 +55,9 @@ TEST_SUITE("unit") {
 
     TEST_CASE("the density of a light sample is what its hit is weighed with") {
         const Scene scene = corner(false);
-        Settings settings;
-        const Prepared prepared = prepare(scene, settings);
-        const LightChooser& lights = prepared.data().lights;
+        PathTracerSettings settings;
+        const PathTracerScene prepared = prepare(scene, settings);
+        const LightSampler& lights = prepared.data().lights;
         Sampler sampler(SamplerKind::kIndependent, 1, 1);
         int compared = 0;
         for (std::uint32_t i = 0; i < 20000; ++i) {
@@ -65,18 +65,18 @@ TEST_SUITE("unit") {
             const Vec3 p(-0.9f, 0, 1.4f);
             const LightReceiver receiver{p, i % 2 == 0 ? Vec3(0, 1, 0) : Vec3()};
             const float choice = sampler.get_1d();
-            const auto arrival = sample_arrival(scene, lights, receiver, choice, sampler.get_2d());
-            if (!arrival) continue;
-            if (arrival->light < 0) {
-                CHECK(arrival_pdf(scene.environment, lights, receiver, arrival->wi) ==
-                      doctest::Approx(arrival->pdf).epsilon(1e-3));
+            const auto light_sample = sample_li(scene, lights, receiver, choice, sampler.get_2d());
+            if (!light_sample) continue;
+            if (light_sample->light < 0) {
+                CHECK(pdf_li(scene.environment, lights, receiver, light_sample->wi) ==
+                      doctest::Approx(light_sample->pdf).epsilon(1e-3));
                 continue;
             }
-            const Ray ray{p, arrival->wi};
+            const Ray ray{p, light_sample->wi};
             const Hit hit = trace(prepared, ray);
-            if (!hit.valid() || hit.t < arrival->distance * 0.999f) continue;
-            CHECK(arrival_pdf(scene, lights, receiver, surface_point(scene, ray, hit)) ==
-                  doctest::Approx(arrival->pdf).epsilon(2e-2)); // a sphere's density changes quickly near its rim
+            if (!hit.valid() || hit.t < light_sample->distance * 0.999f) continue;
+            CHECK(pdf_li(scene, lights, receiver, surface_point(scene, ray, hit)) ==
+                  doctest::Approx(light_sample->pdf).epsilon(2e-2)); // a sphere's density changes quickly near its rim
             ++compared;
         }
         CHECK(compared > 500);
@@ -84,7 +84,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("rays are counted, and sent as far as the depth allows") {
         const Scene scene = corner(false);
-        Settings settings;
+        PathTracerSettings settings;
         settings.samples_per_pixel = 1;
         settings.max_depth = 0;
         RenderStatistics statistics = render_scene(scene, 16, settings).statistics;
@@ -108,7 +108,7 @@ TEST_SUITE("statistical") {
         for (const bool moving : {false, true}) {
             CAPTURE(moving);
             const Scene scene = corner(moving);
-            Settings settings;
+            PathTracerSettings settings;
             settings.samples_per_pixel = 32;
             settings.max_depth = 8;
             const Estimate path = estimate(scene, 24, settings);
@@ -123,7 +123,7 @@ TEST_SUITE("statistical") {
 
     TEST_CASE("Russian roulette changes the cost, not the mean") {
         const Scene scene = corner(false);
-        Settings settings;
+        PathTracerSettings settings;
         settings.samples_per_pixel = 64;
         const Estimate with = estimate(scene, 24, settings);
         const auto rays_with = render_scene(scene, 24, settings).statistics.indirect_rays;
@@ -137,7 +137,7 @@ TEST_SUITE("statistical") {
 
     TEST_CASE("all samplers estimate the same") {
         const Scene scene = corner(false);
-        Settings settings;
+        PathTracerSettings settings;
         settings.samples_per_pixel = 32;
         settings.max_depth = 6;
         const Estimate sobol = estimate(scene, 24, settings);

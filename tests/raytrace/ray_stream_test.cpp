@@ -1,6 +1,6 @@
 // These tests stream rays through small trees of spheres. The hits must equal those of single rays, bit for bit, and
 // rays are traced singly where that is faster.
-#include "raytrace/pass.h"
+#include "raytrace/render_pass.h"
 
 #include "common/sampling/sampler.h"
 #include "common/sampling/warp.h"
@@ -29,15 +29,15 @@ constexpr bool kStreams = false;
 constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN(),
                 kInfinite = std::numeric_limits<float>::infinity();
 
-struct Place {
+struct Placement {
     float scale = 1;
     Vec3 at{0, 0, 0};
     Vec3 operator()(Vec3 p) const { return p * scale + at; }
 };
 
-class Numbers {
+class RandomNumbers {
 public:
-    explicit Numbers(int stream) : sampler_(SamplerKind::kIndependent, 11, 1), stream_(stream) {}
+    explicit RandomNumbers(int stream) : sampler_(SamplerKind::kIndependent, 11, 1), stream_(stream) {}
     void start(int i) { sampler_.start(i, stream_, 0); }
     float one() { return sampler_.get_1d(); }
     Vec2 two() { return sampler_.get_2d(); }
@@ -53,8 +53,8 @@ private:
 };
 
 // Returns small, tiny and giant spheres, some of them duplicates and some concentric.
-std::vector<Sphere> spheres_of_all_sizes(int count, const Place& place, int seed) {
-    Numbers numbers(seed);
+std::vector<Sphere> spheres_of_all_sizes(int count, const Placement& place, int seed) {
+    RandomNumbers numbers(seed);
     std::vector<Sphere> spheres;
     for (int i = 0; i < count; ++i) {
         numbers.start(i);
@@ -73,8 +73,8 @@ std::vector<Sphere> spheres_of_all_sizes(int count, const Place& place, int seed
 
 // Returns rays from any point and from the spheres, many of them toward other spheres, with every kind of float value
 // that a ray may have.
-std::vector<Ray> rays_among(const std::vector<Sphere>& spheres, int count, const Place& place, int seed) {
-    Numbers numbers(seed);
+std::vector<Ray> rays_among(const std::vector<Sphere>& spheres, int count, const Placement& place, int seed) {
+    RandomNumbers numbers(seed);
     std::vector<Ray> rays;
     for (int i = 0; i < count; ++i) {
         numbers.start(i);
@@ -121,7 +121,7 @@ int check_hits(const Accelerator& accelerator, const std::vector<Ray>& rays, con
     stale.object = 5;
     stale.t = 1e-9f;
     std::vector<Hit> hits(rays.size(), stale);
-    accelerator.closest_of_scattered(rays, which, hits);
+    accelerator.closest_of_incoherent(rays, which, hits);
     std::vector<Hit> expected(rays.size(), stale);
     int found = 0;
     for (const std::uint32_t i : which) {
@@ -143,7 +143,7 @@ void add_all(SceneBuilder& builder, const std::vector<Sphere>& spheres, std::uin
 Scene cloud(int count, float radius, bool ground) {
     SceneBuilder builder;
     const std::uint32_t white = builder.material(Diffuse{{Rgb(0.7f)}});
-    Numbers numbers(3);
+    RandomNumbers numbers(3);
     for (int i = 0; i < count; ++i) {
         numbers.start(i);
         builder.add(Sphere{numbers.in_cube() * 0.5f, radius}, white);
@@ -157,15 +157,15 @@ Scene cloud(int count, float radius, bool ground) {
 TEST_SUITE("unit") {
 
     TEST_CASE("rays that stream through spheres hit what each alone does, at every scale and far from the origin") {
-        const Place places[] = {{1, {}},
-                                {1e-6f, {}},
-                                {1e6f, {}},
-                                {1e-3f, {1, 2, 3}},
-                                {1, {1e4f, -1e4f, 5e3f}},
-                                {1e-6f, {3, -3, 1.5f}},
-                                {1e3f, {1e7f, -1e7f, 5e6f}}};
+        const Placement places[] = {{1, {}},
+                                    {1e-6f, {}},
+                                    {1e6f, {}},
+                                    {1e-3f, {1, 2, 3}},
+                                    {1, {1e4f, -1e4f, 5e3f}},
+                                    {1e-6f, {3, -3, 1.5f}},
+                                    {1e3f, {1e7f, -1e7f, 5e6f}}};
         int seed = 0, streams = 0;
-        for (const Place& place : places)
+        for (const Placement& place : places)
             for (const int count : {40, 150, 300}) {
                 CAPTURE(place.scale);
                 CAPTURE(count);
@@ -178,9 +178,9 @@ TEST_SUITE("unit") {
                 if (seed % 2 == 0) builder.add(quad(place({-1, -1, 0}), {s, 0, 0}, {0, s, 0}), white);
                 if (seed % 3 == 0) builder.add(icosphere(0, 0.4f * s, place.at, true), white);
                 const Scene scene = builder.finish();
-                const Prepared prepared = prepare(scene, Settings());
+                const PathTracerScene prepared = prepare(scene, PathTracerSettings());
                 const Accelerator& accelerator = prepared.data().accelerator;
-                if (!accelerator.gathers_scattered()) continue;
+                if (!accelerator.batches_incoherent_rays()) continue;
                 streams += !accelerator.few_primitives();
                 const auto rays = rays_among(spheres, 3000, place, seed + 100);
                 CHECK(check_hits(accelerator, rays, every(rays.size())) > 300);
@@ -194,9 +194,9 @@ TEST_SUITE("unit") {
         SceneBuilder builder;
         add_all(builder, spheres, builder.material(Diffuse{{Rgb(0.7f)}}));
         const Scene scene = builder.finish();
-        const Prepared prepared = prepare(scene, Settings());
+        const PathTracerScene prepared = prepare(scene, PathTracerSettings());
         const Accelerator& accelerator = prepared.data().accelerator;
-        REQUIRE(accelerator.gathers_scattered());
+        REQUIRE(accelerator.batches_incoherent_rays());
         int found = 0;
         for (int count = 0; count < 300; count = count < 70 ? count + 1 : 2 * count) {
             CAPTURE(count);
@@ -221,8 +221,8 @@ TEST_SUITE("unit") {
         for (const float z : {-0.6f, 0.0f, 0.6f}) builder.add(quad(Vec3(-2, -2, z), {4, 0, 0}, {0, 4, 0}), fence);
         const Scene scene = builder.finish();
         REQUIRE(scene.needs.alpha);
-        const Prepared prepared = prepare(scene, Settings());
-        REQUIRE(prepared.data().accelerator.gathers_scattered());
+        const PathTracerScene prepared = prepare(scene, PathTracerSettings());
+        REQUIRE(prepared.data().accelerator.batches_incoherent_rays());
         const auto rays = rays_among(spheres, 2000, {}, 8);
         CHECK(check_hits(prepared.data().accelerator, rays, every(rays.size())) > 300);
     }
@@ -230,7 +230,7 @@ TEST_SUITE("unit") {
     TEST_CASE("rays stream where they are expected to meet few leaves, whatever the ground") {
         if (!kStreams) return;
         const auto streams = [](const Scene& scene) {
-            return streamable(prepare(scene, Settings()).data().accelerator.world());
+            return streamable(prepare(scene, PathTracerSettings()).data().accelerator.world());
         };
         for (const bool ground : {false, true}) {
             CHECK(streams(cloud(400, 0.02f, ground)));

@@ -1,6 +1,6 @@
 // These tests check the render loop: the same bits for any thread count, limits, interruption, AOVs and statistics.
 #include "common/system/error.h"
-#include "raytrace/pass.h"
+#include "raytrace/render_pass.h"
 #include "tests/raytrace/estimates.h"
 #include "tests/raytrace/scene_builder.h"
 
@@ -27,7 +27,7 @@ Scene small_scene() {
     return builder.finish();
 }
 
-Rendering rendered(const Scene& scene, const Settings& settings, Control control = {}) {
+Rendering rendered(const Scene& scene, const PathTracerSettings& settings, Control control = {}) {
     return render(prepare(scene, settings), View{scene.camera, 40, 30}, settings, control);
 }
 
@@ -37,8 +37,8 @@ AovSet all_aovs() {
     return set;
 }
 
-template <typename T> bool has(const std::vector<Skipped>& list, const T& what) {
-    return std::any_of(list.begin(), list.end(), [&](const Skipped& s) { return s.what == what; });
+template <typename T> bool has(const std::vector<SkippedWork>& list, const T& what) {
+    return std::any_of(list.begin(), list.end(), [&](const SkippedWork& s) { return s.what == what; });
 }
 
 } // namespace
@@ -47,7 +47,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("the same bits for 1, 2 and 7 threads") {
         const Scene scene = small_scene();
-        Settings settings;
+        PathTracerSettings settings;
         settings.samples_per_pixel = 20;
         settings.aovs = all_aovs();
         settings.threads = 1;
@@ -68,7 +68,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("the same bits however the samples are divided into passes; another seed gives others") {
         const Scene scene = small_scene();
-        Settings settings;
+        PathTracerSettings settings;
         settings.samples_per_pixel = 12;
         const Rendering plain = rendered(scene, settings);
         CHECK(plain.statistics.passes == 1);
@@ -82,7 +82,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("a limit of time or error ends the render between passes") {
         const Scene scene = small_scene();
-        Settings settings;
+        PathTracerSettings settings;
         settings.samples_per_pixel = 1 << 30;
         settings.time_limit = 0.05;
         const Rendering timed = rendered(scene, settings);
@@ -99,7 +99,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("stopped in the middle it returns what is done") {
         const Scene scene = small_scene();
-        Settings settings;
+        PathTracerSettings settings;
         settings.samples_per_pixel = 160;
         settings.threads = 1;
         settings.aovs.samples = true;
@@ -136,7 +136,7 @@ TEST_SUITE("unit") {
     TEST_CASE("progress never decreases and ends at 1") {
         const Scene scene = small_scene();
         for (const double error_limit : {0.0, 0.01}) {
-            Settings settings;
+            PathTracerSettings settings;
             settings.samples_per_pixel = 24;
             settings.error_limit = error_limit;
             double last = 0;
@@ -160,13 +160,13 @@ TEST_SUITE("unit") {
         builder.scene.camera.look_at = {0, 0, -1};
         builder.scene.camera.fov_degrees = 60;
         const Scene scene = builder.finish();
-        Settings settings;
+        PathTracerSettings settings;
         settings.samples_per_pixel = 4;
         settings.sampler = SamplerKind::kCenter;
         settings.aovs = all_aovs();
         Control control;
         View view{scene.camera, 8, 8};
-        const Prepared prepared = prepare(scene, settings);
+        const PathTracerScene prepared = prepare(scene, settings);
         Rendering rendering = render(prepared, view, settings, control);
         const CameraModel camera(view);
         for (int y = 0; y < 8; ++y)
@@ -204,7 +204,7 @@ TEST_SUITE("unit") {
         builder.scene.camera.look_at = {0, 0, -1};
         builder.scene.camera.near = 1.5;
         const Scene scene = builder.finish();
-        Settings settings;
+        PathTracerSettings settings;
         settings.samples_per_pixel = 1;
         for (const Rgb& pixel : render_scene(scene, 8, settings).radiance) CHECK(pixel.g == 2);
     }
@@ -214,7 +214,7 @@ TEST_SUITE("unit") {
         builder.add(quad({-5, -5, -1}, {10, 0, 0}, {0, 10, 0}), builder.material(Diffuse{{Rgb(0.2f, 0.4f, 0.6f)}}));
         builder.scene.camera.eye = {0, 0, 1};
         const Scene scene = builder.finish();
-        Settings settings;
+        PathTracerSettings settings;
         settings.samples_per_pixel = 1;
         settings.integrator = integrator("normal");
         CHECK(render_scene(scene, 4, settings).radiance(1, 1).b == doctest::Approx(1));
@@ -230,7 +230,7 @@ TEST_SUITE("unit") {
         builder.add(Sphere{{0, 0, 0}, 1}, builder.material(Metal{{Rgb(0.9f)}, 0}));
         builder.add(Sphere{{0, 3, 0}, 1}, builder.material(Emissive{Rgb(1.0f)}));
         const Scene lit = builder.finish();
-        Settings settings;
+        PathTracerSettings settings;
         settings.samples_per_pixel = 4;
         const Rendering with_lamp = render_scene(lit, 16, settings);
         for (const auto* what : {"textures", "lens samples", "time samples", "environment", "instance transforms"})
@@ -258,7 +258,7 @@ TEST_SUITE("unit") {
             builder.scene.textures.textures.push_back(CheckerTexture{Rgb(1.0f), Rgb(1.0f), 1, true});
             builder.add(Sphere{{0, 0, 0}, 1}, builder.material(Diffuse{{Rgb(0.3f, 0.5f, 0.7f), texture}}));
             builder.scene.environment = SkyEnvironment{};
-            Settings settings;
+            PathTracerSettings settings;
             settings.samples_per_pixel = 4;
             return render_scene(builder.finish(), 16, settings);
         };
@@ -272,7 +272,7 @@ TEST_SUITE("unit") {
         SceneBuilder builder;
         builder.scene.environment = ConstantEnvironment{Rgb(0.25f)};
         const Scene nothing = builder.finish();
-        Settings settings;
+        PathTracerSettings settings;
         settings.samples_per_pixel = 2;
         for (const Rgb& pixel : render_scene(nothing, 4, settings).radiance) CHECK(pixel.g == 0.25f);
 

@@ -6,56 +6,68 @@
 
 namespace duet::raytrace {
 
-enum class Lamp { kRectangle, kParallelogram, kTriangle, kBall, kTwoSided, kMany, kPoint, kSpot, kSun, kSky };
-inline constexpr Lamp kLamps[] = {Lamp::kRectangle, Lamp::kParallelogram, Lamp::kTriangle, Lamp::kBall, Lamp::kTwoSided,
-                           Lamp::kMany,      Lamp::kPoint,         Lamp::kSpot,     Lamp::kSun,  Lamp::kSky};
+enum class RoomLight { kRectangle, kParallelogram, kTriangle, kSphere, kTwoSided, kMany, kPoint, kSpot, kSun, kSky };
+inline constexpr RoomLight kRoomLights[] = {
+    RoomLight::kRectangle, RoomLight::kParallelogram, RoomLight::kTriangle, RoomLight::kSphere, RoomLight::kTwoSided,
+    RoomLight::kMany,      RoomLight::kPoint,         RoomLight::kSpot,     RoomLight::kSun,    RoomLight::kSky};
 
-struct Place {
+struct Placement {
     float scale = 1;
     Vec3 at{0, 0, 0};
     Vec3 operator()(float x, float y, float z) const { return Vec3(x, y, z) * scale + at; }
 };
 
-inline void add_lamp(SceneBuilder& builder, Lamp lamp, const Place& place) {
+inline void add_light(SceneBuilder& builder, RoomLight light, const Placement& place) {
     const float s = place.scale;
     const auto emissive = [&](bool two_sided) {
         return builder.material(Emissive{Rgb(9.0f, 8, 6), two_sided, {Rgb(0.0f)}});
     };
-    const auto hang = [&](float x, Vec3 u, Vec3 v, bool two_sided) {
+    const auto add_rectangle = [&](float x, Vec3 u, Vec3 v, bool two_sided) {
         builder.add(quad(place(x, 1.9f, -0.4f), u * s, v * s), emissive(two_sided));
     };
     const Vec3 down = normalize(Vec3(0.2f, -1, -0.3f));
-    switch (lamp) {
-    case Lamp::kRectangle: return hang(-0.3f, {0.6f, 0, 0}, {0, 0, 0.5f}, false);
-    case Lamp::kParallelogram: return hang(-0.3f, {0.6f, 0, 0}, {0.2f, 0.05f, 0.5f}, false);
-    case Lamp::kTwoSided: return hang(-0.3f, {0.4f, 0.3f, 0}, {0, 0, 0.5f}, true);
-    case Lamp::kMany:
-        for (const float x : {-0.9f, -0.4f, 0.1f, 0.6f}) hang(x, {0.2f, 0, 0}, {0, 0, 0.2f}, x > 0);
+    switch (light) {
+    case RoomLight::kRectangle:
+        return add_rectangle(-0.3f, {0.6f, 0, 0}, {0, 0, 0.5f}, false);
+    case RoomLight::kParallelogram:
+        return add_rectangle(-0.3f, {0.6f, 0, 0}, {0.2f, 0.05f, 0.5f}, false);
+    case RoomLight::kTwoSided:
+        return add_rectangle(-0.3f, {0.4f, 0.3f, 0}, {0, 0, 0.5f}, true);
+    case RoomLight::kMany:
+        for (const float x : {-0.9f, -0.4f, 0.1f, 0.6f}) add_rectangle(x, {0.2f, 0, 0}, {0, 0, 0.2f}, x > 0);
         return;
-    case Lamp::kTriangle: {
+    case RoomLight::kTriangle: {
         Mesh mesh;
         mesh.positions = {place(-0.4f, 1.9f, -0.4f), place(0.4f, 1.9f, -0.4f), place(0, 1.9f, 0.4f)};
         mesh.triangles = {{0, 1, 2}};
         builder.add(mesh, emissive(true));
         return;
     }
-    case Lamp::kBall: builder.add(Sphere{place(0.2f, 1.6f, 0), 0.2f * s}, emissive(false)); return;
+    case RoomLight::kSphere:
+        builder.add(Sphere{place(0.2f, 1.6f, 0), 0.2f * s}, emissive(false));
+        return;
     // The point light is in the ceiling.
-    case Lamp::kPoint: builder.scene.lights.push_back(PointLight{place(0, 2, 0), Rgb(4 * s * s)}); return;
-    case Lamp::kSpot:
+    case RoomLight::kPoint:
+        builder.scene.lights.push_back(PointLight{place(0, 2, 0), Rgb(4 * s * s)});
+        return;
+    case RoomLight::kSpot:
         builder.scene.lights.push_back(SpotLight{place(0, 1.8f, 0), down, Rgb(4 * s * s), 0.95f, 0.5f});
         return;
-    case Lamp::kSun: builder.scene.lights.push_back(SunLight{down, Rgb(3.0f)}); return;
-    case Lamp::kSky: builder.scene.environment = SkyEnvironment{Rgb(0.3f), Rgb(0.4f, 0.6f, 1.0f)}; return;
+    case RoomLight::kSun:
+        builder.scene.lights.push_back(SunLight{down, Rgb(3.0f)});
+        return;
+    case RoomLight::kSky:
+        builder.scene.environment = SkyEnvironment{Rgb(0.3f), Rgb(0.4f, 0.6f, 1.0f)};
+        return;
     }
 }
 
 // Selects the number of objects in the room: so few that rays test them all, or so many that rays traverse a BVH.
-enum class Things { kFew, kSome, kMany };
+enum class ObjectCount { kFew, kSome, kMany };
 
 // Adds narrow and wide metal lobes, given by color and by name, mirrors and glass, on quads, spheres and meshes with
 // vertex normals.
-inline void add_shiny_things(SceneBuilder& builder, int levels, const Place& place) {
+inline void add_shiny_objects(SceneBuilder& builder, int levels, const Placement& place) {
     const float s = place.scale;
     const Material materials[] = {Metal{{Rgb(0.9f, 0.6f, 0.3f)}, 0.8f}, Metal{{Rgb(0.8f)}, 0.1f},
                                   Metal{{}, 0.5f, *find_conductor("gold")},   Metal{{}, 0, *find_conductor("copper")},
@@ -72,10 +84,10 @@ inline void add_shiny_things(SceneBuilder& builder, int levels, const Place& pla
 }
 
 // Selects the materials of walls and objects: mostly matte, or including all kinds of metal and glass.
-enum class Finish { kMatt, kShiny };
+enum class Finish { kMatte, kShiny };
 
 // Returns a room without a front wall that contains surfaces of every batched kind and of the other kinds.
-inline Scene room(Lamp lamp, Things things, const Place& place, Finish finish = Finish::kMatt) {
+inline Scene room(RoomLight light, ObjectCount count, const Placement& place, Finish finish = Finish::kMatte) {
     SceneBuilder builder;
     const float s = place.scale;
     const std::uint32_t white = builder.material(Diffuse{{Rgb(0.7f)}}),
@@ -83,19 +95,19 @@ inline Scene room(Lamp lamp, Things things, const Place& place, Finish finish = 
     const std::uint32_t black = builder.material(Diffuse{{Rgb(0.0f)}}),
                         brushed = builder.material(Metal{{Rgb(0.9f)}, 0.4f});
     builder.add(quad(place(-1, 0, 1), {2 * s, 0, 0}, {0, 0, -2 * s}), white);
-    if (lamp != Lamp::kSun && lamp != Lamp::kSky)
+    if (light != RoomLight::kSun && light != RoomLight::kSky)
         builder.add(quad(place(-1, 2, -1), {2 * s, 0, 0}, {0, 0, 2 * s}), white);
     builder.add(quad(place(-1, 0, -1), {2 * s, 0, 0}, {0, 2 * s, 0}), white);
     builder.add(quad(place(-1, 0, 1), {0, 0, -2 * s}, {0, 2 * s, 0}), red);
     builder.add(quad(place(1, 0, -1), {0, 0, 2 * s}, {0, 2 * s, 0}), black);
     builder.add(Sphere{place(-0.4f, 0.35f, 0.3f), 0.35f * s}, red);
     builder.add(Sphere{place(0.5f, 0.2f, 0.6f), 0.2f * s}, builder.material(Dielectric{1.5f, {Rgb(0.95f)}}));
-    const int levels = things == Things::kMany ? 3 : 0;
-    if (finish == Finish::kShiny) add_shiny_things(builder, levels, place);
-    if (things != Things::kFew) builder.add(icosphere(levels, 0.3f * s, place(0.3f, 0.6f, -0.3f), false), white);
-    if (things != Things::kFew) builder.add(icosphere(levels, 0.2f * s, place(-0.5f, 1, -0.5f), true), brushed);
-    if (things != Things::kFew) builder.add(icosphere(levels, 0.35f * s, place(-0.1f, 1.2f, 0.2f), true), red);
-    add_lamp(builder, lamp, place);
+    const int levels = count == ObjectCount::kMany ? 3 : 0;
+    if (finish == Finish::kShiny) add_shiny_objects(builder, levels, place);
+    if (count != ObjectCount::kFew) builder.add(icosphere(levels, 0.3f * s, place(0.3f, 0.6f, -0.3f), false), white);
+    if (count != ObjectCount::kFew) builder.add(icosphere(levels, 0.2f * s, place(-0.5f, 1, -0.5f), true), brushed);
+    if (count != ObjectCount::kFew) builder.add(icosphere(levels, 0.35f * s, place(-0.1f, 1.2f, 0.2f), true), red);
+    add_light(builder, light, place);
     builder.scene.camera.eye = Vec3d(place(0, 1, 3.2f));
     builder.scene.camera.look_at = Vec3d(place(0, 1, 0));
     builder.scene.camera.fov_degrees = 45;
@@ -105,7 +117,7 @@ inline Scene room(Lamp lamp, Things things, const Place& place, Finish finish = 
 // Returns intersecting objects of all materials and shapes at random positions: normals in any direction and meshes
 // of several materials. It also has surfaces that are not batched: moving ones, instances, and mirrors that absorb
 // all light.
-inline Scene wild_room(int seed, const Place& place) {
+inline Scene wild_room(int seed, const Placement& place) {
     SceneBuilder builder;
     Sampler sampler(SamplerKind::kIndependent, static_cast<std::uint64_t>(seed), 1);
     const auto random = [&] { return sampler.get_1d(); };
@@ -147,13 +159,13 @@ inline Scene wild_room(int seed, const Place& place) {
         builder.scene.objects[object].materials = {any(i), any(i + 1), white};
     }
     if (seed % 3 == 0) {
-        const std::uint32_t ball = builder.shape(icosphere(1, 0.3f, {}, true)),
+        const std::uint32_t mesh = builder.shape(icosphere(1, 0.3f, {}, true)),
                             sphere = builder.shape(Sphere{{}, 0.3f});
         const Mat4 scaled = scaling(Vec3(s, s, s));
-        builder.place_moving(ball, any(3), translation(place.at) * scaled, translation(place(0.5f, 0.2f, 0)) * scaled);
+        builder.place_moving(mesh, any(3), translation(place.at) * scaled, translation(place(0.5f, 0.2f, 0)) * scaled);
         builder.place(sphere, any(4), translation(place(-0.5f, 0.3f, 0.6f)) * scaled);
     }
-    add_lamp(builder, kLamps[static_cast<std::size_t>(seed) % std::size(kLamps)], place);
+    add_light(builder, kRoomLights[static_cast<std::size_t>(seed) % std::size(kRoomLights)], place);
     builder.scene.camera.eye = Vec3d(place(0, 0.5f, 4));
     builder.scene.camera.look_at = Vec3d(place(0, 0, 0));
     builder.scene.camera.fov_degrees = 50;

@@ -1,8 +1,8 @@
 // These tests check Russian roulette by expected contribution: its survival estimate from a pilot render, and its
 // lack of bias.
 #include "raytrace/integrator/integrator.h"
-#include "raytrace/integrator/path_gains.h"
-#include "raytrace/pass.h"
+#include "raytrace/integrator/path_contributions.h"
+#include "raytrace/render_pass.h"
 #include "tests/raytrace/integrating_sphere.h"
 
 #include <doctest/doctest.h>
@@ -14,9 +14,9 @@ using namespace duet::raytrace;
 
 namespace {
 
-float worth_of(const Scene& scene, int side, const Settings& settings) {
-    const Prepared prepared = prepare(scene, settings);
-    return RenderPlan(prepared.data(), View{scene.camera, side, side}, settings).worth;
+float survival_factor_of(const Scene& scene, int side, const PathTracerSettings& settings) {
+    const PathTracerScene prepared = prepare(scene, settings);
+    return RenderPlan(prepared.data(), View{scene.camera, side, side}, settings).survival_factor;
 }
 
 // Calls trace(ray, hit, sampler) for independent samples of one pixel.
@@ -34,33 +34,33 @@ template <typename Trace> void for_samples(const RenderPlan& plan, std::uint32_t
 
 TEST_SUITE("unit") {
 
-    TEST_CASE("the worth of throughput is learned from scene, view and plan alone") {
+    TEST_CASE("the roulette survival factor is learned from scene, view and plan alone") {
         const Scene scene = integrating_sphere();
-        const float worth = worth_of(scene, 64, {});
-        CHECK(worth > 2 * kPlainWorth); // fewer paths are ended where only roulette causes noise
-        Settings other;
+        const float survival_factor = survival_factor_of(scene, 64, {});
+        CHECK(survival_factor > 2 * kDefaultSurvivalFactor); // fewer paths are ended where only roulette causes noise
+        PathTracerSettings other;
         other.seed = 99;
         other.threads = 1;
         other.samples_per_pixel = 7;
         other.first_sample = 64;
         other.sampler = SamplerKind::kIndependent;
-        CHECK(worth_of(scene, 64, other) == worth);
+        CHECK(survival_factor_of(scene, 64, other) == survival_factor);
         other.skips.shadow_rays = other.skips.last_bounce = other.skips.light_samples = false;
-        CHECK(worth_of(scene, 64, other) == worth);
-        CHECK(worth_of(scene, 8, {}) == kPlainWorth); // too few pixels for an estimate
-        Settings naive;
+        CHECK(survival_factor_of(scene, 64, other) == survival_factor);
+        CHECK(survival_factor_of(scene, 8, {}) == kDefaultSurvivalFactor); // too few pixels for an estimate
+        PathTracerSettings naive;
         naive.integrator = Integrator::kNaive;
-        CHECK(worth_of(scene, 64, naive) == kPlainWorth);
+        CHECK(survival_factor_of(scene, 64, naive) == kDefaultSurvivalFactor);
     }
 
     TEST_CASE("the statistics say what roulette ended") {
         const Scene scene = integrating_sphere();
-        Settings settings;
+        PathTracerSettings settings;
         settings.samples_per_pixel = 4;
         const auto ended = [&] {
             Control control;
             const Rendering r = render(prepare(scene, settings), View{scene.camera, 16, 16}, settings, control);
-            for (const Skipped& s : r.statistics.skipped)
+            for (const SkippedWork& s : r.statistics.skipped)
                 if (s.what == "paths ended by roulette") return s.count;
             return std::int64_t{-1};
         };
@@ -74,14 +74,14 @@ TEST_SUITE("statistical") {
 
     // Each bound is five standard errors, which is exceeded by chance once in 1.7 million times. A bias of 1 % is at
     // least five standard errors.
-    TEST_CASE("whatever worth is learned, the mean is the integrating sphere's") {
+    TEST_CASE("whatever survival factor is estimated, the mean is the integrating sphere's") {
         const Scene scene = integrating_sphere();
-        Settings settings;
-        const Prepared prepared = prepare(scene, settings);
+        PathTracerSettings settings;
+        const PathTracerScene prepared = prepare(scene, settings);
         RenderPlan plan(prepared.data(), View{scene.camera, 64, 64}, settings);
-        for (const float worth : {1.0f, kPlainWorth, plan.worth}) {
-            CAPTURE(worth);
-            plan.worth = worth;
+        for (const float survival_factor : {1.0f, kDefaultSurvivalFactor, plan.survival_factor}) {
+            CAPTURE(survival_factor);
+            plan.survival_factor = survival_factor;
             double sum = 0, squares = 0;
             constexpr std::uint32_t kCount = 200000;
             RayCounts counts;
@@ -100,14 +100,14 @@ TEST_SUITE("statistical") {
     // standard deviation of about 0.4 %.
     TEST_CASE("steps of a path know what it gathers, and its rays") {
         const Scene scene = integrating_sphere();
-        Settings settings;
-        const Prepared prepared = prepare(scene, settings);
+        PathTracerSettings settings;
+        const PathTracerScene prepared = prepare(scene, settings);
         RenderPlan plan(prepared.data(), View{scene.camera, 8, 8}, settings);
-        plan.worth = 4;
+        plan.survival_factor = 4;
         double light = 0, throughput = 0, others = 0;
         for_samples(plan, 20000, [&](const Ray& ray, const Hit& hit, Sampler& sampler) {
-            PathGains path;
-            follow_path(plan, ray, hit, sampler, path);
+            PathContributions path;
+            record_path_contributions(plan, ray, hit, sampler, path);
             for (const PathStep& step : path.steps()) {
                 light += static_cast<double>(step.weight * step.light);
                 throughput += static_cast<double>(step.weight * step.throughput);

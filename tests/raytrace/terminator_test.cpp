@@ -31,11 +31,11 @@ TEST_SUITE("unit") {
     TEST_CASE("direct light on a smooth ball of few facets is the cosine of its smooth normal") {
         for (const Mat4& to_world : {Mat4(), Mat4(scaling(Vec3d(1, 0.7, 1.1)))}) {
             const Scene scene = ball(to_world);
-            Settings settings;
+            PathTracerSettings settings;
             settings.integrator = Integrator::kDirect;
             settings.sampler = SamplerKind::kCenter;
             settings.samples_per_pixel = 1;
-            const Prepared prepared = prepare(scene, settings);
+            const PathTracerScene prepared = prepare(scene, settings);
             const View view{scene.camera, 128, 128};
             Control control;
             const Rendering picture = render(prepared, view, settings, control);
@@ -70,16 +70,17 @@ TEST_SUITE("unit") {
             const Vec3 middle = (a + b + c) / 3.0f;
             const Ray from_outside{middle * 3.0f, -normalize(middle)}, from_inside{{}, normalize(middle)};
             const SurfacePoint outer = surface_point(smooth, hit, from_outside, Mat4(), Mat4(), true);
-            CHECK(outer.horizon == outer.ns);
-            CHECK(length(outer.p + outer.lift) > length(outer.p));
+            CHECK(outer.terminator_normal == outer.ns);
+            CHECK(length(outer.p + outer.terminator_offset) > length(outer.p));
             // The offset `lift` must reach all three tangent planes, because the center is equally far below each.
-            CHECK(dot(outer.p + outer.lift, normalize(middle)) > 0.9f);
+            CHECK(dot(outer.p + outer.terminator_offset, normalize(middle)) > 0.9f);
             const SurfacePoint inner = surface_point(smooth, hit, from_inside, Mat4(), Mat4(), true);
-            CHECK(inner.horizon == inner.ng); // concave from inside, so the geometric normal bounds the directions
-            CHECK(length(inner.lift) == 0);
+            CHECK(inner.terminator_normal ==
+                  inner.ng); // concave from inside, so the geometric normal bounds the directions
+            CHECK(length(inner.terminator_offset) == 0);
             const SurfacePoint facet = surface_point(flat, hit, from_outside, Mat4(), Mat4(), true);
-            CHECK(length(facet.lift) == 0);
-            CHECK(facet.horizon == facet.ng);
+            CHECK(length(facet.terminator_offset) == 0);
+            CHECK(facet.terminator_normal == facet.ng);
         }
     }
 }

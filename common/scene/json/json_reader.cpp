@@ -26,7 +26,7 @@ std::string describe(const JsonNode& node) {
     case Kind::kNumber:
         return number_text(node.number);
     case Kind::kString:
-        return "the string " + in_quotes(node.text);
+        return "the string " + quoted_text(node.text);
     case Kind::kArray:
         return node.items.empty()       ? "an empty array"
                : node.items.size() == 1 ? "an array of 1 element"
@@ -68,7 +68,7 @@ bool is_identifier(std::string_view key) {
 
 } // namespace
 
-std::string in_quotes(std::string_view text) {
+std::string quoted_text(std::string_view text) {
     std::string out = "\"";
     for (const char c : text.substr(0, 60)) {
         const auto byte = static_cast<unsigned char>(c);
@@ -95,7 +95,7 @@ std::string suggestion(std::string_view name, const std::vector<std::string_view
             nearest = candidate;
         }
     }
-    return nearest.empty() ? "" : message("; did you mean ", in_quotes(nearest), "?");
+    return nearest.empty() ? "" : message("; did you mean ", quoted_text(nearest), "?");
 }
 
 void JsonValue::fail(const std::string& what) const { throw Error(message(file_->string(), ": ", path_, ": ", what)); }
@@ -157,7 +157,7 @@ std::size_t JsonValue::one_of(const std::vector<std::string_view>& names) const 
     const auto found = std::find(names.begin(), names.end(), text);
     if (found == names.end()) {
         std::string list;
-        for (const std::string_view name : names) list += (list.empty() ? "" : ", ") + in_quotes(name);
+        for (const std::string_view name : names) list += (list.empty() ? "" : ", ") + quoted_text(name);
         expected("one of " + list + suggestion(text, names));
     }
     return static_cast<std::size_t>(found - names.begin());
@@ -186,15 +186,15 @@ void JsonValue::check_keys(const JsonKeys& keys) const {
     known.insert(known.end(), keys.optional.begin(), keys.optional.end());
     for (const std::string& key : node_->keys)
         if (std::find(known.begin(), known.end(), key) == known.end())
-            fail(message("unknown key ", in_quotes(key), suggestion(key, known)));
+            fail(message("unknown key ", quoted_text(key), suggestion(key, known)));
     for (const std::string_view key : keys.required)
-        if (!has(key)) fail(message("the key ", in_quotes(key), " is missing"));
+        if (!has(key)) fail(message("the key ", quoted_text(key), " is missing"));
 }
 
 JsonValue JsonValue::at(std::string_view key) const {
     if (!is(Kind::kObject)) expected("an object");
     const auto found = std::find(node_->keys.begin(), node_->keys.end(), key);
-    if (found == node_->keys.end()) fail(message("the key ", in_quotes(key), " is missing"));
+    if (found == node_->keys.end()) fail(message("the key ", quoted_text(key), " is missing"));
     return member(static_cast<std::size_t>(found - node_->keys.begin()));
 }
 
@@ -215,7 +215,7 @@ const JsonNode* JsonValue::find(std::string_view key) const {
 
 JsonValue JsonValue::member(std::size_t index) const {
     const std::string& key = node_->keys[index];
-    return {node_->items[index], *file_, is_identifier(key) ? path_ + "." + key : path_ + "[" + in_quotes(key) + "]"};
+    return {node_->items[index], *file_, is_identifier(key) ? path_ + "." + key : path_ + "[" + quoted_text(key) + "]"};
 }
 
 } // namespace duet

@@ -55,8 +55,8 @@ public:
     bool end_object() override { return close(); }
     bool end_array() override { return close(); }
     bool key(string_t& value) override {
-        if (!seen_.back().insert(value).second)
-            throw Error(message(file_.string(), ": ", path(), ": the key ", in_quotes(value), " is given twice"));
+        if (!keys_.back().insert(value).second)
+            throw Error(message(file_.string(), ": ", path(), ": the key ", quoted_text(value), " is given twice"));
         open_.back()->keys.push_back(std::move(value));
         return true;
     }
@@ -85,12 +85,12 @@ private:
             throw Error(message(file_.string(), ": values are nested more than ", kMaxJsonDepth, " deep"));
         add({.kind = kind});
         open_.push_back(last_);
-        seen_.emplace_back();
+        keys_.emplace_back();
         return true;
     }
     bool close() {
         open_.pop_back();
-        seen_.pop_back();
+        keys_.pop_back();
         return true;
     }
 
@@ -99,7 +99,7 @@ private:
     JsonNode root_;
     JsonNode* last_ = nullptr;
     std::vector<JsonNode*> open_;
-    std::vector<std::unordered_set<std::string>> seen_; ///< keys so far of each open value
+    std::vector<std::unordered_set<std::string>> keys_; ///< keys so far of each open value
 };
 
 } // namespace

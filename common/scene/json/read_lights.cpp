@@ -99,7 +99,7 @@ Environment read_environment(const JsonValue& value, std::vector<std::filesystem
         value.check_keys(scene_keys("image_environment"));
         const double scale = value.number_or("scale", 1, {0, 1e6, false});
         const double rotation = radians(value.number_or("rotate_degrees", 0));
-        const std::filesystem::path file = beside(value.file(), value.at("file").string());
+        const std::filesystem::path file = resolve_path(value.file(), value.at("file").string());
         ImageRgb image;
         try {
             image = read_image(file);

@@ -10,7 +10,7 @@ namespace duet {
 
 namespace fs = std::filesystem;
 
-fs::path beside(const fs::path& owner, const std::string& name) {
+fs::path resolve_path(const fs::path& owner, const std::string& name) {
     return (owner.parent_path() / name).lexically_normal();
 }
 
@@ -20,13 +20,13 @@ std::string canonical_key(const fs::path& path) {
     return (error ? path : canonical).string();
 }
 
-std::uint32_t ImageCache::load(const fs::path& file, ImageContent content) {
+std::uint32_t ImageCache::load(const fs::path& file, ChannelSelection selection) {
     std::vector<ImageRgb>& images = scene_->textures.images;
-    const std::string key = message(canonical_key(file), '\n', static_cast<int>(content.values), ' ',
-                                    static_cast<int>(content.channel));
+    const std::string key = message(canonical_key(file), '\n', static_cast<int>(selection.values), ' ',
+                                    static_cast<int>(selection.channel));
     const auto [entry, added] = index_.try_emplace(key, static_cast<std::uint32_t>(images.size()));
     if (!added) return entry->second;
-    ImageRgb image = image_of(read_pixel_file(file), content);
+    ImageRgb image = select_channels(read_stored_image(file), selection);
     for (Rgb& pixel : image.pixels()) {
         if (!is_finite(pixel))
             throw Error(message(file.string(), ": holds a value that is not finite, which no texture may"));
@@ -53,15 +53,15 @@ Texture read_image_texture(const JsonValue& value, ImageCache& images) {
     if (value.has("filter"))
         texture.filter = static_cast<TextureFilter>(
             value.at("filter").one_of({"nearest", "bilinear", "trilinear", "anisotropic"}));
-    ImageContent content;
+    ChannelSelection selection;
     if (value.has("values"))
-        content.values = static_cast<ImageContent::Values>(value.at("values").one_of({"colors", "data"}));
+        selection.values = static_cast<ChannelSelection::Values>(value.at("values").one_of({"colors", "data"}));
     if (value.has("channel"))
-        content.channel = static_cast<ImageContent::Channel>(
+        selection.channel = static_cast<ChannelSelection::Channel>(
             value.at("channel").one_of({"all", "red", "green", "blue", "alpha"}));
-    const fs::path file = beside(value.file(), value.at("file").string());
+    const fs::path file = resolve_path(value.file(), value.at("file").string());
     try {
-        texture.image = images.load(file, content);
+        texture.image = images.load(file, selection);
     } catch (const Error& error) {
         value.at("file").fail(error.what());
     }
@@ -143,8 +143,8 @@ SurfaceMaps read_maps(const JsonValue& value, const NameIndex& textures) {
 
 constexpr JsonRange kIor{1, 4, false};
 
-float read_ior(const JsonValue& owner, float otherwise) {
-    return static_cast<float>(owner.number_or("ior", otherwise, kIor));
+float read_ior(const JsonValue& owner, float fallback) {
+    return static_cast<float>(owner.number_or("ior", fallback, kIor));
 }
 
 Conductor read_conductor(const JsonValue& owner) {
@@ -155,7 +155,7 @@ Conductor read_conductor(const JsonValue& owner) {
     std::string hint = suggestion(name.string(), known);
     if (hint.empty())
         for (const std::string_view one : known) hint += message(hint.empty() ? "; known are " : ", ", one);
-    name.fail(message("unknown conductor ", in_quotes(name.string()), hint));
+    name.fail(message("unknown conductor ", quoted_text(name.string()), hint));
 }
 
 /// Distances of a nanometer or more keep absorption coefficients finite.
@@ -167,9 +167,9 @@ Rgb read_absorption(const JsonValue& value) {
     value.check_keys(scene_keys("absorption"));
     const Rgb color = value.at("color").rgb();
     // No finite coefficient gives a transmittance of exactly 0, so it is clamped.
-    const Rgb left(max(color.r, 1e-6f), max(color.g, 1e-6f), max(color.b, 1e-6f));
+    const Rgb transmittance(max(color.r, 1e-6f), max(color.g, 1e-6f), max(color.b, 1e-6f));
     const auto distance = static_cast<float>(value.at("distance").number(kAbsorptionDistance));
-    return Rgb(-std::log(left.r), -std::log(left.g), -std::log(left.b)) / distance;
+    return Rgb(-std::log(transmittance.r), -std::log(transmittance.g), -std::log(transmittance.b)) / distance;
 }
 
 Dielectric read_dielectric(const JsonValue& value, const NameIndex& textures) {
@@ -213,7 +213,7 @@ Material read_material(const JsonValue& value, const NameIndex& textures) {
         Metal material;
         if (value.has("conductor")) {
             material.conductor = read_conductor(value);
-            material.reflectance = {material.conductor.normal};
+            material.reflectance = {material.conductor.f0};
         } else {
             material.reflectance = read_slot(value, "reflectance", material.reflectance, textures);
         }
@@ -252,7 +252,7 @@ std::uint32_t look_up(const JsonValue& name, const NameIndex& index, std::string
     if (found != index.end()) return found->second;
     std::vector<std::string_view> known;
     for (const auto& entry : index) known.push_back(entry.first);
-    name.fail(message("unknown ", what, " ", in_quotes(name.string()), suggestion(name.string(), known)));
+    name.fail(message("unknown ", what, " ", quoted_text(name.string()), suggestion(name.string(), known)));
 }
 
 NameIndex read_textures(const JsonValue& textures, Scene& scene, ImageCache& images) {

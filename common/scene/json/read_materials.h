@@ -1,7 +1,7 @@
 // This file reads the textures and materials of scene files.
 #pragma once
 
-#include "common/image/image_content.h"
+#include "common/image/channel_selection.h"
 #include "common/scene/json/json_reader.h"
 #include "common/scene/scene.h"
 
@@ -18,15 +18,15 @@ public:
     /// Returns the index in TextureSet::images of the file's image, loading it if necessary. Values are clamped to
     /// [0, 1], because they are reflectances. Throws Error for a file that cannot be read or holds a value that is
     /// not finite.
-    std::uint32_t load(const std::filesystem::path& file, ImageContent content = {});
+    std::uint32_t load(const std::filesystem::path& file, ChannelSelection selection = {});
 
 private:
     Scene* scene_;
-    std::map<std::string, std::uint32_t> index_; ///< index by canonical path and content
+    std::map<std::string, std::uint32_t> index_; ///< index by canonical path and selection
 };
 
 /// Returns the path for a name in the file `owner`. Relative names are relative to the owner's folder.
-std::filesystem::path beside(const std::filesystem::path& owner, const std::string& name);
+std::filesystem::path resolve_path(const std::filesystem::path& owner, const std::string& name);
 /// Returns a key that is equal for different paths of the same file.
 std::string canonical_key(const std::filesystem::path& path);
 

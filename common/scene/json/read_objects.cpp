@@ -24,7 +24,7 @@ void index_groups(const Scene& scene, const std::vector<SceneNode>& nodes, Group
             const auto [entry, added] = groups.try_emplace(node.name, &node);
             if (!added)
                 fail_at(scene, node,
-                        "a second group of the name " + in_quotes(node.name) + "; the first is " + entry->second->path);
+                        "a second group of the name " + quoted_text(node.name) + "; the first is " + entry->second->path);
         }
         index_groups(scene, node.members, groups);
     }
@@ -37,7 +37,7 @@ const SceneNode& group_of(const Scene& scene, const SceneNode& instance, const G
     for (const auto& entry : groups) known.push_back(entry.first);
     std::sort(known.begin(), known.end());
     fail_at(scene, instance,
-            "an instance of the unknown group " + in_quotes(instance.instance_of) +
+            "an instance of the unknown group " + quoted_text(instance.instance_of) +
                 suggestion(instance.instance_of, known));
 }
 
@@ -52,22 +52,22 @@ public:
     /// above it.
     struct Extent {
         std::size_t height = 0, nodes = 1;
-        bool open = false; ///< whether the extent is still being computed
+        bool in_progress = false; ///< whether the extent is still being computed
     };
     Extent check(const SceneNode& node, std::size_t depth) {
         if (node.shape) return {};
         if (depth > kMaxGroupDepth) fail_depth(node);
         const auto [entry, added] = extents_.try_emplace(&node, Extent{0, 1, true});
-        if (!added && entry->second.open)
-            fail_at(*scene_, node, "the group " + in_quotes(node.name) + " is part of itself");
+        if (!added && entry->second.in_progress)
+            fail_at(*scene_, node, "the group " + quoted_text(node.name) + " is part of itself");
         if (!added) {
             if (depth + entry->second.height > kMaxGroupDepth) fail_depth(node);
             return entry->second;
         }
         Extent extent;
-        const auto add = [&](const Extent& part) {
-            extent.height = std::max(extent.height, 1 + part.height);
-            extent.nodes += part.nodes;
+        const auto add = [&](const Extent& child) {
+            extent.height = std::max(extent.height, 1 + child.height);
+            extent.nodes += child.nodes;
             if (extent.nodes > kMaxObjects)
                 fail_at(*scene_, node, message("groups and instances expand to more than ", kMaxObjects, " objects"));
         };
@@ -96,9 +96,9 @@ public:
         const MotionTransform motion = parent * node.motion;
         const std::string name = prefix + node.name;
         if (node.shape) {
-            place(node, motion, name);
+            add_object(node, motion, name);
         } else if (!node.instance_of.empty()) {
-            show_group(group_of(*scene_, node, *groups_), motion, name);
+            add_instance_members(group_of(*scene_, node, *groups_), motion, name);
         } else {
             for (const SceneNode& member : node.members) visit(member, motion, name + "/");
         }
@@ -107,13 +107,13 @@ public:
 private:
     /// Adds the members of an instanced group. The group's own transform applies, and the names of the members start
     /// with the instance's name.
-    void show_group(const SceneNode& group, const MotionTransform& motion, const std::string& name) {
+    void add_instance_members(const SceneNode& group, const MotionTransform& motion, const std::string& name) {
         for (const SceneNode& member : group.members) visit(member, motion * group.motion, name + "/");
     }
 
-    void place(const SceneNode& node, const MotionTransform& motion, const std::string& name) {
-        if (const char* fault = placement_fault(motion))
-            fail_at(*scene_, node, std::string("together with the transforms around it, ") + fault);
+    void add_object(const SceneNode& node, const MotionTransform& motion, const std::string& name) {
+        if (const char* error = transform_error(motion))
+            fail_at(*scene_, node, std::string("together with the transforms around it, ") + error);
         Object object;
         object.name = name;
         object.shape = *node.shape;
@@ -154,7 +154,8 @@ std::vector<std::uint32_t> add_obj_materials(const std::filesystem::path& file, 
     for (const ObjTexture& texture : obj.textures) {
         textures.push_back(static_cast<std::int32_t>(scene.textures.textures.size()));
         try {
-            scene.textures.textures.push_back(ImageTexture{images.load(texture.file, texture.content), texture.scale});
+            scene.textures.textures.push_back(
+                ImageTexture{images.load(texture.file, texture.selection), texture.scale});
         } catch (const Error& error) {
             throw Error(message(file.string(), ": a picture of its MTL file: ", error.what()));
         }

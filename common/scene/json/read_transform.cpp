@@ -97,7 +97,7 @@ MotionTransform MotionTransform::operator*(const MotionTransform& inner) const {
     return {start * inner.start, end * inner.end, moving || inner.moving};
 }
 
-const char* placement_fault(const MotionTransform& transform) {
+const char* transform_error(const MotionTransform& transform) {
     // Below this relative determinant the columns are coplanar in float precision, and normals and inverses would be
     // noise.
     constexpr double kSingular = 1e-7;
@@ -107,11 +107,12 @@ const char* placement_fault(const MotionTransform& transform) {
     if (transform.moving) {
         const double start = determinant3(transform.start), end = determinant3(transform.end);
         const double least = 1e-9 * min(abs(start), abs(end)), sign = std::copysign(1.0, start);
-        bool passes = sign * end > 0;
+        bool is_regular = sign * end > 0;
         for (const double t : critical_times(transform))
-            passes = passes && sign * determinant3(lerp(transform.start, transform.end, t)) > least;
-        if (!passes)
-            return "the motion passes through a singular transform (matrix entries are interpolated: turn by less than "
+            is_regular = is_regular && sign * determinant3(lerp(transform.start, transform.end, t)) > least;
+        if (!is_regular)
+            return "the motion is_regular through a singular transform (matrix entries are interpolated: turn by less "
+                   "than "
                    "180 degrees)";
     }
     if (!within_limits(transform.start) || !within_limits(transform.end))
@@ -124,8 +125,8 @@ MotionTransform read_motion(const JsonValue& object) {
     if (object.has("transform")) motion.start = read_list(object.at("transform"));
     motion.end = object.has("transform_end") ? read_list(object.at("transform_end")) : motion.start;
     motion.moving = !(motion.start == motion.end);
-    if (const char* fault = placement_fault(motion))
-        object.at(object.has("transform_end") ? "transform_end" : "transform").fail(fault);
+    if (const char* error = transform_error(motion))
+        object.at(object.has("transform_end") ? "transform_end" : "transform").fail(error);
     return motion;
 }
 

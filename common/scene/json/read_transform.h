@@ -16,11 +16,11 @@ struct MotionTransform {
 };
 
 /// Reads the transform of an object from its keys "transform" and "transform_end", which are both optional. Throws
-/// Error where placement_fault finds a fault.
+/// Error where transform_error returns a reason.
 MotionTransform read_motion(const JsonValue& object);
 
 /// Returns the reason why the transform cannot place objects, or nullptr where it can. Reasons are an entry of a map
 /// or its inverse beyond 1e18, and a map that is singular to working precision at some time of the motion.
-const char* placement_fault(const MotionTransform& transform);
+const char* transform_error(const MotionTransform& transform);
 
 } // namespace duet

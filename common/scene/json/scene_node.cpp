@@ -94,7 +94,7 @@ void SceneNodeReader::read_mesh(const JsonValue& value, SceneNode& node) {
 const SceneNodeReader::LoadedMesh& SceneNodeReader::load_mesh(const JsonValue& value, bool own_material) {
     constexpr MeshNormals kKinds[] = {MeshNormals::kFile, MeshNormals::kFlat, MeshNormals::kSmooth};
     const std::size_t kind = value.has("normals") ? value.at("normals").one_of({"file", "flat", "smooth"}) : 0;
-    const std::filesystem::path file = beside(value.file(), value.at("file").string());
+    const std::filesystem::path file = resolve_path(value.file(), value.at("file").string());
     const auto key = std::tuple(canonical_key(file), static_cast<int>(kind), own_material);
     const auto found = meshes_.find(key);
     if (found != meshes_.end()) return found->second;

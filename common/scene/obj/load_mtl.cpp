@@ -32,17 +32,18 @@ std::string trimmed(const std::string& text) {
     return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-/// Pictures collects the images that a material's lines name, in the order in which they are added.
-class Pictures {
+/// TextureList collects the images that a material's lines name, in the order in which they are added.
+class TextureList {
 public:
-    explicit Pictures(const std::filesystem::path& mtl) : mtl_(&mtl) {}
+    explicit TextureList(const std::filesystem::path& mtl) : mtl_(&mtl) {}
 
     /// Adds an image and returns its index, or −1 where none is named.
-    std::int32_t add(const std::string& name, const tinyobj::texture_option_t& options, ImageContent content = {}) {
-        std::string picture = trimmed(name);
-        if (picture.empty()) return -1;
-        std::replace(picture.begin(), picture.end(), '\\', '/');
-        list_.push_back({beside(*mtl_, picture), {options.scale[0], options.scale[1]}, content});
+    std::int32_t add(const std::string& name, const tinyobj::texture_option_t& options,
+                     ChannelSelection selection = {}) {
+        std::string file_name = trimmed(name);
+        if (file_name.empty()) return -1;
+        std::replace(file_name.begin(), file_name.end(), '\\', '/');
+        list_.push_back({resolve_path(*mtl_, file_name), {options.scale[0], options.scale[1]}, selection});
         return static_cast<std::int32_t>(list_.size()) - 1;
     }
     std::vector<ObjTexture> list() && { return std::move(list_); }
@@ -52,66 +53,67 @@ private:
     std::vector<ObjTexture> list_;
 };
 
-constexpr ImageContent kGreyData{ImageContent::Values::kData, ImageContent::Channel::kRed};
+constexpr ChannelSelection kGrayData{ChannelSelection::Values::kData, ChannelSelection::Channel::kRed};
 
 /// Returns a number clamped to [0, 1] as a slot, times the texture where one is named. With a texture, a number of 0
 /// counts as not given and becomes 1.
-ScalarSlot scalar(float number, const std::string& name, const tinyobj::texture_option_t& options, Pictures& pictures) {
-    const std::int32_t map = pictures.add(name, options, kGreyData);
-    const float given = clamp(number, 0.0f, 1.0f);
-    return map >= 0 ? ScalarSlot{given > 0 ? given : 1.0f, map} : ScalarSlot{given};
+ScalarSlot scalar_slot(float number, const std::string& name, const tinyobj::texture_option_t& options,
+                       TextureList& textures) {
+    const std::int32_t map = textures.add(name, options, kGrayData);
+    const float clamped = clamp(number, 0.0f, 1.0f);
+    return map >= 0 ? ScalarSlot{clamped > 0 ? clamped : 1.0f, map} : ScalarSlot{clamped};
 }
 
-ScalarSlot roughness_of(const tinyobj::material_t& m, Pictures& pictures) {
-    return scalar(m.roughness, m.roughness_texname, m.roughness_texopt, pictures);
+ScalarSlot roughness_of(const tinyobj::material_t& m, TextureList& textures) {
+    return scalar_slot(m.roughness, m.roughness_texname, m.roughness_texopt, textures);
 }
 
-/// is_physical returns whether the material uses the PBR extension. Default values do not count: a default roughness
-/// Pr of 0 would make every surface look varnished.
+/// uses_pbr_extension returns whether the material uses the PBR extension. Default values do not count: a default
+/// roughness Pr of 0 would make every surface look varnished.
 bool is_metallic(const tinyobj::material_t& m) { return m.metallic > 0 || !m.metallic_texname.empty(); }
-bool is_physical(const tinyobj::material_t& m) {
+bool uses_pbr_extension(const tinyobj::material_t& m) {
     return is_metallic(m) || m.roughness > 0 || !m.roughness_texname.empty() || m.clearcoat_thickness > 0;
 }
 
-Principled physical(const tinyobj::material_t& m, const RgbSlot& color, Pictures& pictures) {
+Principled principled_material(const tinyobj::material_t& m, const RgbSlot& color, TextureList& textures) {
     Principled result;
     result.base_color = color;
-    result.metallic = scalar(m.metallic, m.metallic_texname, m.metallic_texopt, pictures);
-    result.roughness = roughness_of(m, pictures);
+    result.metallic = scalar_slot(m.metallic, m.metallic_texname, m.metallic_texopt, textures);
+    result.roughness = roughness_of(m, textures);
     if (m.ior > 1) result.ior = min(m.ior, 4.0f);
     result.clearcoat = clamp(m.clearcoat_thickness, 0.0f, 1.0f);
     result.clearcoat_roughness = clamp(m.clearcoat_roughness, 0.0f, 1.0f);
     return result;
 }
 
-Material map_material(const tinyobj::material_t& m, Pictures& pictures) {
+Material map_material(const tinyobj::material_t& m, TextureList& textures) {
     const Rgb kd = reflectance(m.diffuse), ks = reflectance(m.specular), tf = reflectance(m.transmittance);
     const Rgb ke{m.emission[0], m.emission[1], m.emission[2]};
-    const auto diffuse = [&]() -> RgbSlot { return {kd, pictures.add(m.diffuse_texname, m.diffuse_texopt)}; };
-    const std::int32_t map_ke = pictures.add(m.emissive_texname, m.emissive_texopt);
+    const auto diffuse = [&]() -> RgbSlot { return {kd, textures.add(m.diffuse_texname, m.diffuse_texopt)}; };
+    const std::int32_t map_ke = textures.add(m.emissive_texname, m.emissive_texopt);
     if (!is_black(ke) || map_ke >= 0) return Emissive{is_black(ke) ? Rgb(1.0f) : ke, false, diffuse(), map_ke};
     if (is_glass(m)) return Dielectric{m.ior > 1 ? min(m.ior, 4.0f) : 1.5f, {is_black(tf) ? Rgb(1.0f) : tf}};
     if (!is_metallic(m) && (m.illum == 3 || m.illum == 5) && !is_black(ks)) {
-        const RgbSlot specular{ks, pictures.add(m.specular_texname, m.specular_texopt)};
-        const ScalarSlot rough = roughness_of(m, pictures);
+        const RgbSlot specular{ks, textures.add(m.specular_texname, m.specular_texopt)};
+        const ScalarSlot rough = roughness_of(m, textures);
         return Metal{specular,
                      rough.constant() && rough.value == 0 ? ScalarSlot{roughness_of_exponent(m.shininess)} : rough};
     }
-    if (is_physical(m)) return physical(m, diffuse(), pictures);
+    if (uses_pbr_extension(m)) return principled_material(m, diffuse(), textures);
     return Diffuse{diffuse()};
 }
 
 /// MTL files do not define the unit of bump heights, so a height of 1 is assumed to be this many meters.
-constexpr float kMetresABump = 0.01f;
+constexpr float kMetersPerBumpUnit = 0.01f;
 
-SurfaceMaps map_surface(const tinyobj::material_t& m, const Material& material, Pictures& pictures) {
+SurfaceMaps map_surface(const tinyobj::material_t& m, const Material& material, TextureList& textures) {
     SurfaceMaps maps;
-    maps.normal = pictures.add(m.normal_texname, m.normal_texopt, {ImageContent::Values::kData});
-    maps.bump = pictures.add(m.bump_texname, m.bump_texopt, kGreyData);
-    maps.bump_scale = kMetresABump * m.bump_texopt.bump_multiplier;
+    maps.normal = textures.add(m.normal_texname, m.normal_texopt, {ChannelSelection::Values::kData});
+    maps.bump = textures.add(m.bump_texname, m.bump_texopt, kGrayData);
+    maps.bump_scale = kMetersPerBumpUnit * m.bump_texopt.bump_multiplier;
     if (std::holds_alternative<Emissive>(material)) return maps; // emitters have no opacity map
-    const std::int32_t map_d = pictures.add(m.alpha_texname, m.alpha_texopt,
-                                            {ImageContent::Values::kData, ImageContent::Channel::kOpacity});
+    const std::int32_t map_d = textures.add(m.alpha_texname, m.alpha_texopt,
+                                            {ChannelSelection::Values::kData, ChannelSelection::Channel::kOpacity});
     const float d = std::holds_alternative<Dielectric>(material) ? 1.0f : clamp(m.dissolve, 0.0f, 1.0f);
     maps.opacity = {map_d >= 0 && d == 0 ? 1.0f : d, map_d};
     return maps;
@@ -131,13 +133,13 @@ void load_mtl(const std::filesystem::path& path, std::map<std::string, MtlMateri
         if (trimmed(m.name).empty()) continue; // tinyobjloader's unnamed entry for the start of a file
         for (const float e : m.emission)
             if (!(e >= 0 && e <= kLightRange.high))
-                throw Error(message(path.string(), ": the material ", in_quotes(m.name), " has Ke ", e,
+                throw Error(message(path.string(), ": the material ", quoted_text(m.name), " has Ke ", e,
                                     ", expected at least 0 and at most 1e12"));
         MtlMaterial entry{};
-        Pictures pictures(path);
-        entry.material = map_material(m, pictures);
-        entry.maps = map_surface(m, entry.material, pictures);
-        entry.textures = std::move(pictures).list();
+        TextureList textures(path);
+        entry.material = map_material(m, textures);
+        entry.maps = map_surface(m, entry.material, textures);
+        entry.textures = std::move(textures).list();
         materials.emplace(trimmed(m.name), std::move(entry));
     }
 }

@@ -23,10 +23,10 @@ public:
     explicit TextStream(std::string& text) { setg(text.data(), text.data(), text.data() + text.size()); }
 };
 
-/// Slots assigns the material slots of a mesh in the order in which usemtl lines use them.
-class Slots {
+/// MaterialSlots assigns the material slots of a mesh in the order in which usemtl lines use them.
+class MaterialSlots {
 public:
-    Slots(const std::filesystem::path& path, const ObjCounts& counts, bool wanted)
+    MaterialSlots(const std::filesystem::path& path, const ObjCounts& counts, bool wanted)
         : path_(&path), wanted_(wanted), files_{path} {
         if (!wanted) return;
         for (const std::string& line : counts.material_files) load_library(line);
@@ -59,23 +59,23 @@ private:
     /// Loads the files of an mtllib line. The line is a list such as "mtllib a.mtl b.mtl", or a single name that
     /// contains blanks.
     void load_library(const std::string& line) {
-        const auto is_there = [&](const std::string& name) {
+        const auto file_exists = [&](const std::string& name) {
             std::error_code error;
-            return std::filesystem::is_regular_file(beside(*path_, name), error);
+            return std::filesystem::is_regular_file(resolve_path(*path_, name), error);
         };
         const std::size_t first = line.find_first_not_of(" \t");
         if (first == std::string::npos) return;
         const std::string whole = line.substr(first, line.find_last_not_of(" \t") - first + 1);
-        if (is_there(whole)) return load(beside(*path_, whole));
+        if (file_exists(whole)) return load(resolve_path(*path_, whole));
         for (std::size_t at = 0; at < whole.size();) {
             const std::size_t end = std::min(whole.find_first_of(" \t", at), whole.size());
             const std::string name = whole.substr(at, end - at);
             at = end + 1;
             if (name.empty()) continue;
-            if (is_there(name))
-                load(beside(*path_, name));
+            if (file_exists(name))
+                load(resolve_path(*path_, name));
             else
-                missing_.push_back(beside(*path_, name).string());
+                missing_.push_back(resolve_path(*path_, name).string());
         }
     }
 
@@ -93,10 +93,10 @@ private:
         if (found != library_.end()) {
             add_material(found->second, material);
         } else if (!current_.empty() && !missing_.empty()) {
-            throw Error(message(path_->string(), ": the material ", in_quotes(current_), " is used, but its file ",
+            throw Error(message(path_->string(), ": the material ", quoted_text(current_), " is used, but its file ",
                                 missing_.front(), " is missing"));
         } else if (!current_.empty() && !library_.empty()) {
-            throw Error(message(path_->string(), ": the material ", in_quotes(current_),
+            throw Error(message(path_->string(), ": the material ", quoted_text(current_),
                                 " is used, but no MTL file has it", suggest()));
         }
         materials_.push_back(std::move(material));
@@ -112,11 +112,11 @@ private:
     void add_material(const MtlMaterial& from, ObjMaterial& to) {
         to.material = from.material;
         to.maps = from.maps;
-        const auto count_on = [this](std::int32_t& texture) {
+        const auto offset_texture = [this](std::int32_t& texture) {
             if (texture >= 0) texture += static_cast<std::int32_t>(textures_.size());
         };
-        for_each_texture(to.material, count_on);
-        for_each_texture(to.maps, count_on);
+        for_each_texture(to.material, offset_texture);
+        for_each_texture(to.maps, offset_texture);
         textures_.insert(textures_.end(), from.textures.begin(), from.textures.end());
     }
 
@@ -132,24 +132,24 @@ private:
     std::vector<ObjTexture> textures_;
 };
 
-/// A Reader is the state that tinyobjloader's callbacks receive.
-struct Reader {
+/// An ObjReader is the state that tinyobjloader's callbacks receive.
+struct ObjReader {
     ObjMeshBuilder mesh;
-    Slots slots;
+    MaterialSlots slots;
 };
 
 tinyobj::callback_t callbacks() {
     tinyobj::callback_t c;
     c.vertex_cb = [](void* reader, float x, float y, float z, float) {
-        static_cast<Reader*>(reader)->mesh.add_position({x, y, z});
+        static_cast<ObjReader*>(reader)->mesh.add_position({x, y, z});
     };
     c.normal_cb = [](void* reader, float x, float y, float z) {
-        static_cast<Reader*>(reader)->mesh.add_normal({x, y, z});
+        static_cast<ObjReader*>(reader)->mesh.add_normal({x, y, z});
     };
-    c.texcoord_cb = [](void* reader, float u, float v, float) { static_cast<Reader*>(reader)->mesh.add_uv({u, v}); };
-    c.usemtl_cb = [](void* reader, const char* name, int) { static_cast<Reader*>(reader)->slots.use(name); };
+    c.texcoord_cb = [](void* reader, float u, float v, float) { static_cast<ObjReader*>(reader)->mesh.add_uv({u, v}); };
+    c.usemtl_cb = [](void* reader, const char* name, int) { static_cast<ObjReader*>(reader)->slots.use(name); };
     c.index_cb = [](void* user, tinyobj::index_t* indices, int count) {
-        auto* reader = static_cast<Reader*>(user);
+        auto* reader = static_cast<ObjReader*>(user);
         reader->mesh.begin_face(reader->slots.slot());
         for (int i = 0; i < count; ++i)
             reader->mesh.add_corner(indices[i].vertex_index, indices[i].texcoord_index, indices[i].normal_index);
@@ -167,7 +167,7 @@ ObjFile load_obj(const std::filesystem::path& path, const ObjOptions& options) {
     const ObjCounts counts = check_obj(path, text);
     const bool file_normals =
         options.normals == MeshNormals::kFile || (options.normals == MeshNormals::kAuto && counts.normals > 0);
-    Reader reader{ObjMeshBuilder(path, counts, file_normals), Slots(path, counts, options.materials)};
+    ObjReader reader{ObjMeshBuilder(path, counts, file_normals), MaterialSlots(path, counts, options.materials)};
     TextStream buffer(text);
     std::istream stream(&buffer);
     std::string warnings, errors;

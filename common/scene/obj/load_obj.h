@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/geometry/shape.h"
-#include "common/image/image_content.h"
+#include "common/image/channel_selection.h"
 #include "common/material/material.h"
 #include "common/material/surface_maps.h"
 
@@ -30,7 +30,7 @@ struct ObjOptions {
 struct ObjTexture {
     std::filesystem::path file;
     Vec2 scale{1, 1};
-    ImageContent content{};
+    ChannelSelection selection{};
 };
 
 struct ObjMaterial {

@@ -14,10 +14,10 @@ namespace duet {
 
 namespace {
 
-/// Words splits a line at blanks and tabs, as tinyobjloader does.
-class Words {
+/// Tokenizer splits a line at blanks and tabs, as tinyobjloader does.
+class Tokenizer {
 public:
-    explicit Words(std::string_view line) : rest_(line) {}
+    explicit Tokenizer(std::string_view line) : rest_(line) {}
     /// Returns the next word, or an empty one at the end of the line. The loops are written by hand, because
     /// find_first_of calls memchr for each byte.
     std::string_view next() {
@@ -69,20 +69,20 @@ void check_number(const std::filesystem::path& path, std::size_t line, std::stri
     double value = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (end != digits.data() + digits.size() || error == std::errc::invalid_argument || std::isnan(value))
-        fail(path, line, "found " + in_quotes(word) + ", expected a number");
+        fail(path, line, "found " + quoted_text(word) + ", expected a number");
     // from_chars also reports numbers too small for a double as out of range. tinyobjloader reads those as 0, and
     // they are accepted here.
     const bool tiny = error == std::errc::result_out_of_range &&
                       (digits.find("e-") != digits.npos || digits.find("E-") != digits.npos);
     if ((error == std::errc::result_out_of_range && !tiny) || !(std::abs(value) <= kMaxMeshNumber))
-        fail(path, line, "found " + in_quotes(word) + ", expected a number between -1e18 and 1e18");
+        fail(path, line, "found " + quoted_text(word) + ", expected a number between -1e18 and 1e18");
 }
 
 /// Checks that a line has at least `least` numbers. At most `most` numbers are checked; any others are ignored.
-void check_numbers(const std::filesystem::path& path, std::size_t line, Words words, std::size_t least,
+void check_numbers(const std::filesystem::path& path, std::size_t line, Tokenizer tokens, std::size_t least,
                    std::size_t most) {
     for (std::size_t i = 0; i < most; ++i) {
-        const std::string_view word = words.next();
+        const std::string_view word = tokens.next();
         if (word.empty() && i >= least) return;
         check_number(path, line, word);
     }
@@ -99,7 +99,7 @@ public:
         const std::string_view digits = text.substr(text.starts_with('+') ? 1 : 0);
         const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
         if (end != digits.data() + digits.size() || error == std::errc::invalid_argument)
-            fail(*path_, line, "found " + in_quotes(text) + ", expected a " + what_ + " index");
+            fail(*path_, line, "found " + quoted_text(text) + ", expected a " + what_ + " index");
         if (error == std::errc::result_out_of_range || index == 0 || index < -static_cast<std::int64_t>(count))
             refuse(text, count, line);
         if (index > largest_) {
@@ -130,9 +130,9 @@ public:
         : path_(&path), index_{IndexCheck(path, "vertex"), IndexCheck(path, "texture coordinate"),
                                IndexCheck(path, "normal")} {}
 
-    void line(Words words, std::size_t number, ObjCounts& counts) {
+    void line(Tokenizer tokens, std::size_t number, ObjCounts& counts) {
         std::size_t corners = 0;
-        for (std::string_view word = words.next(); !word.empty(); word = words.next(), ++corners)
+        for (std::string_view word = tokens.next(); !word.empty(); word = tokens.next(), ++corners)
             corner(word, number, counts);
         if (corners < 3)
             fail(*path_, number,
@@ -148,15 +148,15 @@ public:
 
 private:
     void corner(std::string_view word, std::size_t line, const ObjCounts& counts) {
-        const std::array<std::size_t, 3> have = {counts.positions, counts.texture_coordinates, counts.normals};
+        const std::array<std::size_t, 3> counts_so_far = {counts.positions, counts.texture_coordinates, counts.normals};
         std::string_view rest = word;
         for (std::size_t i = 0; i < 3; ++i) {
-            const std::string_view part = rest.substr(0, rest.find('/'));
-            if (!part.empty() || i == 0) index_[i].add(part, have[i], line);
-            if (part.size() == rest.size()) return;
-            rest.remove_prefix(part.size() + 1);
+            const std::string_view token = rest.substr(0, rest.find('/'));
+            if (!token.empty() || i == 0) index_[i].add(token, counts_so_far[i], line);
+            if (token.size() == rest.size()) return;
+            rest.remove_prefix(token.size() + 1);
         }
-        fail(*path_, line, "found " + in_quotes(word) + ", expected at most three indices");
+        fail(*path_, line, "found " + quoted_text(word) + ", expected at most three indices");
     }
 
     const std::filesystem::path* path_;
@@ -202,21 +202,21 @@ ObjCounts check_obj(const std::filesystem::path& path, std::string_view text) {
     FaceCheck faces(path);
     Lines lines(text);
     for (std::string_view line; lines.next(line);) {
-        Words words(line);
-        const std::string_view key = words.next();
+        Tokenizer tokens(line);
+        const std::string_view key = tokens.next();
         if (key == "v") {
-            check_numbers(path, lines.number(), words, 3, 3);
+            check_numbers(path, lines.number(), tokens, 3, 3);
             ++counts.positions;
         } else if (key == "vt") {
-            check_numbers(path, lines.number(), words, 1, 2);
+            check_numbers(path, lines.number(), tokens, 1, 2);
             ++counts.texture_coordinates;
         } else if (key == "vn") {
-            check_numbers(path, lines.number(), words, 3, 3);
+            check_numbers(path, lines.number(), tokens, 3, 3);
             ++counts.normals;
         } else if (key == "f") {
-            faces.line(words, lines.number(), counts);
+            faces.line(tokens, lines.number(), counts);
         } else if (key == "mtllib") {
-            counts.material_files.emplace_back(words.rest());
+            counts.material_files.emplace_back(tokens.rest());
         }
     }
     faces.finish(counts);
@@ -227,14 +227,14 @@ ObjCounts check_obj(const std::filesystem::path& path, std::string_view text) {
 void check_mtl(const std::filesystem::path& path, std::string_view text) {
     Lines lines(text);
     for (std::string_view line; lines.next(line);) {
-        Words words(line);
-        const std::string_view key = words.next();
+        Tokenizer tokens(line);
+        const std::string_view key = tokens.next();
         // tinyobjloader does not read "Kd spectral FILE" and "Kd xyz X Y Z", so they are not accepted here.
         if (key == "Kd" || key == "Ks" || key == "Ke" || key == "Tf" || key == "Kt")
-            check_numbers(path, lines.number(), words, 3, 3);
+            check_numbers(path, lines.number(), tokens, 3, 3);
         else if (key == "Ns" || key == "Ni" || key == "d" || key == "Tr" || key == "Pr" || key == "Pm" ||
                  key == "Pc" || key == "Pcr" || key == "illum")
-            check_numbers(path, lines.number(), words, 1, 1);
+            check_numbers(path, lines.number(), tokens, 1, 1);
     }
 }
 

@@ -89,12 +89,12 @@ bool ObjMeshBuilder::add_face(std::vector<Corner>& face, std::uint16_t slot) {
     polygon_.clear();
     for (const Corner& corner : face) polygon_.push_back(positions_[corner.position]);
     if (any_normal_) use_face_normal(face);
-    split_.clear();
-    if (!triangulate(polygon_, split_))
+    triangulation_.clear();
+    if (!triangulate(polygon_, triangulation_))
         throw Error(message(path_->string(), ": a concave face of ", face.size(), " corners, expected at most ",
                             kMaxConcaveCorners));
     bool any = false;
-    for (const auto& [a, b, c] : split_) {
+    for (const auto& [a, b, c] : triangulation_) {
         if (face[a].position == face[b].position || face[b].position == face[c].position ||
             face[c].position == face[a].position)
             continue;
@@ -106,14 +106,14 @@ bool ObjMeshBuilder::add_face(std::vector<Corner>& face, std::uint16_t slot) {
 }
 
 void ObjMeshBuilder::use_face_normal(std::vector<Corner>& face) {
-    const auto lacks = [&](const Corner& corner) {
+    const auto lacks_normal = [&](const Corner& corner) {
         return corner.normal == kNone || normals_[corner.normal] == Vec3();
     };
-    if (std::none_of(face.begin(), face.end(), lacks)) return;
+    if (std::none_of(face.begin(), face.end(), lacks_normal)) return;
     const Vec3 normal = unit(newell_normal(polygon_));
     normals_.push_back(normal == Vec3() ? Vec3(0, 1, 0) : normal); // a face without area is never visible
     for (Corner& corner : face)
-        if (lacks(corner)) corner.normal = static_cast<std::uint32_t>(normals_.size() - 1);
+        if (lacks_normal(corner)) corner.normal = static_cast<std::uint32_t>(normals_.size() - 1);
 }
 
 std::size_t ObjMeshBuilder::find(const Corner& corner) const {

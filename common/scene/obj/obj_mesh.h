@@ -58,7 +58,7 @@ private:
     bool any_uv_ = false, any_normal_ = false;
 
     std::vector<Vec3> polygon_; ///< polygon of the current face
-    std::vector<std::array<std::uint32_t, 3>> split_;
+    std::vector<std::array<std::uint32_t, 3>> triangulation_;
     std::vector<Corner> vertices_;
     /// This is a hash table of indices into vertices_ with open addressing. Its size is a power of two.
     std::vector<std::uint32_t> table_;

@@ -123,9 +123,9 @@ void add_smooth_normals(Mesh& mesh) {
     const std::size_t vertices = mesh.positions.size();
     constexpr Index kNone = ~0u;
     std::vector<Index> first_set(vertices, kNone);    // set of each vertex's normal
-    std::unordered_map<std::uint64_t, Index> doubled; // maps (vertex, set) to the new vertex on a crease
+    std::unordered_map<std::uint64_t, Index> duplicates; // maps (vertex, set) to the new vertex on a crease
     mesh.normals.assign(vertices, Vec3(0, 1, 0));
-    const auto give_normal = [&](Index vertex, Index set) {
+    const auto set_normal = [&](Index vertex, Index set) {
         const Vec3d n = unit_or_zero(normals[set]);
         mesh.normals[vertex] = n == Vec3d() ? Vec3(0, 1, 0) : Vec3(n);
     };
@@ -135,15 +135,15 @@ void add_smooth_normals(Mesh& mesh) {
             const Index set = smoother.set_of(3 * t + k);
             if (first_set[vertex] == kNone) {
                 first_set[vertex] = set;
-                give_normal(vertex, set);
+                set_normal(vertex, set);
             } else if (first_set[vertex] != set) {
-                const auto [entry, added] = doubled.try_emplace((static_cast<std::uint64_t>(vertex) << 32) | set,
-                                                                static_cast<Index>(mesh.positions.size()));
+                const auto [entry, added] = duplicates.try_emplace((static_cast<std::uint64_t>(vertex) << 32) | set,
+                                                                   static_cast<Index>(mesh.positions.size()));
                 if (added) {
                     mesh.positions.push_back(Vec3(mesh.positions[vertex]));
                     if (!mesh.uvs.empty()) mesh.uvs.push_back(Vec2(mesh.uvs[vertex]));
                     mesh.normals.emplace_back();
-                    give_normal(entry->second, set);
+                    set_normal(entry->second, set);
                 }
                 vertex = entry->second;
             }

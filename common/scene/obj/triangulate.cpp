@@ -14,14 +14,14 @@ using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 std::vector<Vec2d> project(std::span<const Vec3> polygon) {
     const Vec3d n = newell_normal(polygon), size = abs(n);
     const std::size_t axis = longest_axis(size);
-    std::vector<Vec2d> flat;
-    flat.reserve(polygon.size());
+    std::vector<Vec2d> projected;
+    projected.reserve(polygon.size());
     for (const Vec3 p : polygon) {
         const Vec3d d = Vec3d(p) - Vec3d(polygon[0]);
         const double x = d[(axis + 1) % 3], y = d[(axis + 2) % 3];
-        flat.push_back(n[axis] < 0 ? Vec2d(y, x) : Vec2d(x, y));
+        projected.push_back(n[axis] < 0 ? Vec2d(y, x) : Vec2d(x, y));
     }
-    return flat;
+    return projected;
 }
 
 /// Returns twice the signed area of abc, which is positive where abc is counter-clockwise.
@@ -32,19 +32,19 @@ double area(Vec2d a, Vec2d b, Vec2d c) {
 
 bool is_convex(const std::vector<Vec2d>& p) {
     const std::size_t n = p.size();
-    // turns_of_x counts the direction changes of x. A polygon that winds twice also turns left at each corner,
+    // x_direction_changes counts the direction changes of x. A polygon that winds twice also turns left at each corner,
     // but its x changes direction more than twice.
-    int turns_of_x = 0;
+    int x_direction_changes = 0;
     double last = 0, first = 0;
     for (std::size_t i = 0; i < n; ++i) {
         if (!(area(p[i], p[(i + 1) % n], p[(i + 2) % n]) > 0)) return false;
         const double dx = p[(i + 1) % n].x - p[i].x;
         if (dx == 0) continue;
         if (last == 0) first = dx;
-        turns_of_x += last * dx < 0;
+        x_direction_changes += last * dx < 0;
         last = dx;
     }
-    return turns_of_x + (last * first < 0) <= 2;
+    return x_direction_changes + (last * first < 0) <= 2;
 }
 
 double distance_squared(Vec3 a, Vec3 b) { return length_squared(Vec3d(a) - Vec3d(b)); }
@@ -142,14 +142,14 @@ bool triangulate(std::span<const Vec3> polygon, Triangles& triangles) {
         triangles.push_back({0, 1, 2});
         return true;
     }
-    const std::vector<Vec2d> flat = project(polygon);
+    const std::vector<Vec2d> projected = project(polygon);
     if (polygon.size() == 4) {
-        split_quad(polygon, flat, triangles);
-    } else if (is_convex(flat)) {
+        split_quad(polygon, projected, triangles);
+    } else if (is_convex(projected)) {
         for (std::uint32_t i = 1; i + 1 < polygon.size(); ++i) triangles.push_back({0, i, i + 1});
     } else {
         if (polygon.size() > kMaxConcaveCorners) return false;
-        EarClipper(flat).clip(triangles);
+        EarClipper(projected).clip(triangles);
     }
     return true;
 }

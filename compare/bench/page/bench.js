@@ -1,7 +1,7 @@
 // ---- bench.js: builds the page from the report.
 
 const report = data;
-const contenderName = row => row.sampler ? `${row.technique}, ${row.sampler}` : row.technique;
+const rendererName = row => row.sampler ? `${row.technique}, ${row.sampler}` : row.technique;
 const excluded = report.excluded.length > 0;
 const measures = [
   { key: "mse", name: "MSE", error: row => row.mse, efficiency: row => row.efficiency },
@@ -15,7 +15,7 @@ let measure = measures[0];
 function sceneCurves(scene, x) {
   const curves = new Map();
   for (const row of scene.rows) {
-    const name = contenderName(row), e = measure.error(row), at = x(row);
+    const name = rendererName(row), e = measure.error(row), at = x(row);
     if (!curves.has(name)) curves.set(name, { name, index: curves.size, points: [] });
     if (!(e.value > 0) || !(at > 0)) continue; // not representable on a logarithmic scale
     curves.get(name).points.push({ x: at, y: e.value, low: e.low || e.value, high: e.high || e.value, text: pointText(row, e) });
@@ -24,7 +24,7 @@ function sceneCurves(scene, x) {
 }
 
 function pointText(row, e) {
-  const lines = [`${contenderName(row)}, ${row.spp} ${row.spp === 1 ? "sample" : "samples"} a pixel`,
+  const lines = [`${rendererName(row)}, ${row.spp} ${row.spp === 1 ? "sample" : "samples"} a pixel`,
     `${measure.name} ${figure(e.value)} (${figure(e.low)} to ${figure(e.high)})`,
     `${duration(row.seconds.value)} (${duration(row.seconds.low)} to ${duration(row.seconds.high)})`,
     `${row.repeats} seeds`];
@@ -50,8 +50,8 @@ function sceneSection(scene) {
   const plots = put("div", { class: "plots" }, figures.map(([what, xName, x, xTicks]) => put("figure", {}, [
     put("figcaption", {}, [put("strong", {}, `Error ${what}`), "Dotted: half the error for twice the cost."]),
     plot({ curves: sceneCurves(scene, x), xName, yName: measure.name, xTicks, label: `${measure.name} ${what}, ${scene.scene}: arrow keys go from point to point` })])));
-  const names = [...new Set(scene.rows.map(contenderName))];
-  const notes = new Map(scene.rows.filter(row => row.note).map(row => [contenderName(row), row.note]));
+  const names = [...new Set(scene.rows.map(rendererName))];
+  const notes = new Map(scene.rows.filter(row => row.note).map(row => [rendererName(row), row.note]));
   section.append(
     put("h2", {}, scene.scene),
     put("p", {}, `${scene.width} × ${scene.height} pixels, paths of up to ${report.depth} scatterings, ${report.threads} threads. Reference: ${report.reference_spp} samples a pixel, its own MSE about ${figure(scene.reference.mse)}.`),
@@ -59,7 +59,7 @@ function sceneSection(scene) {
     plots, ...scene.checks.map(check => put("p", { class: "verdict" }, checkText(scene, check))),
     ...(scene.no_naive ? [put("p", { class: "verdict" }, `No check by naive: ${scene.no_naive}.`)] : []),
     ...[...notes].map(([name, note]) => put("p", {}, `${name}: ${note} Its error levels off there.`)),
-    efficiencyTable(scene.rows, measure, row => names.indexOf(contenderName(row))));
+    efficiencyTable(scene.rows, measure, row => names.indexOf(rendererName(row))));
   if (scene.equal_times.length) section.append(equalTimeTable(scene.equal_times, measure.key.startsWith("rest")));
   return section;
 }

@@ -41,7 +41,7 @@ function efficiencyTable(rows, measure, indexOf) {
     return bar;
   };
   return sortableTable(rows, [
-    { name: "technique", cell: row => [legendMark(indexOf(row)), contenderName(row), ...(row.counted ? [] : [put("small", {}, " (its other setting counts)")])], key: contenderName },
+    { name: "technique", cell: row => [legendMark(indexOf(row)), rendererName(row), ...(row.counted ? [] : [put("small", {}, " (its other setting counts)")])], key: rendererName },
     { name: "samples", cell: row => String(row.spp), key: row => row.spp },
     { name: "seconds", cell: row => withBand(row.seconds, duration), key: row => row.seconds.value },
     { name: measure.name, cell: row => withBand(measure.error(row), figure), key: row => measure.error(row).value },
@@ -67,7 +67,7 @@ function baselineTable(baseline) {
     .filter(([is]) => is).map(([, text, kind]) => put("span", { class: kind }, (kind === "bad" ? "✗ " : "✓ ") + text + " "));
   return sortableTable(baseline.rows, [
     { name: "scene", cell: row => row.scene, key: row => row.scene },
-    { name: "technique", cell: contenderName, key: contenderName },
+    { name: "technique", cell: rendererName, key: rendererName },
     { name: "samples", cell: row => String(row.spp), key: row => row.spp },
     { name: "time, now / then", cell: row => withBand(row.seconds_ratio, figure), key: row => row.seconds_ratio.value, down: true },
     { name: "MSE, now / then", cell: row => withBand(row.mse_ratio, figure), key: row => row.mse_ratio.value, down: true },

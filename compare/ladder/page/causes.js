@@ -41,7 +41,7 @@ class CauseView {
 
   show(alone) { this.alone = this.alone === alone ? -1 : alone; this.paint(); }
 
-  // Paints as cause_picture() in compare/ladder/shares.cpp does: invisible differences are dark.
+  // Paints as cause_image() in compare/ladder/shares.cpp does: invisible differences are dark.
   paint() {
     const context = this.canvas.getContext("2d"), picture = context.createImageData(width, height);
     for (let i = 0; i < pixelCount; ++i) {

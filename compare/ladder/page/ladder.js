@@ -50,7 +50,7 @@ function showStep(k, buttons) {
     ...(k === 0 ? [] : [figure(data.changes[k - 1], `Picture ${k - 1} − picture ${k}:`, `${share.title}, share ${shareText(share.share)}`)]));
 }
 
-function climb() {
+function ladderSection() {
   const names = ["0 rasterized", ...report.rungs.map(r => `${r.rung} ${r.id}`)];
   const buttons = names.map(name => make("button", { type: "button" }, name));
   buttons.forEach((button, k) => button.addEventListener("click", () => showStep(k, buttons)));
@@ -104,7 +104,7 @@ fill("lede", ...lede());
 fill("cause-text", `Something is to be seen in ${shareText(report.visible_pixels)} of the pixels: there the 8-bit pictures differ by ` +
   `${data.visible_steps} steps or more; the other pixels are dark. The cause is that of a pixel and its neighbours together; grey: noise is larger than any.`);
 sharesTable();
-climb();
+ladderSection();
 element("rungs").append(...report.rungs.map(rung));
 codeTable();
 if (report.invalid_samples > 0)

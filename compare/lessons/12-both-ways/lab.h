@@ -37,7 +37,7 @@ struct Errors {
 Errors errors(const ImageRgb& encoded_image, const ImageRgb& encoded_reference);
 
 /// What one way to draw found at a pixel.
-struct Finding {
+struct PixelResult {
     int triangle; ///< the index of the triangle that is seen; -1 where there is none
     float sun;    ///< the fraction of the sun's light that arrives there, 0 to 1
     Rgb color;    ///< linear
@@ -48,19 +48,19 @@ enum class Cause { kSame, kEdge, kShadow, kLight };
 /// kEdge: they see different triangles, or only one of them sees any.
 /// kShadow: the fractions of the sun's light differ by more than the tolerance.
 /// kLight: all else.
-Cause classify_pixel(const Finding& first, const Finding& second, float tolerance);
+Cause classify_pixel(const PixelResult& first, const PixelResult& second, float tolerance);
 
 /// How the squared errors of a random method come about.
-struct ErrorParts {
+struct ErrorComponents {
     double noise = 0; ///< the variance of a value of one image
-    double bias2 = 0; ///< the squared bias: how far the mean of endlessly many images is from the reference
+    double squared_bias = 0; ///< the squared bias: how far the mean of endlessly many images is from the reference
 };
 /// From n >= 2 images of one scene, made with different random numbers, all as large as the reference; linear. For each
 /// value (a channel of a pixel) let m be its mean over the images. Then its noise is the sum of (a - m)² over the
 /// images, divided by n - 1, and its squared bias is (m - b)² - noise / n. (The part that is subtracted is what the
 /// noise of m itself makes of (m - b)²; so the result may be slightly negative.) Returns the means over all values. In
 /// double.
-ErrorParts split_error(const std::vector<ImageRgb>& images, const ImageRgb& reference);
+ErrorComponents split_error(const std::vector<ImageRgb>& images, const ImageRgb& reference);
 
 } // namespace duet::lab
 

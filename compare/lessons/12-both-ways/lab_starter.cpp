@@ -29,14 +29,14 @@ Errors errors(const ImageRgb& encoded_image, const ImageRgb& encoded_reference) 
     return {};
 }
 
-Cause classify_pixel(const Finding& first, const Finding& second, float tolerance) {
+Cause classify_pixel(const PixelResult& first, const PixelResult& second, float tolerance) {
     not_attempted(); // Remove this line when you start.
     (void)first, (void)second, (void)tolerance;
     // The order of the questions matters.
     return Cause::kSame;
 }
 
-ErrorParts split_error(const std::vector<ImageRgb>& images, const ImageRgb& reference) {
+ErrorComponents split_error(const std::vector<ImageRgb>& images, const ImageRgb& reference) {
     not_attempted(); // Remove this line when you start.
     (void)images, (void)reference;
     // For each value two passes over the images: the first for the mean, the second for the squares about it.

@@ -9,7 +9,7 @@
 
 using namespace duet;
 using namespace duet::grading;
-using lab::Camera, lab::Cause, lab::ErrorParts, lab::Errors, lab::Finding;
+using lab::Camera, lab::Cause, lab::ErrorComponents, lab::Errors, lab::PixelResult;
 
 LAB_TITLE("compare-12", "Both ways")
 
@@ -237,7 +237,7 @@ LAB_ITEM(15, "the errors of an image") {
 }
 
 LAB_ITEM(15, "the cause of a difference") {
-    const auto check = [&](const std::string& name, const Finding& a, const Finding& b, Cause expected,
+    const auto check = [&](const std::string& name, const PixelResult& a, const PixelResult& b, Cause expected,
                            const std::vector<Mistake<Cause>>& mistakes) {
         item.equal("The cause (0 kSame, 1 kEdge, 2 kShadow, 3 kLight) where " + name,
                    STUDENT(classify_pixel)(a, b, 0.1f), expected, mistakes);
@@ -271,7 +271,7 @@ LAB_ITEM(15, "the cause of a difference") {
 
 LAB_ITEM(15, "bias and noise") {
     const auto check = [&](const std::string& name, const std::vector<ImageRgb>& images, const ImageRgb& reference) {
-        ErrorParts e;
+        ErrorComponents e;
         const double n = static_cast<double>(images.size()), values = 3.0 * static_cast<double>(reference.size());
         double deviation = 0, bias = 0, raw = 0;
         for (std::size_t i = 0; i < reference.size(); ++i)
@@ -284,11 +284,11 @@ LAB_ITEM(15, "bias and noise") {
                         pairs += sqr(static_cast<double>(images[j][i][c]) - static_cast<double>(images[k][i][c]));
                 }
                 const double noise = pairs / (n * (n - 1)), off = sum / n - static_cast<double>(reference[i][c]);
-                e.noise += noise / values, e.bias2 += (off * off - noise / n) / values;
+                e.noise += noise / values, e.squared_bias += (off * off - noise / n) / values;
                 deviation += std::sqrt(noise) / values, bias += off / values, raw += off * off / values;
             }
         const double slack = 1e-9 + 1e-5 * (e.noise + raw);
-        const ErrorParts found = STUDENT(split_error)(images, reference);
+        const ErrorComponents found = STUDENT(split_error)(images, reference);
         item.near(
             name + ": the noise", found.noise, e.noise, slack,
             {{e.noise * (n - 1) / n, "The squares were divided by n. They are taken about the images' own mean, which "
@@ -303,12 +303,12 @@ LAB_ITEM(15, "bias and noise") {
               "The squares were taken about the reference: that counts the "
               "bias, too. Take them about the images' mean."}});
         item.near(
-            name + ": the squared bias", found.bias2, e.bias2, slack,
+            name + ": the squared bias", found.squared_bias, e.squared_bias, slack,
             {{raw, "The mean of n images has noise, too, and its square is never negative. Subtract noise / n."},
              {raw - e.noise, "The whole noise of one image was subtracted. The mean of n images has only noise / n."},
              {bias * bias, "The differences were averaged before they were squared, so biases of opposite signs "
                            "cancel: square the difference of each value."},
-             {std::max(e.bias2, 0.0),
+             {std::max(e.squared_bias, 0.0),
               "It may be negative: do not cut it off. Else its mean over many tests is too large."},
              {raw + e.noise * (n - 1) / n, "This is the mean squared error of single images, noise and all."}});
     };

@@ -49,7 +49,7 @@ class Picture {
   rgb(i) { return [0, 1, 2].map(channel => this.value(i, channel)); }
 }
 
-async function decodePicture(texts) {
+async function decodeImage(texts) {
   return new Picture(await Promise.all(texts.map(text => decodePlane(text, 2))));
 }
 
@@ -72,7 +72,7 @@ async function decodeFlip(flip) {
 
 async function decodeAll() {
   const [a, b, difference, hits, flip] = await Promise.all([
-    decodePicture(data.sides[0].picture), decodePicture(data.sides[1].picture), decodePicture(data.difference),
+    decodeImage(data.sides[0].picture), decodeImage(data.sides[1].picture), decodeImage(data.difference),
     data.hits && decodeHits(data.hits), decodeFlip(data.flip)]);
   return { pictures: [a, b], difference, hits, flip };
 }

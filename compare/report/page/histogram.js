@@ -72,7 +72,7 @@ function countBins() {
 }
 
 // Returns the position of a value, in bins from the left.
-function placeOf(v) {
+function positionOf(v) {
   const { edges } = histogram, k = edges.findIndex(edge => edge > v);
   return k < 0 ? edges.length - 1 : k === 0 ? 0 : k - 1 + (v - edges[k - 1]) / (edges[k] - edges[k - 1]);
 }
@@ -101,7 +101,7 @@ function showHistogram() {
   const lines = [];
   for (let n = 1; n <= top; n *= 10) lines.push(make("span", { style: `bottom:${heightOf(n).toFixed(2)}%` }, n < 1000 ? String(n) : powerText(Math.round(Math.log10(n)))));
   fill("count-lines", ...lines);
-  fill("bin-ticks", ...quantity.ticks(edges).map(v => make("span", { style: `left:${100 * placeOf(v) / bins}%` }, roundText(v))));
+  fill("bin-ticks", ...quantity.ticks(edges).map(v => make("span", { style: `left:${100 * positionOf(v) / bins}%` }, roundText(v))));
   fill("bin-rows", ...counts.map((n, k) => make("tr", {}, make("th", { scope: "row" }, binRange(k)), make("td", { class: "number" }, countText(n)))));
   showBin();
 }
@@ -120,7 +120,7 @@ function showBin() {
   if (k >= 0) {
     for (let i = 0; i < pixelCount; ++i) if (histogram.binOf[i] === k) lit.push(i);
     lit.sort((i, j) => Math.abs(histogram.values[j]) - Math.abs(histogram.values[i]) || i - j);
-    paintVeil(layers.veil, i => histogram.binOf[i] === k);
+    paintDimming(layers.veil, i => histogram.binOf[i] === k);
   }
   showSteps();
   redraw();

@@ -60,7 +60,7 @@ function showSteps() {
 function updateExposure() {
   element("exposure").value = state.ev;
   element("exposure-value").textContent = minus(`${state.ev > 0 ? "+" : ""}${state.ev.toFixed(1)} EV`);
-  layers.pictures.forEach((layer, k) => paintPicture(layer, decoded.pictures[k], state.ev));
+  layers.pictures.forEach((layer, k) => paintImage(layer, decoded.pictures[k], state.ev));
   showInspector();
 }
 
@@ -175,7 +175,7 @@ function fillIn() {
   element("mode-keys").textContent = `1 – ${modes.length}`;
   element("mode-names").textContent = modes.map(mode => mode.title.toLowerCase()).join(", ");
   showSections();
-  showLede();
+  showSummary();
   showMetrics();
   if (data.hits) {
     showHits();

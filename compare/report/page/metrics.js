@@ -75,13 +75,13 @@ const listed = key => key in metricTexts;
 const partOrder = ["flip_min", "flip_first_quartile", "flip_weighted_median", "flip_third_quartile", "flip_max"];
 const rank = part => partOrder.includes(part) ? partOrder.indexOf(part) : partOrder.length;
 const partsOf = key => Object.keys(data.metrics).filter(part => part.startsWith(key + "_") && !listed(part) && part !== "worst_pixel").sort((a, b) => rank(a) - rank(b));
-const worthARow = key => key === "nan" || key === "infinite" ? Object.values(data.metrics[key]).some(n => n > 0) : true;
+const hasRow = key => key === "nan" || key === "infinite" ? Object.values(data.metrics[key]).some(n => n > 0) : true;
 
 function showMetrics() {
   fill("metrics-text", `${sides[0].name} (A) against ${sides[1].name} (B, the reference), `, data.eight_bit
     ? "8-bit files: relMSE, SMAPE and the mean signed error compare linear radiance, all else the stored values."
     : "over linear radiance.");
-  const known = Object.keys(metricTexts).filter(key => key in data.metrics && worthARow(key));
+  const known = Object.keys(metricTexts).filter(key => key in data.metrics && hasRow(key));
   const parts = known.flatMap(partsOf), others = Object.keys(data.metrics).filter(key =>
     !listed(key) && !parts.includes(key) && key !== "worst_pixel" && (key !== "pixels" || data.metrics.pixels < pixelCount));
   fill("metrics-table", make("tbody", {}, ...[...known, ...others].map(metricRow)));

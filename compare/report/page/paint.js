@@ -35,7 +35,7 @@ const invalidColor = [255, 0, 255]; // magenta, for NaN and infinity
 const invalid = bits => (bits & 0x7c00) === 0x7c00;
 function write(bytes, at, r, g, b) { bytes[at] = r; bytes[at + 1] = g; bytes[at + 2] = b; }
 
-function paintPicture(canvas, picture, stops) {
+function paintImage(canvas, picture, stops) {
   const table = exposureTable(stops), [r, g, b] = picture.planes;
   paint(canvas, (i, bytes, at) => {
     if (invalid(r[i]) || invalid(g[i]) || invalid(b[i])) write(bytes, at, ...invalidColor);
@@ -53,7 +53,7 @@ function paintGround(canvas, picture) {
 }
 
 // Paints gray over all pixels except those that are `lit`, so that these stand out whether they are dark or bright.
-function paintVeil(canvas, lit) {
+function paintDimming(canvas, lit) {
   paint(canvas, (i, bytes, at) => {
     write(bytes, at, 116, 116, 116);
     bytes[at + 3] = lit(i) ? 0 : 225;

@@ -12,7 +12,7 @@ function showSections() {
   if (!data.hits) element("figures").className = "single";
 }
 
-function showLede() {
+function showSummary() {
   element("title").textContent = data.title;
   const strong = (text, style = "") => make("strong", { class: style }, text), parts = [];
   if (rendered) {

@@ -102,7 +102,7 @@ function settle() {
 
 const paneAt = (sx, sy) => panes().find(p => sx >= p.x && sx < p.x + p.w && sy >= p.y && sy < p.y + p.h) || panes()[0];
 // These two convert a position on the stage to one in the image, and back.
-function toPicture(sx, sy) {
+function toImage(sx, sy) {
   const p = paneAt(sx, sy), z = zoomNow();
   return [(sx - p.x - p.w / 2) / z + state.x, (sy - p.y - p.h / 2) / z + state.y];
 }
@@ -113,9 +113,9 @@ function toStage(pane, x, y) {
 
 // Zooms by a factor and keeps the point at (sx, sy) in place.
 function zoomAt(factor, sx = stageWidth / 2, sy = stageHeight / 2) {
-  const before = toPicture(sx, sy);
+  const before = toImage(sx, sy);
   state.zoom = clamp(zoomNow() * factor, fitZoom(), maxZoom);
-  const after = toPicture(sx, sy);
+  const after = toImage(sx, sy);
   state.x += before[0] - after[0];
   state.y += before[1] - after[1];
   settle();

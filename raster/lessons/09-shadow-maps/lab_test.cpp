@@ -97,7 +97,7 @@ struct Query {
     double bias;
     int reach;
 };
-using Named = NamedWay<Way>;
+using Named = WrongMethod<Way>;
 
 /// Compares what a student's function says of many points. If one of the typical ways explains all that was found, its
 /// text is told.
@@ -110,7 +110,7 @@ void judge(Item& item, const std::string& function, const ShadowMap& map, const 
     for (std::size_t i = 0; i < queries.size(); ++i) {
         const float expected = at(i, {});
         if (is_near(found[i], expected, 1e-4)) continue;
-        const std::string hint = way_of(found, ways, at);
+        const std::string hint = matching_mistake(found, ways, at);
         const Vec3d place = cube.place(queries[i].p);
         const double side = map.depth.width();
         item.near(message(function, " for a point at column ", (1 + place.x) / 2 * side, ", row ",

@@ -102,7 +102,7 @@ double fraction(const View& view, Vec3d p, const std::vector<Vec3>& directions, 
     return directions.empty() ? 0 : blocked / static_cast<double>(directions.size());
 }
 
-using Named = NamedWay<Way>;
+using Named = WrongMethod<Way>;
 const Named kFlipped{{.flipped = true},
                      "The rows are upside down: y points up in clip space, but row 0 is the top row."};
 const Named kNoRange{{.no_range = true}, "The range is not tested: what is far in front of the point hides it, too."};
@@ -210,7 +210,7 @@ LAB_ITEM(20, "a point is hidden, or not") {
             const Vec3d at = view.place(points[k]);
             item.near(message("Whether a point ", kind, " is hidden (column ", at.x, ", row ", at.y, ", w ", at.z,
                               ", bias ", bias, ", range ", range, ")"),
-                      found[k], expected(k, {}), 0, {{found[k], way_of(found, ways, expected)}});
+                      found[k], expected(k, {}), 0, {{found[k], matching_mistake(found, ways, expected)}});
         }
     };
     ask("in the scene", 0.01, 0.3, {kFlipped, kInFront, kNoRange, kNoBias}, [&] {
@@ -261,7 +261,7 @@ LAB_ITEM(20, "the occlusion of a point") {
         const auto expected = [&](std::size_t k, Way way) {
             return static_cast<float>(fraction(view, Vec3d(points[k]), directions[k], s, way));
         };
-        const std::string hint = way_of<Way>(
+        const std::string hint = matching_mistake<Way>(
             found,
             {{{.each_point = true},
               "Each hidden point counts. A direction must count once, as soon as one of its points is hidden."},

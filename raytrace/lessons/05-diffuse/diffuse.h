@@ -26,7 +26,7 @@ inline Vec3 random_diffuse_direction(Vec3 n, Random& random) {
 
 /// The point of a hit, computed again from the center: then it is off by few roundings, each at most 2^-24 of its
 /// number. It is moved out of the surface, to the side from which the ray came, by a bound of that error.
-inline Vec3 beyond_error(const Sphere& sphere, const Hit& hit) {
+inline Vec3 offset_point(const Sphere& sphere, const Hit& hit) {
     const Vec3 outward = normalize(hit.p - sphere.center);
     const float bound = 8 * 0x1p-24f * (max_component(abs(sphere.center)) + sphere.radius);
     return sphere.center + outward * (sphere.radius + (hit.front ? bound : -bound));

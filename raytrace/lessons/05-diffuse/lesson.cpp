@@ -31,17 +31,17 @@ struct Scene {
 };
 
 // How the ray that goes on keeps away from the surface that it leaves.
-enum class Leave { kAtOnce, kAfterEpsilon, kBeyondError };
+enum class RayStart { kExact, kEpsilon, kErrorBound };
 
 // The light that comes along a ray: that of the sky, dimmed by each surface it came by.
-Rgb matte_color(const Scene& scene, Ray ray, Leave leave, Random& random) {
+Rgb matte_color(const Scene& scene, Ray ray, RayStart start, Random& random) {
     Rgb weight(1);
     for (int bounces = 0; bounces < 50; ++bounces) {
         const std::optional<Hit> hit = closest_hit(scene.spheres, ray);
         if (!hit) return weight * sky_color(ray.direction);
         weight *= scene.albedos[hit->index];
-        const Vec3 origin = leave == Leave::kBeyondError ? beyond_error(scene.spheres[hit->index], *hit) : hit->p;
-        ray = {origin, random_diffuse_direction(hit->n, random), leave == Leave::kAfterEpsilon ? 1e-3f : 0};
+        const Vec3 origin = start == RayStart::kErrorBound ? offset_point(scene.spheres[hit->index], *hit) : hit->p;
+        ray = {origin, random_diffuse_direction(hit->n, random), start == RayStart::kEpsilon ? 1e-3f : 0};
     }
     return Rgb(0);
 }
@@ -55,12 +55,12 @@ constexpr Window kWhole{400, 225, -0.86f, 0.44f, 1 / 225.0f}, kHalf{160, 90, -0.
     kClose{176, 99, -0.3f, 0.06f, 1 / 198.0f};
 
 // The scene with all lengths times `scale`. The picture should not depend on it: only meters become kilometers.
-ImageRgb render(const Window& window, int samples, Leave leave, float scale = 1) {
+ImageRgb render(const Window& window, int samples, RayStart start, float scale = 1) {
     Scene scene;
     for (Sphere& sphere : scene.spheres) sphere = {sphere.center * scale, sphere.radius * scale};
     return average_samples(window.width, window.height, samples, [&](float x, float y, Random& random) {
         const Ray ray{{0, 0, 0}, {window.left + x * window.pixel, window.top - y * window.pixel, -1}};
-        return matte_color(scene, ray, leave, random);
+        return matte_color(scene, ray, start, random);
     });
 }
 
@@ -99,16 +99,16 @@ Plot angles_of_directions() {
 }
 
 int main() {
-    write_image("evidence.png", render(kWhole, 256, Leave::kBeyondError));
-    write_image("gamma.png", without_and_with_gamma(render(kHalf, 128, Leave::kBeyondError)));
+    write_image("evidence.png", render(kWhole, 256, RayStart::kErrorBound));
+    write_image("gamma.png", without_and_with_gamma(render(kHalf, 128, RayStart::kErrorBound)));
     write_plot("angles.svg", angles_of_directions());
-    write_image("zero.png", render(kClose, 128, Leave::kAtOnce));
-    write_image("error.png", render(kClose, 128, Leave::kBeyondError));
+    write_image("zero.png", render(kClose, 128, RayStart::kExact));
+    write_image("error.png", render(kClose, 128, RayStart::kErrorBound));
     // A power of two as scale changes no digit of a float: pictures differ only where the program mixes in meters.
     for (const auto& [name, scale] : {std::pair{"small", 0x1p-10f}, {"middle", 1.0f}, {"large", 0x1p10f}}) {
-        write_image(std::string("epsilon-") + name + ".png", render(kClose, 128, Leave::kAfterEpsilon, scale));
-        for (const Leave leave : {Leave::kAtOnce, Leave::kBeyondError})
-            if (render(kClose, 2, leave, scale).pixels() != render(kClose, 2, leave).pixels()) return 1;
+        write_image(std::string("epsilon-") + name + ".png", render(kClose, 128, RayStart::kEpsilon, scale));
+        for (const RayStart start : {RayStart::kExact, RayStart::kErrorBound})
+            if (render(kClose, 2, start, scale).pixels() != render(kClose, 2, start).pixels()) return 1;
     }
     std::puts("Without an epsilon, the pictures at all three scales are equal to the last bit.");
 }

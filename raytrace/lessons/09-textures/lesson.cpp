@@ -18,7 +18,7 @@ Rgb path_color(const Scene& scene, const Ray& ray, int bounces, Random& random) 
     if (!hit || bounces == 0) return hit ? Rgb(0) : sky_color(ray.direction);
     const Sphere& sphere = scene.spheres[hit->index];
     const Rgb color = scene.textures[hit->index](sphere_uv(hit->n), hit->p - sphere.center);
-    const Ray next{beyond_error(sphere, *hit), random_diffuse_direction(hit->n, random)};
+    const Ray next{offset_point(sphere, *hit), random_diffuse_direction(hit->n, random)};
     return color * path_color(scene, next, bounces - 1, random);
 }
 void draw(const std::string& file, const Scene& scene, const View& view, int width, int height, int samples) {
@@ -51,9 +51,9 @@ Rgb letters(Vec2 uv) { // a map with 8 columns and 4 rows of the letter F
 int main() {
     const auto color = [](float x, float y, Random&) { return planet(sphere_normal({x / 320, 1 - y / 160})); };
     write_image("planet.png", average_samples(320, 160, 4, color));
-    PixelFile file = read_pixel_file("planet.png");
+    StoredImage file = read_stored_image("planet.png");
     const ImageRgb map = to_linear(file); // the light that the numbers of the file stand for
-    file.encoding = PixelFile::Encoding::kLinear;
+    file.encoding = StoredImage::Encoding::kLinear;
     const ImageRgb pale = to_linear(file); // the numbers themselves
     const auto image = [](const ImageRgb& pixels) { return [&](Vec2 uv, Vec3) { return image_color(pixels, uv); }; };
     const auto stone = [](const auto& noise) { // a texture from noise; the shift is any

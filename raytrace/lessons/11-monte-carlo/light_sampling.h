@@ -26,12 +26,12 @@ inline float quad_density(const Quad& quad, Vec3 p, Vec3 q) {
 }
 
 /// What a sample counts for, by the density with which it was drawn and by that of the other way to draw it.
-using Share = float (*)(float own, float other);
+using MisWeight = float (*)(float own, float other);
 inline float all(float, float) { return 1; }
 inline float none(float, float) { return 0; }
 inline float power_heuristic(float own, float other) { return 1 / (1 + sqr(other / own)); } // (Veach 1997, chapter 9)
 struct Strategy {
-    Share chance, light; ///< of a light that the path meets by chance, and of one of which a point is drawn
+    MisWeight chance, light; ///< of a light that the path meets by chance, and of one of which a point is drawn
 };
 struct Scene {
     std::vector<Quad> quads;

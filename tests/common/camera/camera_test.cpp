@@ -38,7 +38,7 @@ TEST_SUITE("unit") {
                 random_view(engine, trial % 2 ? Camera::Projection::kPerspective : Camera::Projection::kOrthographic);
             const CameraModel model(view);
             const Vec2d pixel(u(engine) * 200, u(engine) * 100), lens(u(engine), u(engine));
-            const Pinhole pinhole = model.through(lens);
+            const Pinhole pinhole = model.pinhole(lens);
             const Rayd ray = pinhole.ray(pixel);
             const double t = 0.5 + 20 * u(engine);
             const Vec3d projected = pinhole.project(ray.at(t));
@@ -60,8 +60,8 @@ TEST_SUITE("unit") {
             if (trial % 3 == 0) view.camera.aperture_radius = 0;
             const CameraModel model(view);
             // The counts give whole batches and batches with a remainder.
-            std::vector<CameraModel::Point> points(static_cast<std::size_t>(1 + trial));
-            for (CameraModel::Point& point : points) {
+            std::vector<CameraModel::Sample> points(static_cast<std::size_t>(1 + trial));
+            for (CameraModel::Sample& point : points) {
                 point.pixel = Vec2d(static_cast<double>(200 * u(engine)), static_cast<double>(100 * u(engine)));
                 point.lens = trial % 5 == 0 ? Vec2(0.5f, 0.5f) : Vec2(u(engine), u(engine));
                 point.time = u(engine);
@@ -76,7 +76,7 @@ TEST_SUITE("unit") {
                 CHECK(rays[i].t_min == one.t_min);
                 CHECK(rays[i].t_max == one.t_max);
                 CHECK(rays[i].time == one.time);
-                const Pinhole pinhole = model.through(lens);
+                const Pinhole pinhole = model.pinhole(lens);
                 // The ray's direction must aim from the rounded origin at the focus point. If it aimed from the
                 // unrounded origin, the error would exceed the rounding of the direction.
                 CHECK(length(Vec3d(one.direction) - pinhole.ray(points[i].pixel).direction) < 1.5 * 0x1p-25);
@@ -92,7 +92,7 @@ TEST_SUITE("unit") {
         const View view = random_view(engine, Camera::Projection::kPerspective);
         const CameraModel model(view);
         const auto at_depth = [&](Vec2d lens, double depth) {
-            const Pinhole pinhole = model.through(lens);
+            const Pinhole pinhole = model.pinhole(lens);
             const Rayd ray = pinhole.ray({31, 77});
             return ray.at(depth / dot(ray.direction, pinhole.forward));
         };
@@ -111,7 +111,7 @@ TEST_SUITE("unit") {
         view.camera.fov_degrees = 90;
         view.width = 40;
         view.height = 20;
-        const Pinhole pinhole = CameraModel(view).through();
+        const Pinhole pinhole = CameraModel(view).pinhole();
         CHECK(pinhole.project({0, 5, 0}).y == doctest::Approx(0));
         CHECK(pinhole.project({0, -5, 0}).y == doctest::Approx(20));
         CHECK(pinhole.project({10, 0, 0}).x == doctest::Approx(40));
@@ -124,7 +124,7 @@ TEST_SUITE("unit") {
         view.camera.eye = {0, 5, 0};
         view.camera.look_at = {0, 0, 0};
         view.width = view.height = 10;
-        const Vec3d p = CameraModel(view).through().project({0, 0, 0});
+        const Vec3d p = CameraModel(view).pinhole().project({0, 0, 0});
         CHECK(p.x == doctest::Approx(5));
         CHECK(p.y == doctest::Approx(5));
     }

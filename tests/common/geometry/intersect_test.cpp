@@ -97,11 +97,11 @@ TEST_SUITE("unit") {
             const float low = min(min(test.e0, test.e1), test.e2), high = max(max(test.e0, test.e1), test.e2);
             if (!(low > 0 || high < 0)) continue;
             const float inv_det = 1 / test.det();
-            if (test.is_needle(inv_det, sheared.shear.speed)) continue;
+            if (test.is_needle(inv_det, sheared.shear.depth_per_t)) continue;
             const Vec3d n = cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a));
             const double exact = dot(n, Vec3d(a) - Vec3d(origin)) / dot(n, Vec3d(ray.direction));
             const double error = std::abs(static_cast<double>(test.distance(inv_det)) - exact);
-            worst = max(worst, error / static_cast<double>(test.distance_error(inv_det, sheared.shear.speed)));
+            worst = max(worst, error / static_cast<double>(test.distance_error(inv_det, sheared.shear.depth_per_t)));
             ++tried[static_cast<std::size_t>(power + 6)];
         }
         CHECK(worst <= 1);

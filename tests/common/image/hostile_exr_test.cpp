@@ -1,7 +1,7 @@
 // These tests read EXR files as other writers produce them, and files whose headers are false.
 #include "common/image/image_file.h"
 #include "tests/common/image/exr_bytes.h"
-#include "tests/common/image/picture_bytes.h"
+#include "tests/common/image/image_bytes.h"
 
 #include <doctest/doctest.h>
 

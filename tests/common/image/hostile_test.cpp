@@ -2,7 +2,7 @@
 // memory is allocated for data that is missing.
 #include "common/image/image_file.h"
 #include "common/image/srgb.h"
-#include "tests/common/image/picture_bytes.h"
+#include "tests/common/image/image_bytes.h"
 
 #include <doctest/doctest.h>
 
@@ -98,13 +98,13 @@ TEST_SUITE("unit") {
         const test::ScratchFolder folder;
         // The file has two gray pixels of 16 bits: 0x1234 and 0xffff.
         write_file(folder / "grey.png", png(2, 1, 16, 0, std::string("\0\x12\x34\xff\xff", 5)));
-        const PixelFile grey = read_pixel_file(folder / "grey.png");
+        const StoredImage grey = read_stored_image(folder / "grey.png");
         CHECK(grey.channels == 1);
-        CHECK(grey.encoding == PixelFile::Encoding::kEncoded);
+        CHECK(grey.encoding == StoredImage::Encoding::kEncoded);
         CHECK(grey.values == std::vector{0x1234 / 65535.0f, 1.0f});
         CHECK(to_linear(grey)[0].g == srgb_decode(0x1234 / 65535.0f));
         write_file(folder / "rgba.png", png(1, 1, 8, 6, std::string("\0\x33\x66\xff\x80", 5)));
-        const PixelFile rgba = read_pixel_file(folder / "rgba.png");
+        const StoredImage rgba = read_stored_image(folder / "rgba.png");
         CHECK(rgba.values == std::vector{0x33 / 255.0f, 0x66 / 255.0f, 1.0f, 0x80 / 255.0f});
     }
 
@@ -152,7 +152,7 @@ TEST_SUITE("unit") {
                 const std::vector<char> dirt(100000, static_cast<char>(i + 65));
                 std::vector<float> values;
                 try {
-                    values = read_pixel_file(folder / "c.jpg").values;
+                    values = read_stored_image(folder / "c.jpg").values;
                 } catch (const Error&) {
                 }
                 if (i == 0) first = values;
@@ -211,7 +211,7 @@ TEST_SUITE("unit") {
         CHECK(error(hdr("-Y 1 +X 9", start + run + run + run + run)) == Containing("another length"));
         // The old run-length encoding is a pixel followed by (1, 1, 1, count).
         CHECK(error(hdr("-Y 1 +X 300", std::string("\x80\1\2\x81\1\1\1\x2b\1\1\1\1", 12))) == "no error");
-        CHECK(read_pixel_file(folder / "a.hdr").values[3 * 299] == 1.0f);
+        CHECK(read_stored_image(folder / "a.hdr").values[3 * 299] == 1.0f);
         CHECK(error(hdr("-Y 1 +X 300", std::string("\x80\1\2\x81\1\1\1\xff\1\1\1\1", 12))) ==
               Containing("beyond its scanline"));
         CHECK(error(hdr("-Y 1 +X 4", std::string("\1\1\1\2\x80\1\2\x81", 8))) == Containing("beyond its scanline"));
@@ -222,7 +222,7 @@ TEST_SUITE("unit") {
         const auto error = [&](const std::string& bytes) { return error_of_bytes(folder / "a.ppm", bytes); };
         const auto values = [&](const std::string& bytes) {
             write_file(folder / "a.ppm", bytes);
-            return read_pixel_file(folder / "a.ppm").values;
+            return read_stored_image(folder / "a.ppm").values;
         };
         CHECK(values("P3 # a comment\n#another\n 1 # width\n1\t255\r\n255 0\n51") == std::vector{1.0f, 0.0f, 0.2f});
         CHECK(values("P3 1 1 1023 1023 0 341 # end") == std::vector{1.0f, 0.0f, 341 / 1023.0f});

@@ -1,6 +1,6 @@
 // These tests write images and read them back. The bits must be equal where the format is lossless.
+#include "common/image/bitwise_equal.h"
 #include "common/image/image_file.h"
-#include "common/image/same_bits.h"
 #include "common/image/srgb.h"
 #include "tests/support/errors.h"
 #include "tests/support/scratch.h"
@@ -57,11 +57,11 @@ TEST_SUITE("unit") {
                 CAPTURE(name);
                 CAPTURE(size.first);
                 write_image(folder / name, image);
-                CHECK(same_bits(read_image(folder / name), image));
+                CHECK(bitwise_equal(read_image(folder / name), image));
             }
             write_image(folder / "text.ppm", image, {.ascii_ppm = true});
             CHECK(read_file(folder / "text.ppm").substr(0, 2) == "P3");
-            CHECK(same_bits(read_image(folder / "text.ppm"), image));
+            CHECK(bitwise_equal(read_image(folder / "text.ppm"), image));
         }
     }
 
@@ -73,7 +73,7 @@ TEST_SUITE("unit") {
                 if (x % 150 > 3) image(x, y) = image(20, y);
         for (const char* name : {"a.png", "a.tga"}) {
             write_image(folder / name, image);
-            CHECK(same_bits(read_image(folder / name), image));
+            CHECK(bitwise_equal(read_image(folder / name), image));
         }
     }
 
@@ -84,9 +84,9 @@ TEST_SUITE("unit") {
             for (const char* name : {"a.pfm", "a.exr"}) {
                 CAPTURE(name);
                 write_image(folder / name, image);
-                CHECK(same_bits(read_image(folder / name), image));
-                const PixelFile file = read_pixel_file(folder / name);
-                CHECK(file.encoding == PixelFile::Encoding::kLinear);
+                CHECK(bitwise_equal(read_image(folder / name), image));
+                const StoredImage file = read_stored_image(folder / name);
+                CHECK(file.encoding == StoredImage::Encoding::kLinear);
                 CHECK(file.channels == 3);
             }
         }
@@ -146,7 +146,7 @@ TEST_SUITE("unit") {
         image(7, 2) = Rgb(0x1p126f, 0, 0);
         image(8, 2) = Rgb(0x1p-120f, 0, 0);
         write_image(folder / "a.hdr", image);
-        CHECK(same_bits(read_image(folder / "a.hdr"), image));
+        CHECK(bitwise_equal(read_image(folder / "a.hdr"), image));
 
         constexpr float nan = std::numeric_limits<float>::quiet_NaN(),
                         infinity = std::numeric_limits<float>::infinity();
@@ -171,10 +171,10 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("grey is spread and alpha dropped") {
-        PixelFile grey{2, 1, 2, PixelFile::Encoding::kLinear, {0.5f, 0.1f, 0.75f, 0.2f}};
+        StoredImage grey{2, 1, 2, StoredImage::Encoding::kLinear, {0.5f, 0.1f, 0.75f, 0.2f}};
         CHECK(to_linear(grey)[0] == Rgb(0.5f));
         CHECK(to_linear(grey)[1] == Rgb(0.75f));
-        PixelFile rgba{1, 1, 4, PixelFile::Encoding::kEncoded, {1, 0, 0.5f, 0.25f}};
+        StoredImage rgba{1, 1, 4, StoredImage::Encoding::kEncoded, {1, 0, 0.5f, 0.25f}};
         CHECK(to_linear(rgba)[0] == Rgb(1, 0, srgb_decode(0.5f)));
     }
 
@@ -256,11 +256,11 @@ TEST_SUITE("unit") {
         const test::ScratchFolder folder;
         const std::vector<float> one{0.25f}, two{0.5f}, three{4.0f}, four{0.75f};
         write_exr(folder / "grey.exr", 1, 1, {{"Y", one, {}}, {"A", four, {}}});
-        CHECK(read_pixel_file(folder / "grey.exr").values == std::vector{0.25f, 0.75f});
+        CHECK(read_stored_image(folder / "grey.exr").values == std::vector{0.25f, 0.75f});
         CHECK(read_image(folder / "grey.exr")[0] == Rgb(0.25f));
         write_exr(folder / "rgba.exr", 1, 1,
                   {{"A", four, {}}, {"B", three, {}}, {"G", two, {}}, {"R", one, {}}, {"Z", one, {}}});
-        CHECK(read_pixel_file(folder / "rgba.exr").values == std::vector{0.25f, 0.5f, 4.0f, 0.75f});
+        CHECK(read_stored_image(folder / "rgba.exr").values == std::vector{0.25f, 0.5f, 4.0f, 0.75f});
         write_exr(folder / "integers.exr", 1, 1, {{"R", {}, {3}}, {"G", two, {}}, {"B", three, {}}});
         CHECK(read_image(folder / "integers.exr")[0] == Rgb(3, 0.5f, 4));
         write_exr(folder / "missing.exr", 1, 1, {{"R", one, {}}, {"depth.Z", two, {}}});

@@ -174,7 +174,7 @@ TEST_SUITE("statistical") {
             CAPTURE(named.name);
             CHECK(result.integral == doctest::Approx(1).epsilon(3e-3));
             CHECK_MESSAGE(result.chi_squared.p_value > compare::sidak_level(1e-4, static_cast<int>(all.size())),
-                          result.chi_squared.account);
+                          result.chi_squared.details);
         }
     }
 

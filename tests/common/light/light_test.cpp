@@ -1,7 +1,7 @@
 // These tests check the emission and the sampling of lights.
-#include "common/light/lambert.h"
+#include "common/light/form_factor.h"
 #include "common/light/light.h"
-#include "common/light/light_choice.h"
+#include "common/light/light_sampler.h"
 #include "common/sampling/sampler.h"
 #include "compare/stress/chi_squared.h"
 
@@ -231,7 +231,7 @@ TEST_SUITE("statistical") {
                 });
             CHECK(result.integral == doctest::Approx(1).epsilon(4e-3));
             CHECK_MESSAGE(result.chi_squared.p_value > compare::sidak_level(1e-4, static_cast<int>(all.size())),
-                          result.chi_squared.account);
+                          result.chi_squared.details);
         }
     }
 

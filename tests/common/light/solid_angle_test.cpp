@@ -143,7 +143,7 @@ TEST_SUITE("statistical") {
                     return t > 0 && a >= 0 && a < 1 && b >= 0 && b < 1 ? 1 / rectangle.solid_angle() : 0.0;
                 });
             CHECK(result.integral == doctest::Approx(1).epsilon(3e-3));
-            CHECK_MESSAGE(result.chi_squared.p_value > compare::sidak_level(1e-4, 3), result.chi_squared.account);
+            CHECK_MESSAGE(result.chi_squared.p_value > compare::sidak_level(1e-4, 3), result.chi_squared.details);
         }
     }
 
@@ -161,7 +161,7 @@ TEST_SUITE("statistical") {
                 setup, [&](Vec2 u) { return Vec3(t.sample(omega, Vec2d(u))); },
                 [&](Vec3 w) { return contains(t, Vec3d(w)) ? 1 / omega : 0.0; });
             CHECK(result.integral == doctest::Approx(1).epsilon(3e-3));
-            CHECK_MESSAGE(result.chi_squared.p_value > compare::sidak_level(1e-4, 3), result.chi_squared.account);
+            CHECK_MESSAGE(result.chi_squared.p_value > compare::sidak_level(1e-4, 3), result.chi_squared.details);
         }
     }
 }

@@ -97,7 +97,7 @@ TEST_SUITE("unit") {
     TEST_CASE("a pane of glass reflects and lets through what its two sides do, to and fro, summed") {
         for (const float z : {1.0f, 0.5f, 0.1f, 1e-3f}) {
             const ThinDielectricBsdf pane{1.5f, Rgb(1.0f, 0.8f, 0.0f)};
-            const auto parts = pane.parts(z);
+            const auto fractions = pane.fractions(z);
             const double f = fresnel_dielectric(static_cast<double>(z), 1.5);
             const double cos_t = std::sqrt(cos2_refracted(static_cast<double>(z), 1.5));
             for (std::size_t c = 0; c < 3; ++c) {
@@ -108,8 +108,8 @@ TEST_SUITE("unit") {
                     (i % 2 == 0 ? through : back) += inside * (1 - f);
                     inside *= f;
                 }
-                CHECK(static_cast<double>(parts.transmitted[c]) == doctest::Approx(through).epsilon(2e-4));
-                CHECK(static_cast<double>(parts.reflected[c]) == doctest::Approx(back).epsilon(2e-4));
+                CHECK(static_cast<double>(fractions.transmitted[c]) == doctest::Approx(through).epsilon(2e-4));
+                CHECK(static_cast<double>(fractions.reflected[c]) == doctest::Approx(back).epsilon(2e-4));
             }
         }
     }

@@ -62,13 +62,13 @@ TEST_SUITE("unit") {
                 const Rgbd measured = spectral_reflectance(name, z);
                 for (std::size_t c = 0; c < 3; ++c) {
                     CHECK(std::abs(static_cast<double>(seen[c]) - std::min(measured[c], 1.0)) < 0.02);
-                    CHECK(metal->average[c] >= metal->normal[c] - 0.02f);
+                    CHECK(metal->average_fresnel[c] >= metal->f0[c] - 0.02f);
                 }
             }
         }
         CHECK_FALSE(find_conductor("unobtainium").has_value());
         const auto near = [](std::string_view name, Rgb known, float bound) {
-            const Rgb normal = find_conductor(name)->normal;
+            const Rgb normal = find_conductor(name)->f0;
             CAPTURE(name);
             for (std::size_t c = 0; c < 3; ++c) CHECK(std::abs(normal[c] - known[c]) < bound);
         };

@@ -31,7 +31,7 @@ TEST_SUITE("unit") {
                 }
                 const GgxAlbedo table = ggx_albedo(alpha, z);
                 CHECK(std::abs(static_cast<double>(table.energy) - energy) < 0.006);
-                CHECK(std::abs(static_cast<double>(table.energy * table.share) - share) < 0.015);
+                CHECK(std::abs(static_cast<double>(table.energy * table.schlick_weight) - share) < 0.015);
             }
     }
 
@@ -101,7 +101,7 @@ TEST_SUITE("statistical") {
                 CAPTURE(alpha);
                 CAPTURE(z);
                 CHECK(result.integral == doctest::Approx(1).epsilon(2e-3));
-                CHECK_MESSAGE(result.chi_squared.p_value > compare::sidak_level(1e-4, 9), result.chi_squared.account);
+                CHECK_MESSAGE(result.chi_squared.p_value > compare::sidak_level(1e-4, 9), result.chi_squared.details);
             }
     }
 }

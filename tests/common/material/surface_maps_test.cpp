@@ -14,7 +14,7 @@ namespace {
 /// to it.
 SurfacePoint flat(float v_sign = 1) {
     SurfacePoint point;
-    point.ng = point.ns = point.horizon = {0, 0, 1};
+    point.ng = point.ns = point.terminator_normal = {0, 0, 1};
     point.dpdu = {2, 0, 0};
     point.dpdv = {0, 2 * v_sign, 0};
     point.uv = {0.5f, 0.5f};
@@ -40,22 +40,22 @@ TEST_SUITE("unit") {
 
     TEST_CASE("normal maps: components along u, v and the normal") {
         SurfacePoint point = flat();
-        bend_normal(plain({0.5f, 0.5f, 1}), with_normal(), kFromAbove, point);
+        apply_normal_maps(plain({0.5f, 0.5f, 1}), with_normal(), kFromAbove, point);
         CHECK(near(point.ns, {0, 0, 1}));
         const Vec3 n = normalize(Vec3(0.3f, 0.2f, 0.9f));
         const Rgb color{(n.x + 1) / 2, (n.y + 1) / 2, (n.z + 1) / 2};
         point = flat();
-        bend_normal(plain(color), with_normal(), kFromAbove, point);
+        apply_normal_maps(plain(color), with_normal(), kFromAbove, point);
         CHECK(near(point.ns, n));
         point = flat(-1); // v runs downward, so the green channel flips, too
-        bend_normal(plain(color), with_normal(), kFromAbove, point);
+        apply_normal_maps(plain(color), with_normal(), kFromAbove, point);
         CHECK(near(point.ns, {n.x, -n.y, n.z}));
         point = flat();
-        bend_normal(plain(color), with_normal(0.5f), kFromAbove, point);
+        apply_normal_maps(plain(color), with_normal(0.5f), kFromAbove, point);
         CHECK(near(point.ns, normalize(Vec3(n.x / 2, n.y / 2, n.z))));
         point = flat();
         point.dpdu = point.dpdv = {}; // without tangents the normal is unchanged
-        bend_normal(plain(color), with_normal(), kFromAbove, point);
+        apply_normal_maps(plain(color), with_normal(), kFromAbove, point);
         CHECK(near(point.ns, {0, 0, 1}));
     }
 
@@ -70,16 +70,16 @@ TEST_SUITE("unit") {
         maps.bump_scale = 0.5f;
         for (const float v_sign : {1.0f, -1.0f}) {
             SurfacePoint point = flat(v_sign);
-            bend_normal(set, maps, kFromAbove, point);
+            apply_normal_maps(set, maps, kFromAbove, point);
             CHECK(near(point.ns, normalize(Vec3(-0.25f, 0, 1))));
         }
         maps.bump_scale = -0.5f;
         SurfacePoint point = flat();
-        bend_normal(set, maps, kFromAbove, point);
+        apply_normal_maps(set, maps, kFromAbove, point);
         CHECK(near(point.ns, normalize(Vec3(0.25f, 0, 1))));
         // The surface must look the same from below.
         point = flat();
-        bend_normal(set, maps, -kFromAbove, point);
+        apply_normal_maps(set, maps, -kFromAbove, point);
         CHECK(near(point.ns, normalize(Vec3(0.25f, 0, 1))));
     }
 
@@ -92,7 +92,7 @@ TEST_SUITE("unit") {
             const Vec3 direction = normalize(Vec3(uniform(random), uniform(random), uniform(random)));
             if (std::abs(direction.z) < 0.02f) continue;
             SurfacePoint point = flat();
-            bend_normal(plain({(n.x + 1) / 2, (n.y + 1) / 2, (n.z + 1) / 2}), with_normal(), direction, point);
+            apply_normal_maps(plain({(n.x + 1) / 2, (n.y + 1) / 2, (n.z + 1) / 2}), with_normal(), direction, point);
             REQUIRE(length(point.ns) == doctest::Approx(1));
             REQUIRE(dot(point.ns, point.ng) > 0);
             bent += !near(point.ns, n, 1e-3f);
@@ -107,8 +107,8 @@ TEST_SUITE("unit") {
         const Vec3 to_viewer = normalize(Vec3(1, 0, 0.03f));
         const auto bent = [&](Vec3 smooth, Rgb color) {
             SurfacePoint point = flat();
-            point.ns = point.horizon = smooth;
-            bend_normal(plain(color), with_normal(), -to_viewer, point);
+            point.ns = point.terminator_normal = smooth;
+            apply_normal_maps(plain(color), with_normal(), -to_viewer, point);
             return point.ns;
         };
         for (int degrees = 0; degrees <= 20; ++degrees) {
@@ -122,9 +122,9 @@ TEST_SUITE("unit") {
 
     TEST_CASE("opacity: number, texture, cutoff") {
         SurfaceMaps maps;
-        CHECK_FALSE(maps.cuts_out());
+        CHECK_FALSE(maps.has_transparency());
         maps.opacity = {0.8f, 0};
-        CHECK(maps.cuts_out());
+        CHECK(maps.has_transparency());
         CHECK(opacity(plain(Rgb(0.5f)), maps, flat()) == doctest::Approx(0.4f));
         maps.cutoff = 0.4f;
         CHECK(opacity(plain(Rgb(0.5f)), maps, flat()) == 1);

@@ -11,12 +11,12 @@ using namespace duet;
 TEST_SUITE("unit") {
 
     TEST_CASE("picture sizes are parsed whole or refused") {
-        const PictureSize size = parse_picture_size("640x480");
+        const ImageSize size = parse_image_size("640x480");
         CHECK(size.width == 640);
         CHECK(size.height == 480);
         for (const char* bad :
              {"", "x", "640", "640x", "x480", "0x5", "5x0", "-5x5", "5x5x5", "640X480", "99999x5", "5 x5", "1e3x5"})
-            CHECK_THROWS_AS(parse_picture_size(bad), Error);
+            CHECK_THROWS_AS(parse_image_size(bad), Error);
     }
 
     TEST_CASE("lists of auxiliary pictures") {
@@ -35,10 +35,10 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("seconds are readable") {
-        CHECK(readable_seconds(0.0123) == "12 ms");
-        CHECK(readable_seconds(0.9996) == "1.0 s");
-        CHECK(readable_seconds(59.96) == "1 min 00 s");
-        CHECK(readable_seconds(3599.6) == "1 h 00 min");
+        CHECK(format_duration(0.0123) == "12 ms");
+        CHECK(format_duration(0.9996) == "1.0 s");
+        CHECK(format_duration(59.96) == "1 min 00 s");
+        CHECK(format_duration(3599.6) == "1 h 00 min");
     }
 
     TEST_CASE("statistics have their keys; unknown errors are null, counts are numbers") {

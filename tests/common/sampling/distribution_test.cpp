@@ -114,12 +114,12 @@ TEST_SUITE("statistical") {
         const double alpha = compare::sidak_level(1e-4, 3);
         const auto sphere = compare::test_directions(
             {}, [](Vec2 u) { return uniform_sphere(u); }, [](Vec3) { return static_cast<double>(kUniformSpherePdf); });
-        CHECK_MESSAGE(sphere.chi_squared.p_value > alpha, sphere.chi_squared.account);
+        CHECK_MESSAGE(sphere.chi_squared.p_value > alpha, sphere.chi_squared.details);
         CHECK(sphere.integral == doctest::Approx(1).epsilon(1e-6));
         const auto cosine = compare::test_directions(
             {}, [](Vec2 u) { return cosine_hemisphere(u); },
             [](Vec3 w) { return static_cast<double>(cosine_hemisphere_pdf(w.z)); });
-        CHECK_MESSAGE(cosine.chi_squared.p_value > alpha, cosine.chi_squared.account);
+        CHECK_MESSAGE(cosine.chi_squared.p_value > alpha, cosine.chi_squared.details);
         CHECK(cosine.integral == doctest::Approx(1).epsilon(1e-6));
 
         // The triangle is split into 4 × 4 cells of its barycentric coordinates. Whole cells each hold 1/8 of the
@@ -134,7 +134,7 @@ TEST_SUITE("statistical") {
             ++count[static_cast<std::size_t>(b.y * 4) * 4 + static_cast<std::size_t>(b.x * 4)];
         }
         const auto triangle = compare::chi_squared(count, expected);
-        CHECK_MESSAGE(triangle.p_value > alpha, triangle.account);
+        CHECK_MESSAGE(triangle.p_value > alpha, triangle.details);
     }
 
     TEST_CASE("the chi-squared test finds a density that is wrong by up to 10 %, and knows its quantiles") {

@@ -96,7 +96,8 @@ TEST_SUITE("unit") {
         Sampler center(SamplerKind::kCenter, 5, 16), sobol(SamplerKind::kSobol, 5, 16);
         center.start(4, 4, 9);
         sobol.start(4, 4, 9);
-        const CameraNumbers middle = center.camera_numbers({true, true}), spread = sobol.camera_numbers({true, true});
+        const CameraRaySample middle = center.camera_ray_samples({true, true}),
+                              spread = sobol.camera_ray_samples({true, true});
         CHECK(middle.pixel == Vec2(0.5f, 0.5f));
         CHECK(middle.lens == Vec2(0.5f, 0.5f));
         CHECK(middle.time == 0);
@@ -109,12 +110,12 @@ TEST_SUITE("unit") {
     TEST_CASE("what the camera does not ask for moves no other number") {
         Sampler sampler(SamplerKind::kSobol, 5, 16);
         sampler.start(4, 4, 9);
-        const CameraNumbers all = sampler.camera_numbers({true, true}), none = sampler.camera_numbers({});
+        const CameraRaySample all = sampler.camera_ray_samples({true, true}), none = sampler.camera_ray_samples({});
         CHECK(none.pixel == all.pixel);
         CHECK(none.lens == Vec2(0.5f, 0.5f));
         CHECK(none.time == 0);
-        CHECK(sampler.camera_numbers({true, false}).lens == all.lens);
-        CHECK(sampler.camera_numbers({false, true}).time == all.time);
+        CHECK(sampler.camera_ray_samples({true, false}).lens == all.lens);
+        CHECK(sampler.camera_ray_samples({false, true}).time == all.time);
     }
 
     TEST_CASE("the pairs of many samplers at once are those of each, in any number and order") {
@@ -128,8 +129,8 @@ TEST_SUITE("unit") {
                 }
                 constexpr std::array<std::uint32_t, 2> kDimensions{8, 26};
                 std::vector<Vec2> all(2 * count), some(2 * which.size());
-                Sampler::pairs(samplers, kDimensions, all);
-                Sampler::pairs(samplers, which, kDimensions, some);
+                Sampler::get_2d_batch(samplers, kDimensions, all);
+                Sampler::get_2d_batch(samplers, which, kDimensions, some);
                 for (std::size_t d = 0; d < 2; ++d)
                     for (std::size_t k = 0; k < which.size(); ++k)
                         CHECK(some[d * which.size() + k] == all[d * count + which[k]]);
@@ -174,7 +175,7 @@ TEST_SUITE("statistical") {
                 const auto result = compare::chi_squared(count, expected);
                 CAPTURE(sampler_name(kind));
                 CAPTURE(variant);
-                CHECK_MESSAGE(result.p_value > compare::sidak_level(1e-4, kTests), result.account);
+                CHECK_MESSAGE(result.p_value > compare::sidak_level(1e-4, kTests), result.details);
             }
     }
 
@@ -206,7 +207,7 @@ TEST_SUITE("statistical") {
                 CAPTURE(key.x);
                 CAPTURE(key.index);
                 CAPTURE(key.dimension);
-                CHECK_MESSAGE(result.p_value > compare::sidak_level(1e-4, 18), result.account);
+                CHECK_MESSAGE(result.p_value > compare::sidak_level(1e-4, 18), result.details);
             }
     }
 }

@@ -193,7 +193,7 @@ TEST_SUITE("statistical") {
                 if (result.p_value < worst) {
                     worst = result.p_value;
                     account =
-                        message("digit ", digit, ", prefixes ", prefix_a, " and ", prefix_b, ": ", result.account);
+                        message("digit ", digit, ", prefixes ", prefix_a, " and ", prefix_b, ": ", result.details);
                 }
             }
         CHECK_MESSAGE(worst > compare::sidak_level(1e-4, tests), account);

@@ -67,7 +67,7 @@ Hit nearest(const Scene& scene, const Ray& world) {
         } else if (const auto* list = std::get_if<QuadList>(&shape)) {
             hit = intersect_quad(ShearedRay(ray), list->quads[p]);
         } else {
-            const Corners c = primitive_corners(shape, p);
+            const PrimitiveVertices c = primitive_vertices(shape, p);
             hit = intersect_triangle(ShearedRay(ray), c.p[0], c.p[1], c.p[2]);
         }
         if (hit && hit->t < best.t) best = {0, p, hit->u, hit->v, hit->t};
@@ -187,7 +187,7 @@ TEST_SUITE("unit") {
             ++baked;
             std::vector<std::array<float, 3>> distinct;
             for (std::uint32_t p = 0; p < 6; ++p) {
-                const Corners c = primitive_corners(scene.shapes[0], p);
+                const PrimitiveVertices c = primitive_vertices(scene.shapes[0], p);
                 for (const Vec3 v : c.p) {
                     const std::array<float, 3> key{v.x, v.y, v.z};
                     if (std::find(distinct.begin(), distinct.end(), key) == distinct.end()) distinct.push_back(key);

@@ -116,8 +116,8 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("Foreign text in a message stays on its line") {
-        CHECK(in_quotes("a\nb\x01\xff") == "\"a\\x0ab\\x01\\xff\"");
-        CHECK(in_quotes(std::string(1000, 'x')).size() < 80);
+        CHECK(quoted_text("a\nb\x01\xff") == "\"a\\x0ab\\x01\\xff\"");
+        CHECK(quoted_text(std::string(1000, 'x')).size() < 80);
     }
 
 } // TEST_SUITE

@@ -140,8 +140,8 @@ TEST_SUITE("unit") {
         const Scene scene = load(parts.text());
         CHECK(std::get<Diffuse>(scene.materials[0]).roughness.value == 0.7f);
         const auto& copper = std::get<Metal>(scene.materials[1]);
-        CHECK(copper.conductor.exists());
-        CHECK(copper.reflectance.value == find_conductor("copper")->normal);
+        CHECK(copper.conductor.valid());
+        CHECK(copper.reflectance.value == find_conductor("copper")->f0);
         const auto& liquid = std::get<Dielectric>(scene.materials[2]);
         CHECK(liquid.roughness.value == 0.4f);
         CHECK(liquid.priority == 3);

@@ -35,11 +35,11 @@ TEST_SUITE("unit") {
         std::filesystem::create_directories(folder);
         write_file(folder / "a.txt", "whole");
         CHECK(read_file(folder / "a.txt") == "whole");
-        CHECK_THROWS_AS(write_whole(folder / "b.txt",
-                                    [](const auto& temporary) {
-                                        write_file(temporary, "half");
-                                        throw Error("disk full", 1);
-                                    }),
+        CHECK_THROWS_AS(write_atomically(folder / "b.txt",
+                                         [](const auto& temporary) {
+                                             write_file(temporary, "half");
+                                             throw Error("disk full", 1);
+                                         }),
                         Error);
         CHECK_FALSE(std::filesystem::exists(folder / "b.txt"));
         CHECK(std::distance(std::filesystem::directory_iterator(folder), {}) == 1); // no temporary file remains

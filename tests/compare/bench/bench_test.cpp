@@ -41,23 +41,23 @@ BenchOptions small_bench(const ScratchFolder& scratch) {
     return options;
 }
 
-/// Returns a contender with a constant error: the reference plus normal noise and a bias.
-Contender synthetic(const std::string& name, double bias, double seconds) {
+/// Returns a renderer with a constant error: the reference plus normal noise and a bias.
+BenchRenderer synthetic(const std::string& name, double bias, double seconds) {
     return {name, "", "", {1, 4}, [=](int spp, std::uint64_t seed, Control&) {
                 std::mt19937_64 random(seed * 1000 + static_cast<std::uint64_t>(spp));
                 std::normal_distribution<double> normal(0.5 + bias, 0.1 / std::sqrt(spp));
-                Trial trial{ImageRgb(32, 32), seconds * spp, 0};
-                for (Rgb& p : trial.picture.pixels())
+                TimedImage trial{ImageRgb(32, 32), seconds * spp, 0};
+                for (Rgb& p : trial.image.pixels())
                     p = {static_cast<float>(normal(random)), static_cast<float>(normal(random)),
                          static_cast<float>(normal(random))};
                 return trial;
             }};
 }
 
-std::vector<Measurement> measured(const std::vector<Contender>& contenders) {
+std::vector<Measurement> measured(const std::vector<BenchRenderer>& renderers) {
     const Reference truth{ImageRgb(32, 32, Rgb(0.5f)), ImageRgb(32, 32)};
     Control control;
-    return measure(contenders, truth, Image<std::uint8_t>(32, 32, 1), {6, 600, 0}, control);
+    return measure(renderers, truth, Image<std::uint8_t>(32, 32, 1), {6, 600, 0}, control);
 }
 
 SceneResult result_of(std::vector<Measurement> rows) {
@@ -108,18 +108,18 @@ TEST_SUITE("unit") {
                 a[i][c] = uniform(random);
                 b[i][c] = uniform(random);
             }
-        const PictureError whole = picture_error(a, b, counted_pixels({}, 16, 12));
+        const ImageError whole = image_error(a, b, counted_pixels({}, 16, 12));
         const ErrorMetrics expected = error_metrics(a, b);
         CHECK(whole.mse == doctest::Approx(expected.mse));
         CHECK(whole.relmse == doctest::Approx(expected.relmse));
         a(3, 4) = Rgb(1e6f);
         const auto without = counted_pixels({parse_excluded_rectangle("3,4,4,5")}, 16, 12);
-        CHECK(picture_error(a, b, without).mse < 1);
+        CHECK(image_error(a, b, without).mse < 1);
     }
 
     TEST_CASE("measure: error, variance and bias of a contender of known error; every seed once; the order changes") {
         std::vector<std::pair<int, std::uint64_t>> calls;
-        Contender good = synthetic("good", 0, 0.01);
+        BenchRenderer good = synthetic("good", 0, 0.01);
         const auto render = good.render;
         good.render = [&](int spp, std::uint64_t seed, Control& control) {
             calls.emplace_back(spp, seed);
@@ -166,7 +166,7 @@ TEST_SUITE("unit") {
     TEST_CASE("a peer is counted by its best setting at each number of samples") {
         std::vector<Measurement> rows =
             measured({synthetic("us", 0, 0.1), synthetic("p", 0, 0.02), synthetic("p", 0, 0.01)});
-        count_best_only(rows, "p");
+        mark_best_settings(rows, "p");
         std::vector<bool> counted;
         for (const Measurement& m : rows) counted.push_back(m.counted);
         CHECK(counted == std::vector<bool>{true, true, false, false, true, true});
@@ -200,7 +200,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("the baseline flags what got slower or less accurate, and nothing else") {
         const std::vector<Measurement> then = measured({synthetic("a", 0, 0.01), synthetic("b", 0, 0.01)});
-        const auto against = [&](const std::vector<Contender>& now) {
+        const auto against = [&](const std::vector<BenchRenderer>& now) {
             return compare_with_baseline({result_of(measured(now))}, report_of(then), 0.15);
         };
         const BaselineComparison equal = against({synthetic("a", 0, 0.01), synthetic("b", 0, 0.011)});

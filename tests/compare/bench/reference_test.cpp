@@ -25,8 +25,8 @@ namespace fs = std::filesystem;
 /// Writes a scene that uses every kind of file: a mesh, an MTL with its image, a texture, an environment.
 fs::path write_scene(const fs::path& folder) {
     fs::create_directories(folder);
-    for (const char* const picture : {"kd.ppm", "texture.ppm", "sky.pfm"})
-        write_image(folder / picture, ImageRgb(4, 2, Rgb(0.5f)));
+    for (const char* const image : {"kd.ppm", "texture.ppm", "sky.pfm"})
+        write_image(folder / image, ImageRgb(4, 2, Rgb(0.5f)));
     write_file(folder / "m.mtl", "newmtl a\nKd 1 1 1\nmap_Kd kd.ppm\n");
     write_file(folder / "m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
     write_file(folder / "scene.json", R"({"camera": {"eye": [0, 0, 3], "look_at": [0, 0, 0]},
@@ -133,14 +133,14 @@ TEST_SUITE("unit") {
         std::atomic<bool> stop{false};
         Control stopped{&stop, [&](double fraction) { stop = stop || fraction > 0.4; }};
         const ReferenceSettings settings{scratch / "cache", 64, 2, 1}, other{scratch / "other", 64, 2, 1};
-        const KeptReference none = reference_by("path", scene, view, settings, stopped);
+        const CachedReference none = reference_by("path", scene, view, settings, stopped);
         CHECK_FALSE(none);
         CHECK_FALSE(fs::exists(none.file));
         CHECK(files(scratch / "cache") == 1); // the film
         Control free;
-        const KeptReference first = reference_by("path", scene, view, settings, free);
-        const KeptReference second = reference_by("path", scene, view, settings, free);
-        const KeptReference at_once = reference_by("path", scene, view, other, free);
+        const CachedReference first = reference_by("path", scene, view, settings, free);
+        const CachedReference second = reference_by("path", scene, view, settings, free);
+        const CachedReference at_once = reference_by("path", scene, view, other, free);
         REQUIRE(first);
         CHECK(first.rendered);
         CHECK_FALSE(second.rendered);

@@ -2,8 +2,8 @@
 
 #include "common/geometry/quad.h"
 #include "common/system/error.h"
-#include "compare/hits/exact_trace.h"
-#include "compare/stress/stage.h"
+#include "compare/hits/reference_tracer.h"
+#include "compare/stress/accelerated_scene.h"
 
 #include <doctest/doctest.h>
 
@@ -31,7 +31,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("clutter is 27 copies of the mesh, whatever its size and place, that stay within their box") {
-        const Mesh one = placed(ball(1), 1e-3f, Vec3(5, 6, 7));
+        const Mesh one = scaled_and_moved(icosphere(1), 1e-3f, Vec3(5, 6, 7));
         const Mesh all = cluttered(one);
         CHECK(all.triangles.size() == 27 * one.triangles.size());
         CHECK(all.positions.size() == 27 * one.positions.size());
@@ -39,7 +39,8 @@ TEST_SUITE("unit") {
         // The scene has 27 spheres with diameter 2 × 0.7. The mesh's box is slightly narrower than 2, because the
         // sphere is a polyhedron.
         const double scale = 2.0 * 0.7 / 2.0;
-        CHECK(signed_volume(all) == doctest::Approx(27 * signed_volume(ball(1)) * scale * scale * scale).epsilon(0.2));
+        CHECK(signed_volume(all) ==
+              doctest::Approx(27 * signed_volume(icosphere(1)) * scale * scale * scale).epsilon(0.2));
     }
 
     TEST_CASE("the rooms of a bare mesh hold its camera and are closed; alone it has no ground") {
@@ -66,12 +67,12 @@ TEST_SUITE("unit") {
         const Scene scene = load_scene(file);
         CHECK(flat.camera.eye == scene.camera.eye);
         CHECK(flat.lights.size() == scene.lights.size());
-        const ExactTracer theirs(scene, 0), ours(*flat.scene, 0);
-        const Pinhole pinhole = CameraModel({scene.camera, 40, 40}).through();
+        const ReferenceTracer theirs(scene, 0), ours(*flat.scene, 0);
+        const Pinhole pinhole = CameraModel({scene.camera, 40, 40}).pinhole();
         for (int y = 0; y < 40; ++y)
             for (int x = 0; x < 40; ++x) {
                 const Rayd ray = pinhole.ray({x + 0.37, y + 0.41});
-                const ExactHit a = theirs.nearest(ray), b = ours.nearest(ray);
+                const ReferenceHit a = theirs.nearest(ray), b = ours.nearest(ray);
                 REQUIRE(a.valid() == b.valid());
                 if (a.valid()) REQUIRE(a.t == doctest::Approx(b.t).epsilon(1e-6));
             }
@@ -83,7 +84,7 @@ TEST_SUITE("unit") {
         const KernelScene instanced = load_kernel_scene(bowl, Arrangement::kInstances);
         CHECK(instanced.scene->objects.size() == 28);
         CHECK(instanced.scene->shapes.size() == 2);
-        const ExactTracer a(*flat.scene, 0), b(*instanced.scene, 0);
+        const ReferenceTracer a(*flat.scene, 0), b(*instanced.scene, 0);
         const auto copy = static_cast<std::uint32_t>(instanced.triangles().triangles.size());
         for (std::uint32_t i = 0; i < flat.triangle_count(); i += 97) {
             const auto p = a.corners(0, i), q = b.corners(min(i / copy, 27u), i - min(i / copy, 27u) * copy);
@@ -93,7 +94,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("a scene file's lamps are triangles of the flattened mesh") {
         const KernelScene flat = load_kernel_scene(kModels / "cornell.json", Arrangement::kAlone);
-        const ExactTracer exact(*flat.scene, 0);
+        const ReferenceTracer exact(*flat.scene, 0);
         int lamps = 0;
         for (const Light& light : flat.lights) {
             const auto* surface = std::get_if<SurfaceLight>(&light);
@@ -107,7 +108,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("spheres are counted as left out; a scene of nothing else is refused, and so is its clutter") {
-        CHECK(load_kernel_scene(kModels / "everything.json", Arrangement::kAlone).left_out > 0);
+        CHECK(load_kernel_scene(kModels / "everything.json", Arrangement::kAlone).omitted_spheres > 0);
         CHECK_THROWS_AS(load_kernel_scene(kModels / "cornell.json", Arrangement::kClutter), Error);
         CHECK_THROWS_AS(parse_arrangement("attic"), Error);
     }

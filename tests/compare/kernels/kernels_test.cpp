@@ -3,7 +3,7 @@
 #include "compare/kernels/measure_kernels.h"
 #include "compare/kernels/ray_sets.h"
 #include "compare/kernels/watertight.h"
-#include "compare/stress/stage.h"
+#include "compare/stress/accelerated_scene.h"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -29,21 +29,21 @@ Camera outside_camera() {
 }
 
 KernelScene lump(Arrangement arrangement, int levels = 3) {
-    Mesh mesh = ball(levels, 0.1f);
+    Mesh mesh = icosphere(levels, 0.1f);
     if (arrangement == Arrangement::kRoom) mesh = enclosed(std::move(mesh), Vec3(), 4);
     return make_kernel_scene("lump", arrangement, std::move(mesh), outside_camera());
 }
 
-TracerFor ours_for(const raytrace::Accelerator& accelerator) {
-    return [&](std::span<const Ray> rays) { return our_closest(accelerator, rays); };
+TracerFactory ours_for(const raytrace::Accelerator& accelerator) {
+    return [&](std::span<const Ray> rays) { return duet_closest(accelerator, rays); };
 }
 
 } // namespace
 
 TEST_SUITE("unit") {
     TEST_CASE("ranges") {
-        CHECK(range_of({3}).median == 3);
-        const Range range = range_of({4, 1, 3, 8});
+        CHECK(median_range({3}).median == 3);
+        const MedianRange range = median_range({4, 1, 3, 8});
         CHECK(range.min == 1);
         CHECK(range.median == 3); // the lower of the two middle values
         CHECK(range.max == 8);
@@ -52,14 +52,14 @@ TEST_SUITE("unit") {
     TEST_CASE("ours runs beside every peer's measurement, and ratios are of neighbours") {
         std::string order;
         double pace = 1; // the CPU becomes slower, which must hardly affect the ratios
-        const auto timed = [&](char name, double seconds) -> Timed {
+        const auto timed = [&](char name, double seconds) -> TimedWork {
             return [&order, &pace, name, seconds] {
                 order += name;
                 pace *= 1.01;
                 return seconds * pace;
             };
         };
-        const Interleaved found =
+        const InterleavedTimings found =
             interleave(timed('o', 2), {timed('a', 4), timed('b', 1), timed('c', 6)}, 5, 1e9, Control{});
         CHECK(order.substr(0, 12) == "oabocoaboco" + std::string("a"));
         CHECK(found.repeats == 5);
@@ -67,49 +67,52 @@ TEST_SUITE("unit") {
         CHECK(found.peers[0].ratio.median == doctest::Approx(2).epsilon(0.011));
         CHECK(found.peers[1].ratio.median == doctest::Approx(0.5).epsilon(0.011));
         CHECK(found.peers[2].ratio.median == doctest::Approx(3).epsilon(0.011));
-        for (const Versus& versus : found.peers) CHECK(versus.theirs / versus.ours == versus.ratio.median); // one pair
+        for (const PairedTiming& versus : found.peers)
+            CHECK(versus.theirs / versus.ours == versus.ratio.median); // one pair
         // The time limit was reached.
-        CHECK(interleave(timed('o', 1), {timed('a', 1)}, 10, 0, Control{}).repeats == kLeastForVerdict);
+        CHECK(interleave(timed('o', 1), {timed('a', 1)}, 10, 0, Control{}).repeats == kMinRepeatsForVerdict);
         CHECK(interleave(timed('o', 1), {}, 4, 1e9, Control{}).peers.empty());
     }
 
-    TEST_CASE("a portion is whole groups, spread over the set, of about the length asked for") {
-        constexpr std::size_t kGroupRays = kBlock * Portion::kGroup;
+    TEST_CASE("a subset is whole groups, spread over the set, of about the length asked for") {
+        constexpr std::size_t kGroupRays = kBlock * RaySubset::kGroup;
         for (const std::size_t rays : {std::size_t{1}, kGroupRays - 1, kGroupRays, 100 * kGroupRays + 17}) {
-            const Portion all = portion_of(rays, 1e9, 1e-3 * static_cast<double>(rays) / 1e6);
+            const RaySubset all = choose_ray_subset(rays, 1e9, 1e-3 * static_cast<double>(rays) / 1e6);
             CHECK(all.rays == rays);
             const std::size_t groups = (rays + kGroupRays - 1) / kGroupRays;
             CHECK(std::set(all.groups.begin(), all.groups.end()).size() == groups);
-            CHECK(portion_of(rays, 1e6, 10 * static_cast<double>(groups * kGroupRays) / 1e6).passes == 10);
+            CHECK(choose_ray_subset(rays, 1e6, 10 * static_cast<double>(groups * kGroupRays) / 1e6).passes == 10);
         }
-        const Portion tenth = portion_of(1000 * kGroupRays, 1e6, 0.1 * static_cast<double>(kGroupRays) / 1e3);
+        const RaySubset tenth = choose_ray_subset(1000 * kGroupRays, 1e6, 0.1 * static_cast<double>(kGroupRays) / 1e3);
         CHECK(tenth.passes == 1);
         CHECK(tenth.rays == 100 * kGroupRays);
         CHECK(tenth.groups.front() == 0);
         CHECK(tenth.groups.back() == 990);
-        CHECK(portion_of(0, 1e6, 1).groups.empty());
+        CHECK(choose_ray_subset(0, 1e6, 1).groups.empty());
     }
 
     TEST_CASE("one by one, in bulk and in any number of threads the answers are the same") {
         const KernelScene scene = lump(Arrangement::kRoom);
         const raytrace::Accelerator accelerator(*scene.scene, 1);
         const auto rays = camera_rays(scene.camera, 70, 50, PixelOrder::kZCurve, 1);
-        const auto one = all_answers(our_closest(accelerator, rays), rays.size(), 1);
+        const auto one = trace_all(duet_closest(accelerator, rays), rays.size(), 1);
         REQUIRE(one.size() == rays.size());
-        for (const auto& other : {all_answers(our_closest(accelerator, rays), rays.size(), 3),
-                                  all_answers(our_bulk(accelerator, rays), rays.size(), 1)})
-            CHECK(std::ranges::equal(
-                one, other, [](const Answer& a, const Answer& b) { return a.t == b.t && a.triangle == b.triangle; }));
+        for (const auto& other : {trace_all(duet_closest(accelerator, rays), rays.size(), 3),
+                                  trace_all(duet_batched(accelerator, rays), rays.size(), 1)})
+            CHECK(std::ranges::equal(one, other, [](const RayResult& a, const RayResult& b) {
+                return a.t == b.t && a.triangle == b.triangle;
+            }));
     }
 
     TEST_CASE("points inside lie inside; a closed mesh lets no ray out, one with a hole does") {
         const KernelScene scene = lump(Arrangement::kAlone);
         REQUIRE(scene.triangles().closed);
-        const Judge judge(*scene.scene);
-        for (const Vec3& p : points_inside(scene, judge, 200, 1)) REQUIRE(length(p) < 1.1f);
+        const HitOracle oracle(*scene.scene);
+        for (const Vec3& p : points_inside(scene, oracle, 200, 1)) REQUIRE(length(p) < 1.1f);
         const raytrace::Accelerator accelerator(*scene.scene, 1);
-        const TracerFor bulk = [&](std::span<const Ray> rays) { return our_bulk(accelerator, rays); };
-        const Watertight tight = test_watertight(scene, judge, {ours_for(accelerator), bulk}, 100'000, 0, 2, Control{});
+        const TracerFactory bulk = [&](std::span<const Ray> rays) { return duet_batched(accelerator, rays); };
+        const Watertight tight =
+            test_watertight(scene, oracle, {ours_for(accelerator), bulk}, 100'000, 0, 2, Control{});
         CHECK(tight.rays == 100'000);
         for (const Watertight::Kernel& kernel : tight.kernels) {
             CHECK(kernel.misses == 0);
@@ -122,7 +125,7 @@ TEST_SUITE("unit") {
         const KernelScene leaky = make_kernel_scene("holed", Arrangement::kAlone, holed, scene.camera);
         REQUIRE_FALSE(leaky.closed());
         const raytrace::Accelerator other(*leaky.scene, 1);
-        const auto found = test_watertight(scene, judge, {ours_for(other)}, 100'000, 0, 2, Control{}).kernels.front();
+        const auto found = test_watertight(scene, oracle, {ours_for(other)}, 100'000, 0, 2, Control{}).kernels.front();
         CHECK(found.misses > 10); // one of 1280 triangles is missing
         CHECK(found.misses < 1000);
         CHECK(found.faults.edge + found.faults.wrong == found.misses);
@@ -136,23 +139,24 @@ TEST_SUITE("unit") {
                                           : load_kernel_scene(kModels / "meshes/pear.obj", arrangement);
             CAPTURE(name_of(arrangement));
             REQUIRE(scene.closed());
-            const Judge judge(*scene.scene);
+            const HitOracle oracle(*scene.scene);
             const raytrace::Accelerator accelerator(*scene.scene, 1);
             // This tracer ignores hits too close to an edge and returns the surface behind them.
-            const TracerFor slipping = [&](std::span<const Ray> rays) {
-                return Tracer{"", [&accelerator, rays](std::size_t block, Answer* answers) {
-                                  for (Ray ray : block_of(rays, block)) {
-                                      Hit hit = accelerator.closest(ray);
-                                      if (min(min(hit.u, hit.v), 1 - hit.u - hit.v) < 1e-7f) {
-                                          ray.t_min = hit.t * (1 + 1e-4f);
-                                          hit = accelerator.closest(ray);
-                                      }
-                                      *answers++ = {hit.t, hit.valid() ? hit.primitive : Answer::kNone, hit.object};
-                                  }
-                              }};
+            const TracerFactory slipping = [&](std::span<const Ray> rays) {
+                return Tracer{
+                    "", [&accelerator, rays](std::size_t block, RayResult* ray_results) {
+                        for (Ray ray : block_of(rays, block)) {
+                            Hit hit = accelerator.closest(ray);
+                            if (min(min(hit.u, hit.v), 1 - hit.u - hit.v) < 1e-7f) {
+                                ray.t_min = hit.t * (1 + 1e-4f);
+                                hit = accelerator.closest(ray);
+                            }
+                            *ray_results++ = {hit.t, hit.valid() ? hit.primitive : RayResult::kNone, hit.object};
+                        }
+                    }};
             };
             const Watertight found =
-                test_watertight(scene, judge, {ours_for(accelerator), slipping}, 50'000, 0, 2, Control{});
+                test_watertight(scene, oracle, {ours_for(accelerator), slipping}, 50'000, 0, 2, Control{});
             CHECK(found.kernels[0].misses == 0);
             CHECK_FALSE(found.kernels[0].faults.any());
             CHECK(found.kernels[1].faults.edge > 100);
@@ -162,7 +166,7 @@ TEST_SUITE("unit") {
     TEST_CASE("the JSON has a row for each work and number of threads, with the keys of the design") {
         for (const Arrangement arrangement : {Arrangement::kAlone, Arrangement::kRoom}) {
             const KernelScene scene = lump(arrangement);
-            MeasureKernels settings;
+            KernelSettings settings;
             settings.works = kWorks;
             if (!embree_version().empty()) settings.peers = {{false, false}, {true, true}};
             settings.size = {64, 48};
@@ -170,7 +174,7 @@ TEST_SUITE("unit") {
             settings.repeats = 1;
             settings.seconds = 1e-3;
             settings.watertight = 5000;
-            const KernelTable table = measure_kernels(scene, settings, Control{});
+            const KernelResults table = measure_kernels(scene, settings, Control{});
             std::set<std::pair<std::string, int>> seen;
             const bool peer = !settings.peers.empty();
             for (const nlohmann::json& row : rows_json(table)) {
@@ -207,31 +211,31 @@ TEST_SUITE("unit") {
                 CHECK(judged.at("edge_faults") == 0);
             }
             CHECK(table.judged.size() == 4);
-            CHECK(faults(table).empty());
+            CHECK(kernel_failures(table).empty());
         }
     }
 
     TEST_CASE("faults are reported: wrong answers, leaks, misses, edge faults; the peer's are not ours") {
-        KernelTable table;
-        CHECK(faults(table).empty());
+        KernelResults table;
+        CHECK(kernel_failures(table).empty());
         table.watertight = {{"duet", 2, {10, 0, 0}}, {"embree", 5, {10, 5, 5}}};
         KernelRow row;
         row.work = "bounce";
         row.mismatches = Mismatches{10, 0, 0, 0, 1, {1, 0, 1}, {1, 1, 1}};
         row.leaks = Leaks{1, 7};
         table.rows = {row, row};
-        table.rows[1].threads = 2; // the same answers: reported once
-        CHECK(faults(table).size() == 3);
+        table.rows[1].threads = 2; // the same results: reported once
+        CHECK(kernel_failures(table).size() == 3);
         table.judged = {{"bounce", {100, 1, 1}}};
-        CHECK(faults(table).size() == 5);
+        CHECK(kernel_failures(table).size() == 5);
         table.judged.clear();
         table.watertight.front() = {"duet bulk", 0, {10, 1, 0}};
         table.rows.front().mismatches->ours = {1, 1, 0};
-        CHECK(faults(table).size() == 3);
+        CHECK(kernel_failures(table).size() == 3);
         table.watertight.front().faults.edge = 0;
         table.rows.front().mismatches->ours.edge = 0;
         table.rows.front().leaks->ours = table.rows.back().leaks->ours = 0;
-        CHECK(faults(table).empty());
+        CHECK(kernel_failures(table).empty());
     }
 
     TEST_CASE("the best of the peer's settings is that beside which we do worst") {
@@ -260,7 +264,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("the table: what nothing explains comes first, single camera rays are marked") {
-        KernelTable table;
+        KernelResults table;
         table.mesh = "lump";
         for (const char* work : {"camera", "bounce", "shadow"}) {
             KernelRow row;
@@ -311,7 +315,7 @@ TEST_SUITE("unit") {
               doctest::skip(embree_version().empty())) {
         const KernelScene scene = lump(Arrangement::kRoom, 4);
         const raytrace::Accelerator accelerator(*scene.scene, 1);
-        const Judge judge(*scene.scene);
+        const HitOracle oracle(*scene.scene);
         const EmbreeDevice widest(*scene.scene, 1), avx2(*scene.scene, 1, true);
         const auto camera = camera_rays(scene.camera, 100, 70, PixelOrder::kZCurve, 1);
         const auto bounce = bounce_rays(scene, accelerator, camera, 0, 1);
@@ -324,36 +328,36 @@ TEST_SUITE("unit") {
             CHECK(embree.memory_bytes() > 20 * std::ssize(scene.triangles().triangles));
             CHECK(embree.memory_bytes() < 400 * std::ssize(scene.triangles().triangles));
             for (const std::vector<Ray>& rays : {camera, bounce}) {
-                const auto ours = all_answers(our_closest(accelerator, rays), rays.size(), 1);
+                const auto ours = trace_all(duet_closest(accelerator, rays), rays.size(), 1);
                 for (const EmbreeForm form : forms)
                     for (const bool coherent : {false, true}) {
-                        const auto theirs = all_answers(embree.closest(rays, form, coherent), rays.size(), 1);
-                        const Mismatches found = compare_answers(judge, {rays, {}}, ours, theirs, 1);
+                        const auto theirs = trace_all(embree.closest(rays, form, coherent), rays.size(), 1);
+                        const Mismatches found = compare_results(oracle, {rays, {}}, ours, theirs, 1);
                         CHECK(found.unexplained == 0);
                         CHECK(found.ours.edge == 0);
                         CHECK(found.differ() < 100);
                     }
             }
-            const auto ours = all_answers(our_occluded(accelerator, shadow.rays, shadow.ends), shadow.rays.size(), 1);
-            const auto theirs = all_answers(embree.occluded(shadow.rays), shadow.rays.size(), 1);
-            CHECK(compare_answers(judge, {shadow.rays, shadow.ends}, ours, theirs, 1).unexplained == 0);
+            const auto ours = trace_all(duet_occluded(accelerator, shadow.rays, shadow.ends), shadow.rays.size(), 1);
+            const auto theirs = trace_all(embree.occluded(shadow.rays), shadow.rays.size(), 1);
+            CHECK(compare_results(oracle, {shadow.rays, shadow.ends}, ours, theirs, 1).unexplained == 0);
         }
     }
 
     TEST_CASE("Embree's instances are ours" * doctest::skip(embree_version().empty())) {
         const KernelScene scene = load_kernel_scene(kModels / "meshes/pear.obj", Arrangement::kInstances);
         const raytrace::Accelerator accelerator(*scene.scene, 1);
-        const Judge judge(*scene.scene);
+        const HitOracle oracle(*scene.scene);
         const EmbreeDevice device(*scene.scene, 1);
         const EmbreeScene embree(device, {false, false});
         const auto camera = camera_rays(scene.camera, 100, 70, PixelOrder::kZCurve, 1);
-        const auto ours = all_answers(our_closest(accelerator, camera), camera.size(), 1);
-        CHECK(std::ranges::count_if(ours, [](const Answer& a) { return a.object < 27; }) > 2000);
+        const auto ours = trace_all(duet_closest(accelerator, camera), camera.size(), 1);
+        CHECK(std::ranges::count_if(ours, [](const RayResult& a) { return a.object < 27; }) > 2000);
         std::vector<EmbreeForm> forms = embree_bulk_forms();
         forms.push_back(EmbreeForm::kSingle);
         for (const EmbreeForm form : forms) {
-            const auto theirs = all_answers(embree.closest(camera, form, true), camera.size(), 1);
-            const Mismatches found = compare_answers(judge, {camera, {}}, ours, theirs, 1);
+            const auto theirs = trace_all(embree.closest(camera, form, true), camera.size(), 1);
+            const Mismatches found = compare_results(oracle, {camera, {}}, ours, theirs, 1);
             CHECK(found.unexplained == 0);
             CHECK(found.differ() < 70);
         }

@@ -1,8 +1,8 @@
 #include "compare/kernels/ray_sets.h"
 
 #include "compare/kernels/tracer.h"
+#include "compare/stress/accelerated_scene.h"
 #include "compare/stress/chi_squared.h"
-#include "compare/stress/stage.h"
 
 #include <doctest/doctest.h>
 
@@ -30,7 +30,7 @@ Camera camera_at(Vec3d eye, Vec3d look_at) {
 }
 
 KernelScene lumpy_room() {
-    return make_kernel_scene("lump", Arrangement::kRoom, enclosed(ball(3, 0.2f), Vec3(), 3),
+    return make_kernel_scene("lump", Arrangement::kRoom, enclosed(icosphere(3, 0.2f), Vec3(), 3),
                              camera_at({1, 1.5, 2.5}, {0, 0, 0}));
 }
 
@@ -91,8 +91,8 @@ TEST_SUITE("unit") {
         std::vector<Ray> rays = camera_rays(scene.camera, 160, 120, PixelOrder::kZCurve, 1);
         const std::size_t count = rays.size();
         for (std::uint64_t depth = 0; depth < 10; ++depth) {
-            for (const Answer& answer : all_answers(our_closest(accelerator, rays), rays.size(), 1))
-                REQUIRE(answer.hit());
+            for (const RayResult& ray_result : trace_all(duet_closest(accelerator, rays), rays.size(), 1))
+                REQUIRE(ray_result.hit());
             rays = bounce_rays(scene, accelerator, rays, depth, 1);
             REQUIRE(rays.size() == count);
         }
@@ -115,11 +115,11 @@ TEST_SUITE("unit") {
             const auto rays = camera_rays(scene.camera, 64, 64, PixelOrder::kRows, 1);
             const auto shadow = shadow_rays(scene, accelerator, rays, 0, 1);
             REQUIRE(shadow.rays.size() > rays.size() / 2);
-            const auto answers =
-                all_answers(our_occluded(accelerator, shadow.rays, shadow.ends), shadow.rays.size(), 1);
+            const auto ray_results =
+                trace_all(duet_occluded(accelerator, shadow.rays, shadow.ends), shadow.rays.size(), 1);
             std::size_t blocked = 0;
-            for (const Answer& a : answers) blocked += a.hit();
-            CHECK(blocked == (lid ? answers.size() : 0));
+            for (const RayResult& a : ray_results) blocked += a.hit();
+            CHECK(blocked == (lid ? ray_results.size() : 0));
             // Each shadow ray ends on one of the light's two triangles, which are the last.
             for (std::size_t i = 0; i < shadow.rays.size(); ++i) {
                 const Ray& ray = shadow.rays[i];
@@ -160,7 +160,7 @@ TEST_SUITE("statistical") {
                 ++observed[static_cast<std::size_t>(i * kSectors + j)];
             }
             const ChiSquared found = chi_squared(observed, expected);
-            CHECK_MESSAGE(found.p_value > 1e-6, found.account);
+            CHECK_MESSAGE(found.p_value > 1e-6, found.details);
         }
     }
 }

@@ -34,12 +34,12 @@ BiasCheck against_cycles(const fs::path& path, int width, int height, int spp) {
     const ReferenceSettings settings{scratch.path(), spp, 64, 2};
     CyclesPeer peer(scene, view, {settings.depth, settings.threads});
     Control control;
-    const auto render = [&](int n, std::uint64_t seed) { return peer.unbiased_picture(n, seed, control); };
+    const auto render = [&](int n, std::uint64_t seed) { return peer.unbiased_image(n, seed, control); };
     const std::string program = peer.program(control);
     CHECK(program.starts_with("Blender "));
-    const KeptReference cycles =
+    const CachedReference cycles =
         reference_by_seeds({"cycles", kCyclesExportVersion, program}, scene, view, settings, render, control);
-    const KeptReference ours = reference_by("path", scene, view, settings, control);
+    const CachedReference ours = reference_by("path", scene, view, settings, control);
     const BiasCheck check = check_bias(ours.reference, cycles.reference);
     MESSAGE(path.filename().string(), ": largest |z| ", std::abs(check.worst_z), ", p ", check.p_value, ", detectable ",
             check.detectable);
@@ -95,6 +95,6 @@ TEST_SUITE("image") {
         CHECK(many > 4 * few); // 16 times the samples: fixed costs are negligible
         const std::atomic<bool> stop{true};
         Control stopped{&stop, {}};
-        CHECK(peer.render({1 << 20, 1, false}, stopped).picture.empty());
+        CHECK(peer.render({1 << 20, 1, false}, stopped).image.empty());
     }
 }

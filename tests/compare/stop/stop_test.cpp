@@ -13,15 +13,15 @@ using namespace duet::compare;
 
 namespace {
 
-StopTrial trial(double samples, double relmse, double mse, double even_relmse, double even_mse) {
+StopTrial trial(double samples, double relmse, double mse, double uniform_relmse, double uniform_mse) {
     StopTrial t;
     t.samples = samples;
     t.seconds = 2;
-    t.even_seconds = 1;
+    t.uniform_seconds = 1;
     t.relmse = relmse;
     t.mse = mse;
-    t.even_relmse = even_relmse;
-    t.even_mse = even_mse;
+    t.uniform_relmse = uniform_relmse;
+    t.uniform_mse = uniform_mse;
     return t;
 }
 
@@ -42,12 +42,12 @@ TEST_SUITE("unit") {
         result.trials = {trial(40, 0.004, 2, 0.002, 8), trial(16, 0.001, 2, 0.002, 8), trial(64, 0.002, 2, 0.002, 8)};
         CHECK(result.median_error() == doctest::Approx(0.002));
         CHECK(result.mean_samples() == doctest::Approx(40));
-        CHECK(result.to_even_relmse() == doctest::Approx(2 * 0.007 / 0.006));
-        CHECK(result.to_even_mse() == doctest::Approx(2 * 0.25));
-        CHECK_FALSE(result.at_once());
+        CHECK(result.cost_ratio_relmse() == doctest::Approx(2 * 0.007 / 0.006));
+        CHECK(result.cost_ratio_mse() == doctest::Approx(2 * 0.25));
+        CHECK_FALSE(result.stopped_at_minimum());
         result.trials.push_back(trial(16, 0.003, 2, 0.002, 8));
         CHECK(result.median_error() == doctest::Approx(0.0025));
-        CHECK(result.at_once()); // half of the trials ended with the minimum number of samples
+        CHECK(result.stopped_at_minimum()); // half of the trials ended with the minimum number of samples
     }
 
     TEST_CASE("mirrors and lamps together make caustics") {
@@ -61,7 +61,7 @@ TEST_SUITE("statistical") {
     TEST_CASE("the error that is measured is the one asked for, and a stopped measurement is none") {
         const Scene scene = load_scene(std::filesystem::path(DUET_SOURCE_DIR) / "models/cornell.json");
         const View view{scene.camera, 64, 64};
-        raytrace::Settings settings;
+        raytrace::PathTracerSettings settings;
         settings.samples_per_pixel = 2048;
         settings.seed = 99;
         settings.aovs.variance = true;

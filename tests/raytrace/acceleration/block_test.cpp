@@ -102,7 +102,7 @@ template <std::size_t kCorners> Ray polygon_ray(Random& random, const std::array
 }
 
 struct Counts {
-    int certain = 0, touched = 0, rest = 0, hits = 0, wrong = 0;
+    int certain = 0, needs_distance = 0, rest = 0, hits = 0, wrong = 0;
 };
 
 // Returns the block test's result for a lane. Where the block test is uncertain, the exact test decides.
@@ -111,8 +111,8 @@ std::optional<TriangleHit> said(BlockTest<kCorners> test, const PolygonBlock<kCo
                                 const ShearedRay& ray, std::size_t lane, Counts& counts) {
     const auto has = [lane](unsigned lanes) { return (lanes >> lane & 1) != 0; };
     if (!has(test.candidates())) return std::nullopt;
-    ++(has(test.certain()) ? counts.certain : has(test.touched()) ? counts.touched : counts.rest);
-    if (test.touched() != 0) test.measure_touched(ray, block);
+    ++(has(test.certain()) ? counts.certain : has(test.needs_distance()) ? counts.needs_distance : counts.rest);
+    if (test.needs_distance() != 0) test.compute_distances(ray, block);
     if (!has(test.certain())) return exact_hit(ray, block, lane);
     const Lanes t(test.t()), u(test.u()), v(test.v());
     const TriangleHit hit{t[lane], u[lane], v[lane]};
@@ -207,7 +207,7 @@ TEST_SUITE("unit") {
                 // The random rays must cover every result of the block test.
                 CHECK(counts.hits > 5000);
                 CHECK(counts.certain > 2000);
-                CHECK(counts.touched > 500);
+                CHECK(counts.needs_distance > 500);
                 CHECK(counts.rest > 500);
             }
     }
@@ -293,7 +293,7 @@ TEST_SUITE("unit") {
                             lines[axis][i] = ray.origin[axis], lines[3 + axis][i] = ray.direction[axis];
                         t_min[i] = ray.t_min, ends[i] = ray.t_max;
                     }
-                    const unsigned candidates = SphereFilter(lines).may_meet(sphere);
+                    const unsigned candidates = SphereFilter(lines).may_hit(sphere);
                     const SphereRaysTest test(lines, candidates, sphere, Batch::load_aligned(t_min.data()),
                                               Batch::load_aligned(ends.data()));
                     const Lanes t(test.t());

@@ -1,8 +1,8 @@
 // These tests check spatial splits: boxes contain their primitives, and the hits are unchanged.
 #include "raytrace/acceleration/accelerator.h"
 #include "raytrace/acceleration/bvh_hierarchy.h"
-#include "raytrace/acceleration/bvh_optimize.h"
-#include "tests/raytrace/acceleration/outlines.h"
+#include "raytrace/acceleration/bvh_reinsertion.h"
+#include "tests/raytrace/acceleration/polygon_items.h"
 #include "tests/raytrace/acceleration/soup.h"
 #include "tests/raytrace/acceleration/tree_checks.h"
 
@@ -28,15 +28,15 @@ Mesh thicket(Random& random, int count) {
 }
 
 // Returns a point of the polygon's convex hull. Some weights are 0, so edges and vertices are included.
-Vec3d point_of(const Outline& outline, Random& random) {
+Vec3d point_of(const ConvexPolygon& polygon, Random& random) {
     Vec3d sum;
     double weights = 0;
-    for (std::size_t i = 0; i < outline.count; ++i) {
+    for (std::size_t i = 0; i < polygon.count; ++i) {
         const double weight = random.below(3) == 0 ? 0.0 : static_cast<double>(random.uniform(0, 1));
-        sum = sum + Vec3d(outline.corners[i]) * weight;
+        sum = sum + Vec3d(polygon.corners[i]) * weight;
         weights += weight;
     }
-    return weights > 0 ? sum / weights : Vec3d(outline.corners[0]);
+    return weights > 0 ? sum / weights : Vec3d(polygon.corners[0]);
 }
 
 bool contains(const Box3& box, Vec3d p, double room) {
@@ -80,23 +80,23 @@ TEST_SUITE("unit") {
         for (int trial = 0; trial < 20000; ++trial) {
             const float scale = std::exp2(random.uniform(-40, 40));
             const Vec3 offset = random.vector() * (scale * (trial % 4 == 0 ? 1000.0f : 1.0f));
-            Outline outline;
-            outline.count = trial % 3 == 0 ? 4 : 3;
-            for (Vec3& corner : outline.corners) corner = offset + random.vector() * scale;
-            if (trial % 5 == 0) outline.corners[1] = outline.corners[0] + random.vector() * (1e-6f * scale); // a sliver
-            if (outline.count == 4) outline.corners[3] = outline.corners[0] + (outline.corners[2] - outline.corners[1]);
+            ConvexPolygon polygon;
+            polygon.count = trial % 3 == 0 ? 4 : 3;
+            for (Vec3& corner : polygon.corners) corner = offset + random.vector() * scale;
+            if (trial % 5 == 0) polygon.corners[1] = polygon.corners[0] + random.vector() * (1e-6f * scale); // a sliver
+            if (polygon.count == 4) polygon.corners[3] = polygon.corners[0] + (polygon.corners[2] - polygon.corners[1]);
             // Every seventh polygon is flat along one axis.
-            if (trial % 7 == 0) outline.corners[2][0] = outline.corners[1][0] = outline.corners[0][0];
+            if (trial % 7 == 0) polygon.corners[2][0] = polygon.corners[1][0] = polygon.corners[0][0];
             Box3 box;
-            for (std::size_t i = 0; i < outline.count; ++i) box.extend(outline.corners[i]);
+            for (std::size_t i = 0; i < polygon.count; ++i) box.extend(polygon.corners[i]);
             const auto axis = static_cast<std::size_t>(random.below(3));
             float low = lerp(box.low[axis], box.high[axis], random.uniform(-0.2f, 1)),
                   high = lerp(box.low[axis], box.high[axis], random.uniform(0, 1.2f));
             if (low > high) std::swap(low, high);
-            if (trial % 11 == 0) low = outline.corners[0][axis]; // through a vertex
-            const Box3 part = clip(outline, box, axis, low, max(low, high));
+            if (trial % 11 == 0) low = polygon.corners[0][axis]; // through a vertex
+            const Box3 part = clip(polygon, box, axis, low, max(low, high));
             for (int k = 0; k < 20; ++k) {
-                const Vec3d p = point_of(outline, random);
+                const Vec3d p = point_of(polygon, random);
                 if (!(static_cast<double>(low) <= p[axis] && p[axis] <= static_cast<double>(max(low, high)))) continue;
                 ++inside;
                 // The point itself has a rounding error in double precision.
@@ -109,7 +109,7 @@ TEST_SUITE("unit") {
             // The box must not exceed the bounds of many sampled points of the part.
             Box3 seen;
             for (int k = 0; k < 300; ++k) {
-                const Vec3d p = point_of(outline, random);
+                const Vec3d p = point_of(polygon, random);
                 if (static_cast<double>(low) <= p[axis] && p[axis] <= static_cast<double>(max(low, high)))
                     seen.extend(Vec3(p));
             }
@@ -121,23 +121,23 @@ TEST_SUITE("unit") {
 
     TEST_CASE("a spatial tree: every point of every item in a leaf of it, within the budget, for any number of threads") {
         Random random(22);
-        Outlines outlines(thicket(random, 6000));
+        PolygonItems polygons(thicket(random, 6000));
         for (int i = 0; i < 200; ++i) { // quads and primitives that cannot be split
             const Vec3 p = random.vector();
-            outlines.add({{p, p + random.vector(), {}, {}}, 0}, PrimitiveKind::kSphere);
-            outlines.items.back().box = {p, p + Vec3(0.1f, 0.1f, 0.1f)};
+            polygons.add({{p, p + random.vector(), {}, {}}, 0}, PrimitiveKind::kSphere);
+            polygons.items.back().box = {p, p + Vec3(0.1f, 0.1f, 0.1f)};
             const Vec3 u = random.vector(), v = random.vector() * 0.1f;
-            outlines.add({{p, p + u, (p + u) + v, p + v}, 4}, PrimitiveKind::kQuad);
+            polygons.add({{p, p + u, (p + u) + v, p + v}, 4}, PrimitiveKind::kQuad);
         }
         for (const float budget : {0.0f, 0.5f, 1.0f}) {
             CAPTURE(budget);
-            const BinaryTree tree = build_spatial_tree(outlines.items, outlines.of(), budget, 1);
+            const BinaryTree tree = build_spatial_tree(polygons.items, polygons.of(), budget, 1);
             check_tree(tree);
-            CHECK(same_trees(tree, build_spatial_tree(outlines.items, outlines.of(), budget, 5)));
-            const auto first = static_cast<double>(outlines.items.size());
+            CHECK(same_trees(tree, build_spatial_tree(polygons.items, polygons.of(), budget, 5)));
+            const auto first = static_cast<double>(polygons.items.size());
             CHECK(static_cast<double>(tree.items.size()) <= first * (1 + static_cast<double>(budget)));
             if (budget > 0) CHECK(static_cast<double>(tree.items.size()) > first * 1.05);
-            std::vector<std::vector<Box3>> boxes(outlines.outlines.size()); // the leaf boxes of each item
+            std::vector<std::vector<Box3>> boxes(polygons.polygons.size()); // the leaf boxes of each item
             int twice = 0;
             for (const BinaryNode& node : tree.nodes)
                 for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
@@ -148,8 +148,8 @@ TEST_SUITE("unit") {
             CHECK(twice == 0);
             for (std::size_t i = 0; i < boxes.size(); ++i) {
                 REQUIRE(!boxes[i].empty());
-                for (int k = 0; k < 50 && outlines.outlines[i].count > 0; ++k) {
-                    const Vec3d p = point_of(outlines.outlines[i], random);
+                for (int k = 0; k < 50 && polygons.polygons[i].count > 0; ++k) {
+                    const Vec3d p = point_of(polygons.polygons[i], random);
                     REQUIRE(std::any_of(boxes[i].begin(), boxes[i].end(),
                                         [&](const Box3& b) { return contains(b, p, 1e-14); }));
                 }
@@ -157,9 +157,9 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("degenerate outlines build spatial trees quickly and not too deep") {
+    TEST_CASE("degenerate polygons build spatial trees quickly and not too deep") {
         Random random(23);
-        std::vector<Outlines> sets(6);
+        std::vector<PolygonItems> sets(6);
         for (int i = 0; i < 100000; ++i) {
             const Vec3 p = random.vector();
             sets[0].add({{Vec3(-1, -1, 0), Vec3(1, -1, 0.5f), Vec3(0, 1, 1)}, 3}); // identical

@@ -204,7 +204,7 @@ private:
     }
     std::string described(std::size_t i) const {
         return message("object ", primitives_[i].object, " primitive ", primitives_[i].number, " is met at ",
-                       meetings_[i].t, ", ", meetings_[i].clearance, " within its outline");
+                       meetings_[i].t, ", ", meetings_[i].clearance, " within its polygon");
     }
     void mismatch(const Hit& hit, const std::string& why, Verdicts& verdicts) const {
         if (verdicts.mismatches++ == 0) verdicts.first = raytrace::described(hit) + ": " + why;
@@ -272,7 +272,8 @@ Verdicts examine(const Scene& scene, Soup& soup, Kind kind, int trials) {
 } // namespace
 
 TEST_SUITE("unit") {
-    TEST_CASE("rays hit what an independent tracer of higher precision hits, but for ties and for outlines met exactly") {
+    TEST_CASE(
+        "rays hit what an independent tracer of higher precision hits, but for ties and for polygons met exactly") {
         for (const bool instances : {false, true})
             for (const Kind kind : {Kind::kAnywhere, Kind::kParallel, Kind::kParallelToVertices})
                 for (const float scale : {1e-6f, 1.0f, 1e6f})

@@ -1,6 +1,6 @@
-// The examiner of assignment 1. Images are compared with those of a renderer of its own (renderer.h). The time budget
-// is a multiple of the time that this plain renderer takes in the same run.
-#include "compare/lessons/assignments/1-rasterizer/renderer.h"
+// The examiner of assignment 1. Images are compared with those of a renderer of its own (reference_renderer.h). The
+// time budget is a multiple of the time that this plain renderer takes in the same run.
+#include "compare/lessons/assignments/1-rasterizer/reference_renderer.h"
 #include "tests/grading/judge.h"
 
 #include <ctime>
@@ -37,8 +37,8 @@ void check_picture(Item& item, const std::string& name, const Mesh& mesh, const 
         return;
     }
     std::vector<Mistake<ImageRgb>> mistakes;
-    const auto add = [&](const std::string& text, bool Wrong::*flag) {
-        Wrong wrong;
+    const auto add = [&](const std::string& text, bool RendererMistakes::*flag) {
+        RendererMistakes wrong;
         wrong.*flag = true;
         const ImageRgb image = render(mesh, camera, texture, width, height, background, wrong);
         if (wrong_pixels(image, expected, kTolerance) > expected.size() / 200) mistakes.push_back({image, text});
@@ -46,23 +46,26 @@ void check_picture(Item& item, const std::string& name, const Mesh& mesh, const 
     add("It looks as if depth were not compared: what is drawn last covers what is nearer. Keep the smallest depth of "
         "each "
         "pixel.",
-        &Wrong::depth_unused);
-    add("The farthest surface wins: keep the smallest depth, and begin with infinity.", &Wrong::farthest_wins);
+        &RendererMistakes::depth_unused);
+    add("The farthest surface wins: keep the smallest depth, and begin with infinity.",
+        &RendererMistakes::farthest_wins);
     add("The texture is interpolated evenly over the image, so it bends at the diagonals: use perspective_weights for "
         "uv.",
-        &Wrong::affine);
+        &RendererMistakes::affine);
     add("The texture stands on its head: v = 0 is its bottom row, and row 0 of an image is its top row.",
-        &Wrong::v_flipped);
-    add("Triangles are not clipped: what is behind the eye is drawn in front of it.", &Wrong::unclipped);
-    add("Triangles that cross the near plane are missing: draw the part of them that is in front.", &Wrong::dropped);
+        &RendererMistakes::v_flipped);
+    add("Triangles are not clipped: what is behind the eye is drawn in front of it.", &RendererMistakes::unclipped);
+    add("Triangles that cross the near plane are missing: draw the part of them that is in front.",
+        &RendererMistakes::dropped);
     add("Everything is half a pixel too far to the lower right: the center of pixel (0, 0) is at (0.5, 0.5).",
-        &Wrong::pixel_corners);
-    add("The picture is upside down: y points up in clip space, and down in the image.", &Wrong::upside_down);
-    add("The picture is mirrored: x points right in clip space and in the image.", &Wrong::mirrored);
+        &RendererMistakes::pixel_corners);
+    add("The picture is upside down: y points up in clip space, and down in the image.",
+        &RendererMistakes::upside_down);
+    add("The picture is mirrored: x points right in clip space and in the image.", &RendererMistakes::mirrored);
     add("The aspect is not that of the image, width / height. Of two int this is a whole number: convert them first.",
-        &Wrong::aspect_ignored);
-    add("Triangles are visible from one side only: both windings must be drawn.", &Wrong::one_side_only);
-    add("The texture has hard squares: mix the four nearest texels.", &Wrong::nearest_texel);
+        &RendererMistakes::aspect_ignored);
+    add("Triangles are visible from one side only: both windings must be drawn.", &RendererMistakes::one_side_only);
+    add("The texture has hard squares: mix the four nearest texels.", &RendererMistakes::nearest_texel);
     mistakes.push_back({ImageRgb(width, height, background), "Nothing is drawn."});
     item.image(name, found, expected, kTolerance, mistakes);
 }
@@ -241,12 +244,12 @@ LAB_ITEM(15, "rasterize: every pixel once, with its weights") {
         {{clockwise, "Triangles with counter-clockwise corners are missing: where the area is negative, swap two "
                      "corners."},
          {moved, corners},
-         {fan_by(hub, rim, kWidth, kHeight, [](auto w, auto, auto) { return w >= 0; }),
+         {count_fan_coverage(hub, rim, kWidth, kHeight, [](auto w, auto, auto) { return w >= 0; }),
           "Both triangles at an edge take the centers on it: w == 0 counts for a left or top edge only."},
-         {fan_by(hub, rim, kWidth, kHeight, [](auto w, auto, auto) { return w > 0; }),
+         {count_fan_coverage(hub, rim, kWidth, kHeight, [](auto w, auto, auto) { return w > 0; }),
           "No triangle takes the centers on an edge: w == 0 counts for a left or top edge."},
-         {fan_by(hub, rim, kWidth, kHeight,
-                 [](auto w, auto a, auto b) { return w > 0 || (w == 0 && !lesson::is_top_left(a, b)); }),
+         {count_fan_coverage(hub, rim, kWidth, kHeight,
+                             [](auto w, auto a, auto b) { return w > 0 || (w == 0 && !lesson::is_top_left(a, b)); }),
           "The rule is turned around: the bottom and right edges take the centers on them."},
          {Image<int>(kWidth, kHeight, 0), "Nothing is covered at all."}});
     for (int i = 0; i < 60; ++i) {
@@ -269,7 +272,7 @@ LAB_ITEM(15, "rasterize: every pixel once, with its weights") {
             "This is what edge functions of 32 bits give: compute them, and the area, in 64 bits.";
         item.coverage(name, counts_of(item, fragments, kWidth, kHeight), right,
                       {{shifted, corners},
-                       {overflowed(a, b, c, kWidth, kHeight), overflow},
+                       {coverage_with_overflow(a, b, c, kWidth, kHeight), overflow},
                        {Image<int>(kWidth, kHeight, 0), "Nothing is covered."}});
         for (const auto& f : fragments) {
             const Vec3 w = weights(f.x, f.y);
@@ -321,11 +324,11 @@ LAB_ITEM(10, "sample") {
               {{Rgb(0, 0, 0), "The texture repeats: left of the first texel is the last one."}});
     item.near("u = -0.875, which is u = 0.125,", at(-0.875f, 0.25f), Rgb(0, 0, 0), 1e-5);
     item.near("v = 1.75, which is v = 0.75,", at(0.625f, 1.75f), Rgb(2, 1, 0), 1e-5);
-    const ImageRgb random = board(5, 3);
+    const ImageRgb random = checkerboard(5, 3);
     for (int i = 0; i < 200; ++i) {
         const Vec2d uv(item.random().uniform(-2, 3), item.random().uniform(-2, 3));
         item.near(message("the texture at ", describe(Vec2(uv))), STUDENT(sample)(random, Vec2(uv)),
-                  look_up(random, Vec2d(Vec2(uv))), 1e-3);
+                  sample_texture(random, Vec2d(Vec2(uv))), 1e-3);
     }
 }
 
@@ -333,11 +336,11 @@ LAB_ITEM(10, "draw: a floor that passes below the eye, and walls that cross") {
     Mesh mesh;
     add_quad(mesh, {Vec3{-3, 0, 3}, Vec3{3, 0, 3}, Vec3{3, 0, -5}, Vec3{-3, 0, -5}});
     const Camera camera{{0.4f, 0.9f, 1}, {-0.2f, 0.3f, -1.5f}, {0, 1, 0}, 1.1f, 0.05f};
-    check_picture(item, "a floor", mesh, camera, board(8, 4), 160, 120);
+    check_picture(item, "a floor", mesh, camera, checkerboard(8, 4), 160, 120);
     add_quad(mesh, {Vec3{-1.5f, 0, -2.5f}, Vec3{1.2f, 0, -0.7f}, Vec3{1.2f, 1.2f, -0.7f}, Vec3{-1.5f, 1.2f, -2.5f}});
     add_quad(mesh,
              {Vec3{1.4f, -0.2f, -2.6f}, Vec3{-1.3f, -0.2f, -0.9f}, Vec3{-1.3f, 0.9f, -0.9f}, Vec3{1.4f, 0.9f, -2.6f}});
-    check_picture(item, "a floor and two walls that cross", mesh, camera, board(8, 4), 160, 120);
+    check_picture(item, "a floor and two walls that cross", mesh, camera, checkerboard(8, 4), 160, 120);
 }
 
 LAB_ITEM(15, "draw: the amphora from three places") {
@@ -346,7 +349,7 @@ LAB_ITEM(15, "draw: the amphora from three places") {
     check_picture(item, "the amphora from above", amphora(), {{0.3f, 1.7f, 0.5f}, {0, 0.6f, 0}, {0, 1, 0}, 0.6f, 0.1f},
                   amphora_texture(), 180, 150);
     check_picture(item, "the amphora from inside, with a checkerboard for its texture", amphora(),
-                  {{0.05f, 0.3f, 0.04f}, {0, 0.75f, 0}, {0, 0, 1}, 1.7f, 0.02f}, board(16, 8), 150, 150);
+                  {{0.05f, 0.3f, 0.04f}, {0, 0.75f, 0}, {0, 0, 1}, 1.7f, 0.02f}, checkerboard(16, 8), 150, 150);
 }
 
 LAB_ITEM(10, "the time budget: a large picture of the amphora") {

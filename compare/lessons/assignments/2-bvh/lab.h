@@ -33,7 +33,7 @@ struct Tree {
 };
 
 /// The nearest triangle on a ray and its distance; triangle -1 where the ray hits none.
-struct Found {
+struct TriangleHit {
     int triangle = -1;
     float t = kInfinity;
 };
@@ -67,7 +67,7 @@ bool hit_box(const Box& box, const Ray& ray);
 Tree build(const std::vector<Triangle>& triangles);
 
 /// The nearest hit of each ray, found through the tree.
-std::vector<Found> trace(const Tree& tree, const std::vector<Triangle>& triangles, const std::vector<Ray>& rays);
+std::vector<TriangleHit> trace(const Tree& tree, const std::vector<Triangle>& triangles, const std::vector<Ray>& rays);
 
 } // namespace duet::lab
 

@@ -32,10 +32,10 @@ Tree build(const std::vector<Triangle>& triangles) {
     return tree;
 }
 
-std::vector<Found> trace(const Tree& tree, const std::vector<Triangle>& triangles, const std::vector<Ray>& rays) {
+std::vector<TriangleHit> trace(const Tree& tree, const std::vector<Triangle>& triangles, const std::vector<Ray>& rays) {
     not_attempted(); // Remove this line when you start.
     (void)tree;      // Walk down from tree.nodes[0], and skip each node whose box the ray misses.
-    std::vector<Found> found(rays.size());
+    std::vector<TriangleHit> found(rays.size());
     for (std::size_t r = 0; r < rays.size(); ++r) {
         Ray ray = rays[r];
         for (std::size_t i = 0; i < triangles.size(); ++i)

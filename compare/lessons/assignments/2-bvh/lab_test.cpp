@@ -13,10 +13,10 @@
 using namespace duet;
 using namespace duet::grading;
 using lab::Box;
-using lab::Found;
 using lab::Node;
 using lab::Tree;
 using lab::Triangle;
+using lab::TriangleHit;
 
 LAB_TITLE("assignment-2", "A hierarchy by the surface area heuristic")
 
@@ -82,8 +82,8 @@ std::vector<Ray> random_rays(Rng& rng, int count) {
     return rays;
 }
 
-Found nearest(const std::vector<Triangle>& triangles, Ray ray) {
-    Found found;
+TriangleHit nearest(const std::vector<Triangle>& triangles, Ray ray) {
+    TriangleHit found;
     for (std::size_t i = 0; i < triangles.size(); ++i)
         if (const auto t = lab::hit_triangle(triangles[i], ray)) ray.t_max = *t, found = {static_cast<int>(i), *t};
     return found;
@@ -233,9 +233,9 @@ void require_valid(Item& item, const Tree& tree, const std::vector<Triangle>& tr
     item.require(std::count(seen.begin(), seen.end(), 1) == count, "Some triangles are in several leaves.");
 }
 
-void require_hit(Item& item, const Found& found, const std::vector<Triangle>& triangles, const Ray& ray,
+void require_hit(Item& item, const TriangleHit& found, const std::vector<Triangle>& triangles, const Ray& ray,
                  const std::string& where) {
-    const Found truth = nearest(triangles, ray);
+    const TriangleHit truth = nearest(triangles, ray);
     item.require(truth.triangle >= 0 || found.triangle < 0,
                  message(where, "it hits nothing, but you found triangle ", found.triangle, "."));
     item.require(
@@ -252,7 +252,7 @@ void require_hit(Item& item, const Found& found, const std::vector<Triangle>& tr
                  message(where, "t = ", found.t, " is right, but triangle ", found.triangle, " isn't there; triangle ",
                          truth.triangle, " is. Did you return the place in `order` instead of what stands there?"));
 }
-void require_hits(Item& item, const std::vector<Found>& found, const std::vector<Triangle>& triangles,
+void require_hits(Item& item, const std::vector<TriangleHit>& found, const std::vector<Triangle>& triangles,
                   const std::vector<Ray>& rays, std::size_t step = 1) {
     item.require(found.size() == rays.size(),
                  message("One hit is expected for each ray: expected ", rays.size(), ", found ", found.size(), "."));

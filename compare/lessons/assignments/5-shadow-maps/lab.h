@@ -47,7 +47,7 @@ struct ShadowMap {
 
 /// What the pixels of an image see. The normal has length 1 and points to the side that is seen; it is (0, 0, 0) where
 /// the pixel sees nothing.
-struct Seen {
+struct GBuffer {
     Image<Vec3> point, normal;
 };
 
@@ -67,7 +67,7 @@ ImageFloat depth_map(const std::vector<Triangle>& triangles, const LightView& vi
 /// in which the point lies. Texels beside the map say so, too. How you avoid acne is up to you. It is 0 where the pixel
 /// sees nothing, where the surface is turned away from the (center of the) light, and where the point is outside the
 /// cone of a spot light.
-ImageFloat shadows(const ShadowMap& map, const Light& light, const Seen& seen, int reach);
+ImageFloat shadows(const ShadowMap& map, const Light& light, const GBuffer& gbuffer, int reach);
 
 /// The width of the penumbra in meters, on a surface that faces the light, at the distance `receiver` along the light,
 /// behind a straight edge at the distance `blocker`. 0 unless 0 < blocker < receiver.
@@ -76,13 +76,14 @@ float penumbra_width(const Light& light, float blocker, float receiver);
 /// The fraction of the light's disk that each pixel sees, by the map: the mean depth of what blocks the light around
 /// the point gives the penumbra's width, and that gives the filter's (percentage-closer soft shadows). 0 where
 /// `shadows` is.
-ImageFloat soft_shadows(const ShadowMap& map, const Light& light, const Seen& seen);
+ImageFloat soft_shadows(const ShadowMap& map, const Light& light, const GBuffer& gbuffer);
 
 /// The truth: the fraction of rays from each pixel's point to the light that meet no triangle on the way. For
 /// samples = 1 the ray leads to the light's center, otherwise `samples` rays lead to points spread evenly over its
 /// disk. The disk of the sun: directions -direction + radius · (a point of the unit disk perpendicular to it). 0 where
 /// `shadows` is.
-ImageFloat traced_shadows(const std::vector<Triangle>& triangles, const Light& light, const Seen& seen, int samples);
+ImageFloat traced_shadows(const std::vector<Triangle>& triangles, const Light& light, const GBuffer& gbuffer,
+                          int samples);
 
 } // namespace duet::lab
 

@@ -16,13 +16,13 @@ ImageFloat depth_map(const std::vector<Triangle>& triangles, const LightView& vi
     return ImageFloat(side, side, kInfinity); // The light sees nothing.
 }
 
-ImageFloat shadows(const ShadowMap& map, const Light& light, const Seen& seen, int reach) {
+ImageFloat shadows(const ShadowMap& map, const Light& light, const GBuffer& gbuffer, int reach) {
     not_attempted(); // Remove this line when you start.
     (void)map, (void)reach;
-    ImageFloat lit(seen.point.width(), seen.point.height(), 0);
+    ImageFloat lit(gbuffer.point.width(), gbuffer.point.height(), 0);
     for (std::size_t i = 0; i < lit.size(); ++i) {
-        const Vec3 to_light = light.spot ? light.position - seen.point[i] : -light.direction;
-        if (dot(seen.normal[i], to_light) > 0) lit[i] = 1;
+        const Vec3 to_light = light.spot ? light.position - gbuffer.point[i] : -light.direction;
+        if (dot(gbuffer.normal[i], to_light) > 0) lit[i] = 1;
     }
     return lit;
 }
@@ -33,15 +33,16 @@ float penumbra_width(const Light& light, float blocker, float receiver) {
     return 0;
 }
 
-ImageFloat soft_shadows(const ShadowMap& map, const Light& light, const Seen& seen) {
+ImageFloat soft_shadows(const ShadowMap& map, const Light& light, const GBuffer& gbuffer) {
     not_attempted(); // Remove this line when you start.
-    return shadows(map, light, seen, 0);
+    return shadows(map, light, gbuffer, 0);
 }
 
-ImageFloat traced_shadows(const std::vector<Triangle>& triangles, const Light& light, const Seen& seen, int samples) {
+ImageFloat traced_shadows(const std::vector<Triangle>& triangles, const Light& light, const GBuffer& gbuffer,
+                          int samples) {
     not_attempted(); // Remove this line when you start.
     (void)triangles, (void)light, (void)samples;
-    return ImageFloat(seen.point.width(), seen.point.height(), 1); // Nothing stands in the way.
+    return ImageFloat(gbuffer.point.width(), gbuffer.point.height(), 1); // Nothing stands in the way.
 }
 
 } // namespace duet::lab

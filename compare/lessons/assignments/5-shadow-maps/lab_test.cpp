@@ -1,6 +1,6 @@
-// The examiner of assignment 5. The truth is rays in double (garden.h). A pixel is judged where the truth is the same
-// all around it within the size of a texel; elsewhere a shadow map may be wrong.
-#include "compare/lessons/assignments/5-shadow-maps/light_map.h"
+// The examiner of assignment 5. The truth is rays in double (reference_shadows.h). A pixel is judged where the truth is
+// the same all around it within the size of a texel; elsewhere a shadow map may be wrong.
+#include "compare/lessons/assignments/5-shadow-maps/reference_shadow_map.h"
 
 using namespace duet;
 using namespace duet::grading;
@@ -12,21 +12,21 @@ namespace {
 
 constexpr int kWidth = 96, kHeight = 60;
 const Scene kGarden = garden(8);
-const Picture kPicture = look(kGarden, kWidth, kHeight);
+const PrimaryHits kPicture = primary_hits(kGarden, kWidth, kHeight);
 
 /// Judges shadows with reach 0 by a map. Of the judged pixels 1 in 200 may be wrong.
-void check_hard(Item& item, const Light& light, const Picture& picture, int side) {
+void check_hard(Item& item, const Light& light, const PrimaryHits& primary, int side) {
     const std::string name = message(name_of(light), ", ", side, " texels a side");
     const ShadowMap map = traced_map(kGarden, light, view_of(light, kGarden), side);
-    const ImageFloat found = STUDENT(shadows)(map, light, picture.seen, 0);
+    const ImageFloat found = STUDENT(shadows)(map, light, primary.gbuffer, 0);
     item.size(found, kWidth, kHeight);
-    const auto truth = judged(kGarden, light, picture, d(map.view.width) / side);
+    const auto truth = classify_pixels(kGarden, light, primary, d(map.view.width) / side);
     for (const float value : found)
         item.require(value == 0 || value == 1,
                      message("With reach 0 a pixel is ", value, "; expected 0 or 1: there is one texel to ask."));
-    const auto [expected, lit, acne, dark, leaks, farthest] = verdict_of(kGarden, light, picture, truth, found);
+    const auto [expected, lit, acne, dark, leaks, farthest] = find_shadow_errors(kGarden, light, primary, truth, found);
     if (acne <= lit / 200 && leaks <= dark / 200) return item.show(name, found);
-    Floats mistakes = mistakes_of(map, light, picture.seen, 0);
+    Floats mistakes = mistakes_of(map, light, primary.gbuffer, 0);
     mistakes.push_back({found, acne * dark > leaks * lit
                                    ? message("Shadow acne: of ", lit, " pixels in full light ", acne,
                                              " are dark. The bias is too small where the surface is tilted: a texel's "
@@ -42,42 +42,42 @@ void check_hard(Item& item, const Light& light, const Picture& picture, int side
 /// is compared for a map whose texels are empty or hold something close to the light, so that no bias plays a part.
 void check_points(Item& item, const Light& light, int side, double from, double to, int reach) {
     Rng& rng = item.random();
-    const Lamp lamp(light);
+    const LightFrame frame(light);
     const LightView view = view_of(light, 0.5, 6, {}, 4);
     const ShadowMap map{view,
                         each_pixel(side, side, [&](int, int) { return rng.uniform() < 0.5 ? 0.001f : kInfinity; })};
-    Seen seen{{16, 12}, {16, 12}};
-    for (std::size_t i = 0; i < seen.point.size(); ++i) {
+    GBuffer gbuffer{{16, 12}, {16, 12}};
+    for (std::size_t i = 0; i < gbuffer.point.size(); ++i) {
         const auto place = [&] {
             return 2 * (std::floor(rng.uniform(from, to) * side) + rng.uniform(0.1, 0.9)) / side - 1;
         };
         const double t = rng.uniform(2, 5), x = place(), y = place(), half = (light.spot ? t : 1) * d(view.width) / 2;
-        const Vec3d origin = light.spot ? lamp.position : lamp.forward * -3.0; // where the distance is 0
-        seen.point[i] = Vec3(origin + lamp.forward * t + (lamp.right * x + lamp.up * y) * half);
-        seen.normal[i] = Vec3(normalize(lamp.toward(Vec3d(seen.point[i]))));
+        const Vec3d origin = light.spot ? frame.position : frame.forward * -3.0; // where the distance is 0
+        gbuffer.point[i] = Vec3(origin + frame.forward * t + (frame.right * x + frame.up * y) * half);
+        gbuffer.normal[i] = Vec3(normalize(frame.toward(Vec3d(gbuffer.point[i]))));
     }
     item.image(message("points in the light of ", name_of(light), ", reach ", reach, ", columns and rows from ",
                        side * from, " to ", side * to),
-               STUDENT(shadows)(map, light, seen, reach), lit_by(map, light, seen, reach), 1e-4,
-               mistakes_of(map, light, seen, reach));
+               STUDENT(shadows)(map, light, gbuffer, reach), looked_up_visibility(map, light, gbuffer, reach), 1e-4,
+               mistakes_of(map, light, gbuffer, reach));
 }
 
 } // namespace
 
 LAB_ITEM(0, "your pictures") {
     const Scene scene = garden(32);
-    const Picture picture = look(scene, 320, 200);
+    const PrimaryHits primary = primary_hits(scene, 320, 200);
     item.limit(30);
     for (const Light& light : {kSun, kSpot}) {
         const ShadowMap map = traced_map(scene, light, view_of(light, scene), 384);
         const auto show = [&](const std::string& what, const ImageFloat& lit) {
             item.size(lit, 320, 200);
-            item.show(what + ", " + name_of(light), painted(scene, light, picture, lit));
+            item.show(what + ", " + name_of(light), shade(scene, light, primary, lit));
         };
-        show("one texel", STUDENT(shadows)(map, light, picture.seen, 0));
-        show("filtered", STUDENT(shadows)(map, light, picture.seen, 2));
-        show("soft", STUDENT(soft_shadows)(map, light, picture.seen));
-        show("truth by rays", traced(scene, light, picture, 24, 0.5, false, 3));
+        show("one texel", STUDENT(shadows)(map, light, primary.gbuffer, 0));
+        show("filtered", STUDENT(shadows)(map, light, primary.gbuffer, 2));
+        show("soft", STUDENT(soft_shadows)(map, light, primary.gbuffer));
+        show("truth by rays", traced_visibility(scene, light, primary, 24, 0.5, false, 3));
         const ImageFloat own = STUDENT(depth_map)(scene.triangles, map.view, 200);
         item.show("your map, " + name_of(light), each_pixel(own.width(), own.height(), [&](int x, int y) {
                       const double t = distance_at(map.view, light.spot, d(own(x, y))) / d(map.view.far);
@@ -90,7 +90,8 @@ LAB_ITEM(5, "light_view: the sun's map holds the scene, in any direction") {
     Rng& rng = item.random();
     for (int i = 0; i < 40; ++i) {
         const Vec3d any = rng.unit_vector(), direction = i == 0 ? Vec3d(0, -1, 0) : i == 1 ? Vec3d(0, 0, 1) : any;
-        const Scene scene = scattered(5, [&] { return rng.unit_vector() * rng.uniform(1, 5) + Vec3d(i, 2, -3); });
+        const Scene scene =
+            random_triangles(5, [&] { return rng.unit_vector() * rng.uniform(1, 5) + Vec3d(i, 2, -3); });
         const LightView view = STUDENT(light_view)({Vec3(direction)}, scene.triangles);
         const Mat4d m(view.clip_from_world);
         const std::string where = message(" for the direction ", describe(Vec3(direction)));
@@ -128,17 +129,17 @@ LAB_ITEM(10, "light_view: the spot light's cone, and the precision of its depths
         const Vec3d any = rng.unit_vector();
         const Light light{i == 0 ? Vec3{0, -1, 0} : Vec3(any), 0.1f, true, Vec3(rng.unit_vector() * 3.0),
                           static_cast<float>(rng.uniform(0.3, 1.1))};
-        const Lamp lamp(light);
+        const LightFrame frame(light);
         const double from = i % 4 == 0 ? -2 : rng.uniform(0.5, 5);
-        const Scene scene = scattered(20, [&] {
-            const Vec3d aside = cross(lamp.forward, rng.unit_vector()) * 3.0;
-            return lamp.position + lamp.forward * rng.uniform(from, 12) + aside;
+        const Scene scene = random_triangles(20, [&] {
+            const Vec3d aside = cross(frame.forward, rng.unit_vector()) * 3.0;
+            return frame.position + frame.forward * rng.uniform(from, 12) + aside;
         });
         const double near = std::max(extent_of(light, scene).near, 0.05), far = extent_of(light, scene).far;
         const LightView view = STUDENT(light_view)(light, scene.triangles);
         const double t = (near + far) / 2, tangent = std::tan(d(light.half_angle)), n = view.near, f = view.far;
-        const auto place = [&](Vec3d p) { return Mat4d(view.clip_from_world) * Vec4d(lamp.position + p * t, 1.0); };
-        const Vec4d center = place(lamp.forward), rim = place(lamp.forward + lamp.right * tangent);
+        const auto place = [&](Vec3d p) { return Mat4d(view.clip_from_world) * Vec4d(frame.position + p * t, 1.0); };
+        const Vec4d center = place(frame.forward), rim = place(frame.forward + frame.right * tangent);
         item.near(message("w at the distance ", t), center.w, t, 1e-4 * t,
                   {{-t, "It must be positive in front of the light."},
                    {1, "A spot light needs perspective: w is the distance along it."}});
@@ -172,7 +173,9 @@ LAB_ITEM(15, "depth_map: the nearest triangle at the center of each texel") {
         const double near = view.near, far = view.far;
         const ImageFloat depth = STUDENT(depth_map)(kGarden.triangles, view, kSide);
         item.size(depth, kSide, kSide);
-        const auto at = [&](double x, double y) { return seen_by(kGarden, map_ray(light, view, kSide, x, y), view); };
+        const auto at = [&](double x, double y) {
+            return first_distance(kGarden, map_ray(light, view, kSide, x, y), view);
+        };
         // Depths of a spot light are all close to 1, so distances are compared, in units of far; 1.1 where nothing is.
         const auto image = [&](const auto& distance) {
             return each_pixel(kSide, kSide, [&](int x, int y) {
@@ -199,9 +202,10 @@ LAB_ITEM(15, "depth_map: the nearest triangle at the center of each texel") {
             item.show(name, found);
             continue; // what mistakes would give takes a while
         }
-        const auto mode = [&](Mode m) {
-            return image(
-                [&](double x, double y) { return seen_by(kGarden, map_ray(light, view, kSide, x, y), view, m); });
+        const auto mode = [&](DepthMistake m) {
+            return image([&](double x, double y) {
+                return first_distance(kGarden, map_ray(light, view, kSide, x, y), view, m);
+            });
         };
         Floats mistakes{
             {image([&](double x, double y) { return at(x, kSide - y); }),
@@ -224,20 +228,20 @@ LAB_ITEM(15, "depth_map: the nearest triangle at the center of each texel") {
 LAB_ITEM(10, "traced_shadows: the truth by rays") {
     Scene scene = kGarden;
     scene.begin({}), scene.add_block({3.7, 1.8, 1.2}, {3.8, 3.3, 2.8}); // behind the spot light
-    const Picture picture = look(scene, 44, 28);
+    const PrimaryHits primary = primary_hits(scene, 44, 28);
     item.limit(20);
     for (const Light& light : {kSun, kSpot})
         for (const int samples : {1, 200}) {
-            const ImageFloat found = STUDENT(traced_shadows)(scene.triangles, light, picture.seen, samples);
+            const ImageFloat found = STUDENT(traced_shadows)(scene.triangles, light, primary.gbuffer, samples);
             item.size(found, 44, 28);
-            const auto truth = judged(scene, light, picture, 1e-3);
-            const ImageFloat right = traced(scene, light, picture, samples);
+            const auto truth = classify_pixels(scene, light, primary, 1e-3);
+            const ImageFloat right = traced_visibility(scene, light, primary, samples);
             ImageFloat expected = right;
             int wrong = 0, lit = 0, acne = 0, edge = 0;
             double error = 0;
             for (std::size_t i = 0; i < found.size(); ++i) {
                 const double difference = d(found[i] - right[i]);
-                const bool partly = right[i] > 0 && right[i] < 1, unsure = truth[i] == kUnsure && !partly;
+                const bool partly = right[i] > 0 && right[i] < 1, unsure = truth[i] == kUncertain && !partly;
                 if (unsure) expected[i] = found[i];
                 if (partly) error += sqr(difference), ++edge;
                 wrong += !unsure && !(std::abs(difference) < 0.25);
@@ -248,13 +252,13 @@ LAB_ITEM(10, "traced_shadows: the truth by rays") {
             if (wrong <= 2 && error < 0.05) continue;
             item.image(
                 name, found, expected, 0.04,
-                {{traced(scene, light, picture, samples == 1 ? 200 : 1),
+                {{traced_visibility(scene, light, primary, samples == 1 ? 200 : 1),
                   "The rays lead to the light's center for samples = 1, and are spread over its disk otherwise."},
-                 {traced(scene, light, picture, samples, 1),
+                 {traced_visibility(scene, light, primary, samples, 1),
                   "The points are too dense in the middle of the disk: a radius of √u spreads them evenly, not u."},
-                 {traced(scene, light, picture, samples, 0.5, true),
+                 {traced_visibility(scene, light, primary, samples, 0.5, true),
                   "What lies behind the light throws a shadow: a ray must end at the light."},
-                 {lit_by({view_of(light, scene), ImageFloat(1, 1, kInfinity)}, light, picture.seen, 0),
+                 {looked_up_visibility({view_of(light, scene), ImageFloat(1, 1, kInfinity)}, light, primary.gbuffer, 0),
                   "There are no shadows: all that faces the light is lit."},
                  {ImageFloat(44, 28, 1), "All is lit, also what must be 0 as in `shadows`: what is turned away."},
                  {found,
@@ -267,7 +271,7 @@ LAB_ITEM(10, "traced_shadows: the truth by rays") {
 }
 
 LAB_ITEM(15, "shadows: no acne, no leaks") {
-    const Picture stones = look(kGarden, kWidth, kHeight, {-1.6, 2.2, 3.4}, {-1.7, 0.05, 1.1}, 0.24);
+    const PrimaryHits stones = primary_hits(kGarden, kWidth, kHeight, {-1.6, 2.2, 3.4}, {-1.7, 0.05, 1.1}, 0.24);
     for (const Light& light : {kSun, kSpot}) {
         check_hard(item, light, kPicture, 200);
         check_hard(item, light, stones, 700);
@@ -276,7 +280,7 @@ LAB_ITEM(15, "shadows: no acne, no leaks") {
 
 LAB_ITEM(5, "shadows: beside the map, outside the cone, behind the light") {
     for (const Light& light : {kSun, kSpot}) check_points(item, light, 12, -0.5, 1.5, 0);
-    const Seen behind{{1, 1, kSpot.position - kSpot.direction}, {1, 1, -kSpot.direction}};
+    const GBuffer behind{{1, 1, kSpot.position - kSpot.direction}, {1, 1, -kSpot.direction}};
     const ShadowMap empty{view_of(kSpot, 0.5, 6), ImageFloat(12, 12, kInfinity)};
     const ImageFloat found = STUDENT(shadows)(empty, kSpot, behind, 0);
     item.size(found, 1, 1);
@@ -329,10 +333,10 @@ LAB_ITEM(10, "soft_shadows: the width of the penumbra") {
             scene.begin({}), scene.add_quad({-1.2, height, -1.2}, {0, 0, 2.4}, {1.2, 0, 0});
             const double width = 2 * d(light.radius) * height / (light.spot ? 2 - height : 1);
             const auto x_of = [&](double i) { return (2 * i / (kPoints - 1) - 1) * 1.2 * width; };
-            Seen seen{{kPoints, 1}, {kPoints, 1, {0, 1, 0}}};
-            for (int i = 0; i < kPoints; ++i) seen.point(i, 0) = Vec3(Vec3d(x_of(i), 0, 0.0131));
+            GBuffer gbuffer{{kPoints, 1}, {kPoints, 1, {0, 1, 0}}};
+            for (int i = 0; i < kPoints; ++i) gbuffer.point(i, 0) = Vec3(Vec3d(x_of(i), 0, 0.0131));
             const ImageFloat lit =
-                STUDENT(soft_shadows)(traced_map(scene, light, view_of(light, scene), 512), light, seen);
+                STUDENT(soft_shadows)(traced_map(scene, light, view_of(light, scene), 512), light, gbuffer);
             item.size(lit, kPoints, 1);
             const std::string what = message("Below an edge ", height, " m above the floor, in the light of ",
                                              name_of(light), ", the penumbra is ", width, " m wide. ");
@@ -340,7 +344,7 @@ LAB_ITEM(10, "soft_shadows: the width of the penumbra") {
             item.require(lit(kPoints - 1, 0) > 0.9f,
                          what + message("Beyond its bright end the light is ", lit(kPoints - 1, 0),
                                         "; expected 1. Does the floor count as its own blocker?"));
-            widths.push_back(penumbra_in(lit, 2.4 * width)), ratios.push_back(widths.back() / width);
+            widths.push_back(measure_penumbra(lit, 2.4 * width)), ratios.push_back(widths.back() / width);
             table += message(table.empty() ? "" : ", ", std::round(1000 * widths.back()) / 1000, " m (expected ",
                              std::round(1000 * width) / 1000, ")");
         }
@@ -362,8 +366,9 @@ LAB_ITEM(5, "soft_shadows: nearer to the truth than hard ones") {
     double soft_error = 0, hard_error = 0;
     for (const Light& light : {kSun, kSpot}) {
         const ImageFloat found =
-            STUDENT(soft_shadows)(traced_map(kGarden, light, view_of(light, kGarden), 400), light, kPicture.seen);
-        const ImageFloat truth = traced(kGarden, light, kPicture, 64), hard = traced(kGarden, light, kPicture, 1);
+            STUDENT(soft_shadows)(traced_map(kGarden, light, view_of(light, kGarden), 400), light, kPicture.gbuffer);
+        const ImageFloat truth = traced_visibility(kGarden, light, kPicture, 64),
+                         hard = traced_visibility(kGarden, light, kPicture, 1);
         item.size(found, kWidth, kHeight);
         for (std::size_t i = 0; i < truth.size(); ++i)
             soft_error += sqr(d(found[i] - truth[i])), hard_error += sqr(d(hard[i] - truth[i]));
@@ -381,11 +386,11 @@ LAB_ITEM(5, "soft_shadows: nearer to the truth than hard ones") {
 LAB_ITEM(10, "your own maps: the error falls with the resolution") {
     for (const Light& light : {kSun, kSpot}) {
         const LightView view = STUDENT(light_view)(light, kGarden.triangles);
-        const ImageFloat truth = traced(kGarden, light, kPicture, 1);
+        const ImageFloat truth = traced_visibility(kGarden, light, kPicture, 1);
         std::vector<double> percent;
         for (const int side : {64, 128, 256, 512}) {
             const ImageFloat found =
-                STUDENT(shadows)({view, STUDENT(depth_map)(kGarden.triangles, view, side)}, light, kPicture.seen, 0);
+                STUDENT(shadows)({view, STUDENT(depth_map)(kGarden.triangles, view, side)}, light, kPicture.gbuffer, 0);
             item.size(found, kWidth, kHeight);
             percent.push_back(0);
             for (std::size_t i = 0; i < truth.size(); ++i)

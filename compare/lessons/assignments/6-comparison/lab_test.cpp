@@ -1,6 +1,6 @@
-// The examiner of assignment 6. A rasterizer must see what a ray through the center of the pixel sees (truth.h), or a
-// ray that is displaced by less than its grid.
-#include "compare/lessons/assignments/6-comparison/truth.h"
+// The examiner of assignment 6. A rasterizer must see what a ray through the center of the pixel sees
+// (reference_hits.h), or a ray that is displaced by less than its grid.
+#include "compare/lessons/assignments/6-comparison/reference_hits.h"
 #include "compare/metrics/error_metrics.h"
 
 #include <algorithm>
@@ -33,13 +33,13 @@ void check_triangles(Item& item, const std::string& name, const Rendering& found
     const View view(camera, kWidth, kHeight);
     const ImageRgb expected = each_pixel(kWidth, kHeight, [&](int x, int y) {
         const int answer = found.triangle(x, y);
-        const bool fine = nearby(scene, view, x + 0.5, y + 0.5, by).contains(answer);
-        return triangle_color(fine ? answer : see(scene, view, x + 0.5, y + 0.5).triangle);
+        const bool fine = triangles_nearby(scene, view, x + 0.5, y + 0.5, by).contains(answer);
+        return triangle_color(fine ? answer : trace_pixel(scene, view, x + 0.5, y + 0.5).triangle);
     });
-    const auto twisted = [&](const Twist& twist) {
-        const View other(camera, kWidth, kHeight, twist.horizontal_fov);
+    const auto twisted = [&](const HitMistakes& mistakes) {
+        const View other(camera, kWidth, kHeight, mistakes.horizontal_fov);
         return each_pixel(kWidth, kHeight, [&](int x, int y) {
-            return triangle_color(see(scene, other, x + 0.5, y + 0.5, twist).triangle);
+            return triangle_color(trace_pixel(scene, other, x + 0.5, y + 0.5, mistakes).triangle);
         });
     };
     item.image(
@@ -90,24 +90,25 @@ LAB_ITEM(15, "the ray tracer sees the nearest triangle, and its distance") {
                         camera, 1e-3);
         const View view(camera, kWidth, kHeight);
         for (const auto& [x, y] : {std::array{48, 40}, {20, 60}, {90, 55}, {5, 50}}) {
-            const Seen seen = see(scene, view, x + 0.5, y + 0.5);
-            if (nearby(scene, view, x + 0.5, y + 0.5, 1e-3).size() > 1) continue;
+            const PixelHit pixel_hit = trace_pixel(scene, view, x + 0.5, y + 0.5);
+            if (triangles_nearby(scene, view, x + 0.5, y + 0.5, 1e-3).size() > 1) continue;
             item.near(
                 message("the distance at the pixel (", x, ", ", y, ")"), found.distance(x, y),
-                static_cast<float>(seen.distance), 1e-4 * std::min(seen.distance, 1e3),
-                {{static_cast<float>(seen.depth), "This is the depth along the direction of view: the distance is "
-                                                  "that from the eye to the point."}});
+                static_cast<float>(pixel_hit.distance), 1e-4 * std::min(pixel_hit.distance, 1e3),
+                {{static_cast<float>(pixel_hit.depth), "This is the depth along the direction of view: the distance is "
+                                                       "that from the eye to the point."}});
         }
     }
     const View view(kFront, kWidth, kHeight);
     for (int i = 0; i < 60; ++i) {
         const double x = item.random().uniform(0, kWidth), y = item.random().uniform(0, kHeight);
-        if (nearby(scene, view, x, y, 1e-3).size() > 1) continue;
-        const Seen seen = see(scene, view, x, y), centered = see(scene, view, std::floor(x) + 0.5, std::floor(y) + 0.5);
+        if (triangles_nearby(scene, view, x, y, 1e-3).size() > 1) continue;
+        const PixelHit pixel_hit = trace_pixel(scene, view, x, y),
+                       centered = trace_pixel(scene, view, std::floor(x) + 0.5, std::floor(y) + 0.5);
         item.equal(
             message("triangle_at(", x, ", ", y, ")"),
             STUDENT(triangle_at)(scene, kFront, kWidth, kHeight, static_cast<float>(x), static_cast<float>(y)),
-            seen.triangle,
+            pixel_hit.triangle,
             {{centered.triangle, "This is what the pixel's center sees: (x, y) is any point of the image, and not "
                                  "the index of a pixel."}});
     }
@@ -123,13 +124,13 @@ LAB_ITEM(20, "the rasterizer sees the same") {
         const View view(camera, kWidth, kHeight);
         for (int y = 3; y < kHeight; y += 5)
             for (int x = 2; x < kWidth; x += 7) {
-                const Seen seen = see(scene, view, x + 0.5, y + 0.5);
-                if (found.triangle(x, y) != seen.triangle) continue;
-                item.near(
-                    message("the distance at the pixel (", x, ", ", y, ")"), found.distance(x, y),
-                    static_cast<float>(seen.distance), 1e-3 * std::min(seen.distance, 1e3),
-                    {{static_cast<float>(seen.depth), "This is the depth along the direction of view: the distance is "
-                                                      "that from the eye to the point."}});
+                const PixelHit pixel_hit = trace_pixel(scene, view, x + 0.5, y + 0.5);
+                if (found.triangle(x, y) != pixel_hit.triangle) continue;
+                item.near(message("the distance at the pixel (", x, ", ", y, ")"), found.distance(x, y),
+                          static_cast<float>(pixel_hit.distance), 1e-3 * std::min(pixel_hit.distance, 1e3),
+                          {{static_cast<float>(pixel_hit.depth),
+                            "This is the depth along the direction of view: the distance is "
+                            "that from the eye to the point."}});
             }
     }
 }
@@ -152,20 +153,20 @@ LAB_ITEM(10, "both shade alike") {
         const auto raw = [](const Triangle& t) { return cross(Vec3d(t.b) - Vec3d(t.a), Vec3d(t.c) - Vec3d(t.a)); };
         item.image(
             rays ? "the ray tracer's colors" : "the rasterizer's colors", found.color,
-            image_of([&](const Triangle& t, Vec3d d) { return shaded(scene, t, dot(turned_normal(t, d), sun), true); }),
+            image_of([&](const Triangle& t, Vec3d d) { return shaded(scene, t, dot(facing_normal(t, d), sun), true); }),
             2e-3,
             {{image_of([&](const Triangle& t, Vec3d) { return shaded(scene, t, dot(normalize(raw(t)), sun), true); }),
               "The normal is not turned to the side of the eye: turn it around where it points away."},
              {image_of([&](const Triangle& t, Vec3d d) {
-                  return shaded(scene, t, std::abs(dot(turned_normal(t, d), sun)), true);
+                  return shaded(scene, t, std::abs(dot(facing_normal(t, d), sun)), true);
               }),
               "Sides that face away from the sun are lit: take max(0, n·to_sun), not the absolute value."},
              {image_of([&](const Triangle& t, Vec3d d) {
-                  return shaded(scene, t, dot(turned_normal(t, d), sun) * length(raw(t)), true);
+                  return shaded(scene, t, dot(facing_normal(t, d), sun) * length(raw(t)), true);
               }),
               "The normal doesn't have the length 1."},
              {image_of([&](const Triangle& t, Vec3d d) {
-                  return t.albedo * scene.sun * static_cast<float>(std::max(0.0, dot(turned_normal(t, d), sun)));
+                  return t.albedo * scene.sun * static_cast<float>(std::max(0.0, dot(facing_normal(t, d), sun)));
               }),
               "The light of the sky is missing."},
              {image_of([&](const Triangle& t, Vec3d) { return t.albedo; }),
@@ -183,17 +184,17 @@ LAB_ITEM(15, "the ray tracer's shadows") {
     for (int y = 0; y < kHeight; ++y)
         for (int x = 0; x < kWidth; ++x) {
             const Vec3d d = view.direction(x + 0.5, y + 0.5);
-            const Seen seen = see(scene, view, x + 0.5, y + 0.5);
-            if (seen.triangle < 0 || found.triangle(x, y) != seen.triangle) {
+            const PixelHit pixel_hit = trace_pixel(scene, view, x + 0.5, y + 0.5);
+            if (pixel_hit.triangle < 0 || found.triangle(x, y) != pixel_hit.triangle) {
                 expected(x, y) = unshadowed(x, y) = found.color(x, y); // which triangle is seen has its own item
                 continue;
             }
-            const Triangle& t = scene.triangles[static_cast<std::size_t>(seen.triangle)];
-            const Vec3d n = turned_normal(t, d), p = view.eye + d * seen.distance;
+            const Triangle& t = scene.triangles[static_cast<std::size_t>(pixel_hit.triangle)];
+            const Vec3d n = facing_normal(t, d), p = view.eye + d * pixel_hit.distance;
             const double cosine = dot(n, Vec3d(scene.to_sun));
             // Where the edge of a shadow is near, on the triangle, rounding decides, and both answers are right.
             const Vec3d s = normalize(cross(n, view.right)), u = cross(n, s);
-            const auto lit_at = [&](double a, double b) { return sun_reaches(scene, p + s * a + u * b, n, 1e-5); };
+            const auto lit_at = [&](double a, double b) { return is_sunlit(scene, p + s * a + u * b, n, 1e-5); };
             const bool lit = lit_at(0, 0), certain = lit_at(0.02, 0) == lit && lit_at(-0.02, 0) == lit &&
                                                      lit_at(0, 0.02) == lit && lit_at(0, -0.02) == lit;
             const Rgb bright = shaded(scene, t, cosine, true), dark = shaded(scene, t, cosine, false);

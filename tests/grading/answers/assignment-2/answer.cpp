@@ -129,8 +129,8 @@ Tree build(const std::vector<Triangle>& triangles) {
     return builder.tree;
 }
 
-std::vector<Found> trace(const Tree& tree, const std::vector<Triangle>& triangles, const std::vector<Ray>& rays) {
-    std::vector<Found> found(rays.size());
+std::vector<TriangleHit> trace(const Tree& tree, const std::vector<Triangle>& triangles, const std::vector<Ray>& rays) {
+    std::vector<TriangleHit> found(rays.size());
     std::vector<int> stack;
     for (std::size_t r = 0; r < rays.size(); ++r) {
         Ray ray = rays[r];

@@ -134,10 +134,10 @@ bool blocked(const std::vector<Triangle>& triangles, Vec3 origin, Vec3 direction
     return false;
 }
 
-template <typename Lit> ImageFloat each_lit_pixel(const Light& light, const Seen& seen, const Lit& lit) {
-    ImageFloat image(seen.point.width(), seen.point.height(), 0);
+template <typename Lit> ImageFloat each_lit_pixel(const Light& light, const GBuffer& gbuffer, const Lit& lit) {
+    ImageFloat image(gbuffer.point.width(), gbuffer.point.height(), 0);
     for (std::size_t i = 0; i < image.size(); ++i)
-        if (reaches(light, seen.point[i], seen.normal[i])) image[i] = lit(seen.point[i], seen.normal[i]);
+        if (reaches(light, gbuffer.point[i], gbuffer.normal[i])) image[i] = lit(gbuffer.point[i], gbuffer.normal[i]);
     return image;
 }
 
@@ -225,8 +225,8 @@ ImageFloat depth_map(const std::vector<Triangle>& triangles, const LightView& vi
     return depth;
 }
 
-ImageFloat shadows(const ShadowMap& map, const Light& light, const Seen& seen, int reach) {
-    return each_lit_pixel(light, seen, [&](Vec3 p, Vec3 n) { return lit_fraction(map, light, p, n, reach); });
+ImageFloat shadows(const ShadowMap& map, const Light& light, const GBuffer& gbuffer, int reach) {
+    return each_lit_pixel(light, gbuffer, [&](Vec3 p, Vec3 n) { return lit_fraction(map, light, p, n, reach); });
 }
 
 float penumbra_width(const Light& light, float blocker, float receiver) {
@@ -235,8 +235,8 @@ float penumbra_width(const Light& light, float blocker, float receiver) {
     return light.spot ? width / blocker : width;
 }
 
-ImageFloat soft_shadows(const ShadowMap& map, const Light& light, const Seen& seen) {
-    return each_lit_pixel(light, seen, [&](Vec3 p, Vec3 n) {
+ImageFloat soft_shadows(const ShadowMap& map, const Light& light, const GBuffer& gbuffer) {
+    return each_lit_pixel(light, gbuffer, [&](Vec3 p, Vec3 n) {
         const float distance = place_of(map, light, p).distance;
         // The widest penumbra here is that of something at the near plane.
         const float nearest = std::max(map.view.near, 0.001f);
@@ -248,9 +248,10 @@ ImageFloat soft_shadows(const ShadowMap& map, const Light& light, const Seen& se
     });
 }
 
-ImageFloat traced_shadows(const std::vector<Triangle>& triangles, const Light& light, const Seen& seen, int samples) {
+ImageFloat traced_shadows(const std::vector<Triangle>& triangles, const Light& light, const GBuffer& gbuffer,
+                          int samples) {
     const Axes axes = axes_of(light.direction);
-    return each_lit_pixel(light, seen, [&](Vec3 p, Vec3 n) {
+    return each_lit_pixel(light, gbuffer, [&](Vec3 p, Vec3 n) {
         const Vec3 origin = p + n * (1e-4f * (1 + length(p)));
         int lit = 0;
         for (int k = 0; k < samples; ++k) {

@@ -68,7 +68,7 @@ Errors errors(const ImageRgb& encoded_image, const ImageRgb& encoded_reference) 
     return result;
 }
 
-Cause classify_pixel(const Finding& first, const Finding& second, float tolerance) {
+Cause classify_pixel(const PixelResult& first, const PixelResult& second, float tolerance) {
     const auto differ = [tolerance](float a, float b) { return std::abs(a - b) > tolerance; };
     const Rgb a = first.color, b = second.color;
     if (!differ(a.r, b.r) && !differ(a.g, b.g) && !differ(a.b, b.b)) return Cause::kSame;
@@ -77,8 +77,8 @@ Cause classify_pixel(const Finding& first, const Finding& second, float toleranc
     return Cause::kLight;
 }
 
-ErrorParts split_error(const std::vector<ImageRgb>& images, const ImageRgb& reference) {
-    ErrorParts result;
+ErrorComponents split_error(const std::vector<ImageRgb>& images, const ImageRgb& reference) {
+    ErrorComponents result;
     const double n = static_cast<double>(images.size());
     for (std::size_t i = 0; i < reference.size(); ++i) {
         for (std::size_t c = 0; c < 3; ++c) {
@@ -88,11 +88,11 @@ ErrorParts split_error(const std::vector<ImageRgb>& images, const ImageRgb& refe
             for (const ImageRgb& image : images) noise += (image[i][c] - mean) * (image[i][c] - mean) / (n - 1);
             const double off = mean - reference[i][c];
             result.noise += noise;
-            result.bias2 += off * off - noise / n;
+            result.squared_bias += off * off - noise / n;
         }
     }
     const double values = 3 * static_cast<double>(reference.size());
-    return {result.noise / values, result.bias2 / values};
+    return {result.noise / values, result.squared_bias / values};
 }
 
 } // namespace duet::lab

@@ -12,7 +12,7 @@ Pinhole pinhole(const Camera& c, int width, int height) {
     duet::Camera camera;
     camera.eye = Vec3d(c.eye), camera.look_at = Vec3d(c.target), camera.up = Vec3d(c.up),
     camera.fov_degrees = c.fov_degrees;
-    return CameraModel({camera, width, height}).through();
+    return CameraModel({camera, width, height}).pinhole();
 }
 
 } // namespace
@@ -33,14 +33,14 @@ Errors errors(const ImageRgb& encoded_image, const ImageRgb& encoded_reference) 
     return {average(e.mean_signed_error), e.mse, e.relmse};
 }
 
-Cause classify_pixel(const Finding& first, const Finding& second, float tolerance) {
+Cause classify_pixel(const PixelResult& first, const PixelResult& second, float tolerance) {
     const Rgb d = first.color - second.color;
     if (max_component(Rgb(std::abs(d.r), std::abs(d.g), std::abs(d.b))) <= tolerance) return Cause::kSame;
     if (first.triangle != second.triangle) return Cause::kEdge;
     return std::abs(first.sun - second.sun) > tolerance ? Cause::kShadow : Cause::kLight;
 }
 
-ErrorParts split_error(const std::vector<ImageRgb>& images, const ImageRgb& reference) {
+ErrorComponents split_error(const std::vector<ImageRgb>& images, const ImageRgb& reference) {
     // The mean squared error of single images is noise + bias²; of their mean it is noise / n + bias².
     const double n = static_cast<double>(images.size());
     ImageRgb mean(reference.width(), reference.height());

@@ -15,8 +15,8 @@ Image<std::uint8_t> marks_of(Pixel a, Pixel b, Pixel corner, int width, int heig
     Image<std::uint8_t> marks(width, height, 0);
     const raster::SampleOffset center;
     const auto fixed = [&](Pixel p) {
-        return raster::FixedPoint{(p.x - corner.x) * raster::kSubPixels + center.x,
-                                  (p.y - corner.y) * raster::kSubPixels + center.y};
+        return raster::FixedPoint{(p.x - corner.x) * raster::kSubpixels + center.x,
+                                  (p.y - corner.y) * raster::kSubpixels + center.y};
     };
     raster::draw_line(fixed(a), fixed(b), center, marks);
     for (const Pixel p : {a, b}) {

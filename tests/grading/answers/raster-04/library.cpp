@@ -10,7 +10,7 @@ Pinhole pinhole(const View& v, int width, int height) {
     Camera camera;
     camera.eye = Vec3d(v.eye), camera.look_at = Vec3d(v.target), camera.up = Vec3d(v.up);
     camera.fov_degrees = degrees(static_cast<double>(v.fov));
-    return CameraModel(duet::View{camera, width, height}).through();
+    return CameraModel(duet::View{camera, width, height}).pinhole();
 }
 
 } // namespace

@@ -1,11 +1,11 @@
-// The library's normals (common/geometry/surface_point.h) and its cosine (raster/shader/phong.h). It has Phong's mirror
-// direction in place of Blinn's half vector, and means of normals only within its surface points, so these two are the
-// lesson's.
+// The library's normals (common/geometry/surface_point.h) and its cosine (raster/shading/phong_model.h). It has Phong's
+// mirror direction in place of Blinn's half vector, and means of normals only within its surface points, so these two
+// are the lesson's.
 #include "common/geometry/surface_point.h"
 #include "common/vec/matrix.h"
 #include "raster/lessons/06-shading/lab.h"
 #include "raster/lessons/06-shading/shading.h"
-#include "raster/shader/phong.h"
+#include "raster/shading/phong_model.h"
 
 namespace duet::lab {
 

@@ -1,5 +1,5 @@
 // The library's textures (common/texture/texture.h) and its interpolation in perspective (raster/geometry/planes.h).
-#include "common/texture/texel_place.h"
+#include "common/texture/texel_index.h"
 #include "common/texture/texture.h"
 #include "raster/geometry/planes.h"
 #include "raster/lessons/07-textures/lab.h"
@@ -18,7 +18,7 @@ Vec3 perspective_weights(Vec3 weights, Vec3 w) {
 
 int wrap(int i, int size) {
     const double n = size;
-    return static_cast<int>(fraction((i + 0.5) / n) * n);
+    return static_cast<int>(wrap_repeat((i + 0.5) / n) * n);
 }
 
 namespace {

@@ -1,5 +1,6 @@
 // The library's tangents (common/geometry/surface_point.h) and frame (common/vec/frame.h). Its normal maps are read
-// within bend_normal, which has no smaller parts, so the rest is the lesson's; raster_08_test.cpp compares the whole.
+// within apply_normal_maps, which has no smaller parts, so the rest is the lesson's; raster_08_test.cpp compares the
+// whole.
 #include "common/geometry/surface_point.h"
 #include "common/vec/frame.h"
 #include "raster/lessons/08-normal-maps/lab.h"

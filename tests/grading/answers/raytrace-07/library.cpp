@@ -8,7 +8,7 @@ namespace duet::lab {
 Axes camera_axes(Vec3 eye, Vec3 look_at, Vec3 up) {
     Camera camera;
     camera.eye = Vec3d(eye), camera.look_at = Vec3d(look_at), camera.up = Vec3d(up);
-    const Pinhole view = CameraModel({camera, 1, 1}).through();
+    const Pinhole view = CameraModel({camera, 1, 1}).pinhole();
     return {Vec3(normalize(view.direction_dx)), Vec3(normalize(-view.direction_dy)), Vec3(-view.forward)};
 }
 

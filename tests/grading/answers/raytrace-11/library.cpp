@@ -14,7 +14,7 @@ Vec3 sample_quad(const Light& light, Vec2 random) { return light.corner + light.
 
 float light_density(const Light& light, Vec3 p, Vec3 q) {
     const Vec3d w = Vec3d(q) - Vec3d(p);
-    const AreaSeen<double> seen{cross(Vec3d(light.u), Vec3d(light.v)), w};
+    const AreaSampling<double> seen{cross(Vec3d(light.u), Vec3d(light.v)), w};
     return dot(seen.area_vector, w) < 0 ? static_cast<float>(seen.pdf(w)) : 0;
 }
 

@@ -1,0 +1,140 @@
+#include "compare/bench/bench_renderer.h"
+
+#include "common/system/stopwatch.h"
+#include "compare/renderer.h"
+#include "raster/render.h"
+#include "raytrace/render.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <sys/resource.h>
+
+namespace duet::compare {
+
+namespace {
+
+double cpu_seconds_so_far() {
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    const auto seconds = [](const timeval& t) {
+        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    };
+    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+/// The path tracer with adaptive sampling.
+constexpr std::string_view kAdaptive = "adaptive";
+/// The path tracer without Russian roulette.
+constexpr std::string_view kNoRoulette = "no-roulette";
+
+/// Returns what keeps a technique from converging to the reference, as a sentence.
+std::string note_of(raytrace::Integrator integrator, const Scene& scene) {
+    using raytrace::Integrator;
+    const bool delta_lights = scene.needs.delta_lights;
+    switch (integrator) {
+    case Integrator::kDirect:
+        return "Light after more than one scattering is missing.";
+    case Integrator::kUnshadowed:
+        return "Direct light only, without shadows.";
+    case Integrator::kNaive:
+        return delta_lights ? "Point, spot and sun lights are missing." : "";
+    default:
+        return "";
+    }
+}
+
+BenchRenderer raster_bench_renderer(const Scene& scene, const View& view, const RendererChoice& choice) {
+    raster::RasterSettings settings;
+    settings.threads = choice.threads;
+    settings.samples_per_pixel = *std::max_element(choice.spps.begin(), choice.spps.end());
+    const raster::RasterScene prepared = raster::prepare(scene, settings);
+    return {"raster", "", paragraph(raster::approximations(prepared, settings)), choice.spps,
+            [prepared, view, settings](int spp, std::uint64_t seed, Control& control) {
+                raster::RasterSettings s = settings;
+                s.samples_per_pixel = spp;
+                s.seed = seed;
+                return time_render([&] { return raster::render(prepared, view, s, control).radiance; }, control);
+            }};
+}
+
+BenchRenderer path_tracer_bench_renderer(const raytrace::PathTracerScene& prepared, const Scene& scene,
+                                         const View& view, const RendererChoice& choice, const std::string& technique,
+                                         const std::string& sampler) {
+    raytrace::PathTracerSettings settings;
+    settings.threads = choice.threads;
+    settings.max_depth = choice.depth;
+    settings.adaptive = technique == kAdaptive;
+    settings.russian_roulette = technique != kNoRoulette;
+    settings.integrator = raytrace::integrator(technique == kAdaptive || technique == kNoRoulette ? "path" : technique);
+    settings.sampler = sampler_kind(sampler);
+    return {technique, sampler, note_of(settings.integrator, scene), choice.spps,
+            [prepared, view, settings](int spp, std::uint64_t seed, Control& control) {
+                raytrace::PathTracerSettings s = settings;
+                s.samples_per_pixel = spp;
+                s.seed = seed;
+                return time_render([&] { return raytrace::render(prepared, view, s, control).radiance; }, control);
+            }};
+}
+
+/// The techniques that estimate light, in the order of --help.
+constexpr std::string_view kTechniques[] = {"raster", "path", kAdaptive, kNoRoulette, "naive", "direct", "unshadowed"};
+constexpr std::string_view kSamplers[] = {"sobol", "stratified", "independent"};
+
+template <typename Names> std::string listed(const Names& names) {
+    std::string text;
+    for (const std::string_view name : names) text += (text.empty() ? "" : ", ") + std::string(name);
+    return text;
+}
+
+template <typename Names>
+void check_names(const char* option, const std::vector<std::string>& found, const Names& known) {
+    for (const std::string& name : found)
+        if (std::find(std::begin(known), std::end(known), name) == std::end(known))
+            throw Error(message(option, ": found ", name, ", expected one or more of ", listed(known)));
+}
+
+} // namespace
+
+TimedImage time_render(const std::function<ImageRgb()>& render, const Control& control) {
+    TimedImage trial;
+    int times = 0;
+    const Stopwatch watch;
+    const double cpu = cpu_seconds_so_far();
+    do {
+        trial.image = render();
+        ++times;
+    } while (watch.seconds() < kMinTimingSeconds && !control.stopped());
+    trial.seconds = watch.seconds() / times;
+    trial.cpu_seconds = (cpu_seconds_so_far() - cpu) / times;
+    return trial;
+}
+
+void check_renderer_choice(const RendererChoice& choice) {
+    check_names("--techniques", choice.techniques, kTechniques);
+    check_names("--samplers", choice.samplers, kSamplers);
+}
+
+std::vector<BenchRenderer> duet_renderers(const Scene& scene, const View& view, const RendererChoice& choice) {
+    check_renderer_choice(choice);
+    std::optional<raytrace::PathTracerScene> traced; // one BVH for all renderers
+    std::vector<BenchRenderer> renderers;
+    for (const std::string& technique : choice.techniques) {
+        if (technique == "raster") {
+            renderers.push_back(raster_bench_renderer(scene, view, choice));
+            continue;
+        }
+        if (!traced) {
+            raytrace::PathTracerSettings settings;
+            settings.threads = choice.threads;
+            traced = raytrace::prepare(scene, settings);
+        }
+        for (const std::string& sampler : choice.samplers) {
+            if (technique == kAdaptive && needs_sample_count(sampler_kind(sampler))) continue; // counts vary by pixel
+            renderers.push_back(path_tracer_bench_renderer(*traced, scene, view, choice, technique, sampler));
+        }
+    }
+    return renderers;
+}
+
+} // namespace duet::compare

@@ -1,0 +1,36 @@
+// The two pipelines behind one type, so that comparison code calls both the same way.
+#pragma once
+
+#include "common/film/rendering.h"
+#include "common/program/render_program.h"
+#include "common/scene/scene.h"
+
+#include <string>
+#include <vector>
+
+namespace duet::compare {
+
+/// Settings that both renderings of a comparison share, and the sample count of each.
+struct ComparisonSettings {
+    int raster_spp = 16, raytrace_spp = 64;
+    int max_depth = 64; ///< maximum number of scattering events of a path (path tracer)
+    int threads = 0;    ///< 0: all hardware threads
+    std::uint64_t seed = 0;
+};
+
+/// A renderer prepared for one scene, which must outlive it.
+struct Renderer {
+    std::string name;       ///< "raster" or "raytrace"
+    RenderFunction render_image; ///< renders the full image
+    RenderFunction render_hits;  ///< renders Rendering::hit: one ray per pixel through its center and the lens center,
+                                ///< when the shutter opens
+    double prepare_seconds = 0;
+};
+
+Renderer raster_renderer(const Scene& scene, const ComparisonSettings& settings);
+Renderer raytrace_renderer(const Scene& scene, const ComparisonSettings& settings);
+
+/// Joins the sentences (a rendering's approximations) with spaces.
+std::string paragraph(const std::vector<std::string>& sentences);
+
+} // namespace duet::compare

@@ -1,0 +1,370 @@
+// Implements the rasterizer's SIMD helpers. The rasterizer processes packets of 16 samples in batches as wide as the
+// CPU supports (common/vec/simd.h).
+#pragma once
+
+#include "common/vec/simd.h"
+#include "common/vec/vec.h"
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+
+namespace duet::raster {
+
+using Floats = xsimd::batch<float>;
+using Ints = xsimd::batch<std::int32_t>;
+using Doubles = xsimd::batch<double>;
+
+/// A packet has 16 samples: two rows of a block of 8 × 8 (raster/visibility/depth_tile.h).
+inline constexpr std::size_t kPacketSize = 16, kPacketWidth = 8;
+static_assert(kPacketSize % Floats::size == 0 && Floats::size == Ints::size);
+
+/// Prefetches the cache line of an address that will be read soon.
+inline void prefetch(const void* address) {
+    __builtin_prefetch(address);
+    asm volatile(""); // else GCC considers functions that only prefetch empty and removes calls to them
+}
+
+/// Stores one value per sample of a packet. It is uninitialized, because clearing takes longer than some of the
+/// computations.
+template <typename T> struct alignas(64) PacketOf {
+    std::array<T, kPacketSize> v;
+
+    T& operator[](std::size_t i) { return v[i]; }
+    const T& operator[](std::size_t i) const { return v[i]; }
+    void fill(T x) { v.fill(x); }
+    T* at(std::size_t i) { return v.data() + i; }
+    const T* at(std::size_t i) const { return v.data() + i; }
+};
+
+/// Loads one batch of values from the i-th on.
+template <typename T> xsimd::batch<T> load(const PacketOf<T>& packet, std::size_t i) {
+    return xsimd::batch<T>::load_aligned(packet.at(i));
+}
+template <typename T> void store(PacketOf<T>& packet, std::size_t i, const xsimd::batch<T>& value) {
+    value.store_aligned(packet.at(i));
+}
+
+static_assert(Floats::size == 2 * Doubles::size);
+
+/// Stores one batch of doubles in a packet of doubles or floats, rounded if needed.
+inline void store_rounded(PacketOf<double>& packet, std::size_t i, const Doubles& value) { store(packet, i, value); }
+inline void store_rounded(PacketOf<float>& packet, std::size_t i, const Doubles& value) {
+    store_floats(value, packet.at(i));
+}
+
+using duet::multiply_add;
+using duet::negated_multiply_add;
+
+/// Writes a cache line from two halves with non-temporal stores. They do not evict data that is needed sooner, and
+/// do not fetch the line before overwriting it. Other threads see the data after finish_streams().
+inline void stream_line(const void* first_half, const void* second_half, void* line) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) // which do not support such stores
+    std::memcpy(line, first_half, 32);
+    std::memcpy(static_cast<char*>(line) + 32, second_half, 32);
+#elif defined(__AVX__)
+    const __m256i first = _mm256_loadu_si256(static_cast<const __m256i*>(first_half)),
+                  second = _mm256_loadu_si256(static_cast<const __m256i*>(second_half));
+#if defined(__AVX512F__)
+    _mm512_stream_si512(static_cast<__m512i*>(line), _mm512_inserti64x4(_mm512_castsi256_si512(first), second, 1));
+#else
+    _mm256_stream_si256(static_cast<__m256i*>(line), first);
+    _mm256_stream_si256(static_cast<__m256i*>(line) + 1, second);
+#endif
+#else
+    const auto *first = static_cast<const __m128i*>(first_half), *second = static_cast<const __m128i*>(second_half);
+    auto* to = static_cast<__m128i*>(line);
+    for (int i = 0; i < 2; ++i) _mm_stream_si128(to + i, _mm_loadu_si128(first + i));
+    for (int i = 0; i < 2; ++i) _mm_stream_si128(to + 2 + i, _mm_loadu_si128(second + i));
+#endif
+}
+inline void finish_streams() { _mm_sfence(); }
+inline bool is_line_start(const void* address) { return reinterpret_cast<std::uintptr_t>(address) % 64 == 0; }
+
+/// Returns the dot products of one batch of vectors, by fused multiply-add.
+inline Floats dot(const Vec3T<Floats>& a, const Vec3T<Floats>& b) {
+    return multiply_add(a.x, b.x, multiply_add(a.y, b.y, Floats(a.z * b.z)));
+}
+
+/// Converts doubles to floats: the lanes of `low`, then those of `high`. (xsimd has no such conversion. Converting
+/// through memory would stall, because the wide load would wait for several narrow stores.)
+inline Floats narrowed(const Doubles& low, const Doubles& high) {
+#if defined(__AVX512F__)
+    return _mm512_castpd_ps(_mm512_insertf64x4(_mm512_castps_pd(_mm512_castps256_ps512(_mm512_cvtpd_ps(low))),
+                                               _mm256_castps_pd(_mm512_cvtpd_ps(high)), 1));
+#elif defined(__AVX__)
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm256_cvtpd_ps(low)), _mm256_cvtpd_ps(high), 1);
+#else
+    alignas(64) std::array<double, Floats::size> wide;
+    alignas(64) std::array<float, Floats::size> result;
+    low.store_aligned(wide.data());
+    high.store_aligned(wide.data() + Doubles::size);
+    for (std::size_t i = 0; i < Floats::size; ++i) result[i] = static_cast<float>(wide[i]);
+    return Floats::load_aligned(result.data());
+#endif
+}
+
+/// Rounds doubles to float precision.
+inline Doubles round_to_float(const Doubles& value) {
+#if defined(__AVX512F__)
+    return _mm512_cvtps_pd(_mm512_cvtpd_ps(value));
+#elif defined(__AVX__)
+    return _mm256_cvtps_pd(_mm256_cvtpd_ps(value));
+#else
+    alignas(64) std::array<double, Doubles::size> wide;
+    value.store_aligned(wide.data());
+    for (double& x : wide) x = static_cast<double>(static_cast<float>(x));
+    return Doubles::load_aligned(wide.data());
+#endif
+}
+
+/// Converts doubles with integer values to 32-bit integers and stores them.
+inline void store_ints(const Doubles& value, std::int32_t* to) {
+#if defined(__AVX512F__)
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm512_cvtpd_epi32(value));
+#elif defined(__AVX__)
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(to), _mm256_cvtpd_epi32(value));
+#else
+    std::array<double, Doubles::size> wide;
+    value.store_unaligned(wide.data());
+    for (std::size_t i = 0; i < wide.size(); ++i) to[i] = static_cast<std::int32_t>(wide[i]);
+#endif
+}
+
+/// Looks up values in a table of sixteen by the lower four bits of each index.
+inline Floats look_up(const PacketOf<float>& table, const Ints& index) {
+#if defined(__AVX512F__)
+    return _mm512_permutexvar_ps(index, load(table, 0));
+#elif defined(__AVX2__)
+    return _mm256_blendv_ps(_mm256_permutevar8x32_ps(load(table, 0), index),
+                            _mm256_permutevar8x32_ps(load(table, 8), index),
+                            _mm256_castsi256_ps(_mm256_slli_epi32(index, 28)));
+#else
+    alignas(64) std::array<std::int32_t, Ints::size> at;
+    alignas(64) std::array<float, Floats::size> found;
+    index.store_aligned(at.data());
+    for (std::size_t i = 0; i < found.size(); ++i) found[i] = table[static_cast<std::size_t>(at[i] & 15)];
+    return Floats::load_aligned(found.data());
+#endif
+}
+inline Floats look_up(const PacketOf<float>& table, const PacketOf<std::int32_t>& index, std::size_t i) {
+    return look_up(table, load(index, i));
+}
+/// Looks up doubles by the indices from the i-th on.
+inline Doubles look_up(const PacketOf<double>& table, const PacketOf<std::int32_t>& index, std::size_t i) {
+#if defined(__AVX512F__)
+    const __m512i at = _mm512_cvtepi32_epi64(_mm256_load_si256(reinterpret_cast<const __m256i*>(index.at(i))));
+    return _mm512_permutex2var_pd(load(table, 0), at, load(table, 8));
+#else
+    alignas(64) std::array<double, Doubles::size> found;
+    for (std::size_t k = 0; k < found.size(); ++k) found[k] = table[static_cast<std::size_t>(index[i + k] & 15)];
+    return Doubles::load_aligned(found.data());
+#endif
+}
+
+/// Looks up addresses and stores them in `found`. Indices must be below 16.
+template <typename T>
+void look_up(const std::array<const T*, kPacketSize>& table, const Ints& index,
+             std::array<const T*, Ints::size>& found) {
+#if defined(__AVX512F__)
+    const __m512i first = _mm512_loadu_si512(table.data()), second = _mm512_loadu_si512(table.data() + kPacketSize / 2);
+    const auto eight = [&](__m256i at) { return _mm512_permutex2var_epi64(first, _mm512_cvtepi32_epi64(at), second); };
+    _mm512_storeu_si512(found.data(), eight(_mm512_castsi512_si256(index)));
+    _mm512_storeu_si512(found.data() + kPacketSize / 2, eight(_mm512_extracti64x4_epi64(index, 1)));
+#else
+    alignas(64) std::array<std::int32_t, Ints::size> at;
+    index.store_aligned(at.data());
+    for (std::size_t i = 0; i < found.size(); ++i) found[i] = table[static_cast<std::size_t>(at[i])];
+#endif
+}
+
+/// Looks up values in two consecutive tables of sixteen by the lower five bits of each index.
+inline Floats look_up(const PacketOf<float>& first, const PacketOf<float>& second, const Ints& index) {
+#if defined(__AVX512F__)
+    return _mm512_permutex2var_ps(load(first, 0), index, load(second, 0));
+#elif defined(__AVX2__)
+    return _mm256_blendv_ps(look_up(first, index), look_up(second, index),
+                            _mm256_castsi256_ps(_mm256_slli_epi32(index, 27)));
+#else
+    alignas(64) std::array<std::int32_t, Ints::size> at;
+    alignas(64) std::array<float, Floats::size> found;
+    index.store_aligned(at.data());
+    for (std::size_t k = 0; k < found.size(); ++k)
+        found[k] = (at[k] & 16 ? second : first)[static_cast<std::size_t>(at[k] & 15)];
+    return Floats::load_aligned(found.data());
+#endif
+}
+/// Looks up values in two consecutive tables of sixteen by the indices from the i-th on.
+inline Floats look_up(const PacketOf<float>& first, const PacketOf<float>& second, const PacketOf<std::int32_t>& index,
+                      std::size_t i) {
+    return look_up(first, second, load(index, i));
+}
+/// Looks up integers in two tables of sixteen; see above for floats.
+inline Ints look_up(const PacketOf<std::int32_t>& first, const PacketOf<std::int32_t>& second,
+                    const PacketOf<std::int32_t>& index, std::size_t i) {
+#if defined(__AVX512F__)
+    return _mm512_permutex2var_epi32(load(first, 0), load(index, i), load(second, 0));
+#else
+    alignas(64) std::array<std::int32_t, Ints::size> found;
+    for (std::size_t k = 0; k < found.size(); ++k) {
+        const auto at = static_cast<std::size_t>(index[i + k]);
+        found[k] = (at & 16 ? second : first)[at & 15];
+    }
+    return Ints::load_aligned(found.data());
+#endif
+}
+/// Looks up doubles in two tables of sixteen; see above for floats.
+inline Doubles look_up(const PacketOf<double>& first, const PacketOf<double>& second,
+                       const PacketOf<std::int32_t>& index, std::size_t i) {
+#if defined(__AVX512F__)
+    const __m512i at = _mm512_cvtepi32_epi64(_mm256_load_si256(reinterpret_cast<const __m256i*>(index.at(i))));
+    return _mm512_mask_blend_pd(_mm512_test_epi64_mask(at, _mm512_set1_epi64(16)), look_up(first, index, i),
+                                look_up(second, index, i));
+#else
+    alignas(64) std::array<double, Doubles::size> found;
+    for (std::size_t k = 0; k < found.size(); ++k) {
+        const auto at = static_cast<std::size_t>(index[i + k]);
+        found[k] = (at & 16 ? second : first)[at & 15];
+    }
+    return Doubles::load_aligned(found.data());
+#endif
+}
+
+/// Returns 1/√x of each lane, x > 0: the CPU's estimate and one Newton step, within a few units in the last place.
+inline Floats inverse_sqrt(const Floats& x) {
+#if defined(__AVX512F__)
+    const Floats y = _mm512_rsqrt14_ps(x); // xsimd 8's own function selects no instruction here
+#else
+    const Floats y = xsimd::rsqrt(x);
+#endif
+    return y * negated_multiply_add(Floats(0.5f) * x * y, y, Floats(1.5f));
+}
+
+/// Returns 1/√x of a single value, x > 0.
+inline float inverse_sqrt(float x) { return 1 / std::sqrt(x); }
+
+using Quads = FloatBatch<4>;
+
+/// Loads three floats and sets the fourth to 0. Memory beyond the three is not read.
+inline Quads load_three(const float* from) {
+#if defined(__AVX512VL__)
+    return _mm_maskz_loadu_ps(7, from);
+#elif defined(__AVX__)
+    return _mm_maskload_ps(from, _mm_setr_epi32(-1, -1, -1, 0));
+#else
+    return _mm_movelh_ps(_mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(from))),
+                         _mm_load_ss(from + 2));
+#endif
+}
+
+/// Returns one bit per lane that is true; lane 0 is the lowest bit.
+inline std::uint32_t lane_bits(const xsimd::batch_bool<std::int32_t>& lanes) {
+#if defined(__AVX512F__)
+    return static_cast<std::uint32_t>(static_cast<__mmask16>(lanes));
+#elif defined(__AVX__)
+    return static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_castsi256_ps(lanes)));
+#else
+    return static_cast<std::uint32_t>(_mm_movemask_ps(_mm_castsi128_ps(lanes)));
+#endif
+}
+
+using duet::lane_bits; // for floats and doubles
+
+/// Returns one bit per sample of a packet whose value equals `value`.
+inline std::uint32_t lanes_equal(const PacketOf<std::int32_t>& packet, std::int32_t value) {
+    std::uint32_t lanes = 0;
+    for (std::size_t i = 0; i < kPacketSize; i += Ints::size) lanes |= lane_bits(load(packet, i) == Ints(value)) << i;
+    return lanes;
+}
+
+/// Returns one bit per sample of a packet whose value does not occur at an earlier sample.
+inline std::uint32_t first_occurrences(const PacketOf<std::int32_t>& packet) {
+#if defined(__AVX512CD__)
+    const __m512i before = _mm512_conflict_epi32(load(packet, 0)); // bits of the earlier lanes with an equal value
+    return _mm512_testn_epi32_mask(before, before);
+#else
+    std::uint32_t firsts = 0;
+    for (std::uint32_t left = (1u << kPacketSize) - 1; left != 0;) {
+        const int i = std::countr_zero(left);
+        firsts |= 1u << i;
+        left &= ~lanes_equal(packet, packet[static_cast<std::size_t>(i)]);
+    }
+    return firsts;
+#endif
+}
+
+/// Returns a batch whose lanes are true where the bits are set; the inverse of lane_bits().
+template <typename T> xsimd::batch_bool<T> lanes_from(std::uint32_t bits) {
+#if defined(__AVX512F__)
+    return typename xsimd::batch_bool<T>::register_type(bits);
+#else
+    using Integer = std::conditional_t<sizeof(T) == 4, std::int32_t, std::int64_t>;
+    using Lanes = xsimd::batch<Integer>;
+    alignas(64) static constexpr auto kBits = [] {
+        std::array<Integer, Lanes::size> each{};
+        for (std::size_t i = 0; i < each.size(); ++i) each[i] = Integer{1} << i;
+        return each;
+    }();
+    return xsimd::bool_cast((Lanes(static_cast<Integer>(bits)) & Lanes::load_aligned(kBits.data())) !=
+                            Lanes(Integer{0}));
+#endif
+}
+
+/// Returns the column of each sample of a packet.
+template <typename T> PacketOf<T> packet_columns() {
+    PacketOf<T> result;
+    for (std::size_t i = 0; i < kPacketSize; ++i) result[i] = static_cast<T>(i % kPacketWidth);
+    return result;
+}
+/// Returns the row of each sample of a packet.
+template <typename T> PacketOf<T> packet_rows() {
+    PacketOf<T> result;
+    for (std::size_t i = 0; i < kPacketSize; ++i) result[i] = static_cast<T>(i / kPacketWidth);
+    return result;
+}
+template <typename T> inline const PacketOf<T> kColumns = packet_columns<T>();
+template <typename T> inline const PacketOf<T> kRows = packet_rows<T>();
+
+/// Gathers one batch of values at the given indices of an array.
+inline Floats gather(const float* from, const Ints& indices) {
+#if defined(__AVX512F__)
+    return _mm512_i32gather_ps(indices, from, 4);
+#elif defined(__AVX2__)
+    return _mm256_i32gather_ps(from, indices, 4);
+#else
+    alignas(64) std::array<std::int32_t, Ints::size> at;
+    alignas(64) std::array<float, Ints::size> result;
+    indices.store_aligned(at.data());
+    for (std::size_t i = 0; i < Ints::size; ++i) result[i] = from[at[i]];
+    return Floats::load_aligned(result.data());
+#endif
+}
+/// Truncates towards zero.
+inline Ints truncated(const Floats& x) { return xsimd::batch_cast<std::int32_t>(x); }
+
+/// The constant holds the index of each sample of a packet.
+inline const PacketOf<std::int32_t> kLanes = [] {
+    PacketOf<std::int32_t> result;
+    for (std::size_t i = 0; i < kPacketSize; ++i) result[i] = static_cast<std::int32_t>(i);
+    return result;
+}();
+
+/// The constant holds the sample indices as floats.
+inline const PacketOf<float> kLanesAsFloats = [] {
+    PacketOf<float> result;
+    for (std::size_t i = 0; i < kPacketSize; ++i) result[i] = static_cast<float>(i);
+    return result;
+}();
+
+/// The constant holds the lane indices as doubles.
+inline const Doubles kLanesAsDoubles = [] {
+    alignas(64) std::array<double, Doubles::size> result;
+    for (std::size_t i = 0; i < Doubles::size; ++i) result[i] = static_cast<double>(i);
+    return Doubles::load_aligned(result.data());
+}();
+
+} // namespace duet::raster

@@ -1,0 +1,206 @@
+#include "raster/raster_scene.h"
+
+#include "raster/geometry/geometry.h"
+#include "raster/lighting/prefiltered_environment.h"
+#include "raster/probes/glass_shapes.h"
+#include "raster/probes/irradiance_probes.h"
+#include "raster/probes/reflection_probes.h"
+#include "raster/screen_space/screen_space_tracer.h"
+#include "raster/shading/deferred.h"
+#include "raster/shadows/map_shadows.h"
+#include "raster/shadows/shadows.h"
+
+#include "common/system/error.h"
+
+#include <algorithm>
+
+namespace duet::raster {
+namespace {
+
+bool all_opaque(const Scene& scene, const Object& object) {
+    return std::none_of(object.materials.begin(), object.materials.end(), [&](std::uint32_t material) {
+        return std::holds_alternative<Dielectric>(scene.materials[material]) || scene.maps[material].has_transparency();
+    });
+}
+
+bool can_be_seen_through(const Scene& scene, const Object& object) {
+    return std::any_of(object.materials.begin(), object.materials.end(),
+                       [&](std::uint32_t material) { return scene.maps[material].has_transparency(); });
+}
+
+bool all_glass(const Scene& scene, const Object& object) {
+    return std::all_of(object.materials.begin(), object.materials.end(), [&](std::uint32_t material) {
+        return std::holds_alternative<Dielectric>(scene.materials[material]);
+    });
+}
+
+bool any_emissive(const Scene& scene, const Object& object) {
+    return std::any_of(object.materials.begin(), object.materials.end(),
+                       [&](std::uint32_t material) { return emitter(scene.materials[material]) != nullptr; });
+}
+
+std::optional<Rgb> uniform_color(const Scene& scene, const Object& object) {
+    if (object.materials.size() != 1) return std::nullopt;
+    const Material& material = scene.materials[object.materials.front()];
+    if (scene.maps[object.materials.front()].perturbs_normal()) return std::nullopt;
+    if (texture_slot(material).texture >= 0) return std::nullopt;
+    return base_color(material, scene.textures, SurfacePoint{});
+}
+
+std::optional<MetalBsdf> uniform_metal(const Scene& scene, const Object& object) {
+    if (!uniform_color(scene, object)) return std::nullopt;
+    const auto* metal = std::get_if<Metal>(&scene.materials[object.materials.front()]);
+    if (metal == nullptr || !metal->roughness.constant()) return std::nullopt;
+    return metal->at(scene.textures, SurfacePoint{});
+}
+
+/// Returns the slot of the image texture that colors all of an object, if the texture is filtered.
+std::optional<RgbSlot> uniform_texture(const Scene& scene, const Object& object) {
+    if (object.materials.size() != 1) return std::nullopt;
+    const Material& material = scene.materials[object.materials.front()];
+    const RgbSlot& slot = texture_slot(material);
+    // Metal is excluded, because its colors may come from a table.
+    if (slot.texture < 0 || std::holds_alternative<Metal>(material)) return std::nullopt;
+    const auto* texture = std::get_if<ImageTexture>(&scene.textures.textures[static_cast<std::size_t>(slot.texture)]);
+    const bool filtered =
+        texture != nullptr && uses_footprint(texture->filter) && !scene.textures.mip_levels[texture->image].empty();
+    return filtered ? std::optional(slot) : std::nullopt;
+}
+
+/// Returns true if the quads enclose a volume, as the six of a box do, and face outwards: each side of a quad is a
+/// side of exactly one other quad in the opposite direction. Points that differ by rounding count as equal.
+bool encloses(const QuadList& list) {
+    struct Side {
+        Vec3 from, to;
+    };
+    std::vector<Side> sides;
+    double volume = 0;
+    float size = 0;
+    for (const Quad& quad : list.quads) {
+        const std::array<Vec3, 4> c = corners(quad);
+        for (std::size_t i = 0; i < 4; ++i) sides.push_back({c[i], c[(i + 1) % 4]});
+        volume += dot(Vec3d(c[0] + c[2] - list.quads.front().corner * 2.0f), cross(Vec3d(quad.u), Vec3d(quad.v)));
+        size = std::max({size, length(quad.u), length(quad.v)});
+    }
+    const auto same = [&](Vec3 a, Vec3 b) { return length(a - b) <= 1e-5f * size; };
+    return volume > 0 && std::all_of(sides.begin(), sides.end(), [&](const Side& side) {
+               return std::count_if(sides.begin(), sides.end(), [&](const Side& other) {
+                          return same(side.from, other.to) && same(side.to, other.from);
+                      }) == 1;
+           });
+}
+
+RasterObject prepare_object(const Scene& scene, const Object& object) {
+    const Shape& shape = scene.shapes[object.shape];
+    RasterObject result;
+    result.bounds = bounds(shape, object.to_world);
+    // Matrix entries are interpolated, so a point moves on a straight line, within the union of both ends' bounds.
+    if (object.moving) result.bounds.extend(bounds(shape, object.to_world_end));
+    result.uniform_color = uniform_color(scene, object);
+    result.uniform_texture = uniform_texture(scene, object);
+    result.metal = uniform_metal(scene, object);
+    const Mesh* mesh = std::get_if<Mesh>(&shape);
+    const auto* quads = std::get_if<QuadList>(&shape);
+    result.closed = mesh != nullptr ? mesh->closed : quads == nullptr || encloses(*quads);
+    result.solid = mesh != nullptr && mesh->closed && all_opaque(scene, object);
+    return result;
+}
+
+/// Selects the strongest area lights, because intersecting each reflected ray with all of them would take too long.
+void select_reflected_lights(RasterSceneData& data) {
+    const std::vector<Light>& lights = data.scene.lights;
+    for (std::size_t i = data.scene.first_surface_light; i < lights.size(); ++i) data.reflected_lights.push_back(i);
+    if (data.reflected_lights.size() <= ScreenSpaceTracer::kMaxReflectedLights) return;
+    const float radius = length(data.scene.bounds.diagonal()) / 2;
+    std::stable_sort(data.reflected_lights.begin(), data.reflected_lights.end(), [&](std::size_t a, std::size_t b) {
+        return light_power(lights[a], radius) > light_power(lights[b], radius);
+    });
+    data.unreflected_lights = data.reflected_lights.size() - ScreenSpaceTracer::kMaxReflectedLights;
+    data.reflected_lights.resize(ScreenSpaceTracer::kMaxReflectedLights);
+    std::sort(data.reflected_lights.begin(), data.reflected_lights.end());
+}
+
+/// Prefilters the environment for rough metal and frosted glass, so that the first frame is not delayed.
+void prepare_glossy(const RasterSettings& settings, RasterSceneData& data) {
+    const SceneNeeds& needs = data.scene.needs;
+    const bool mirrors =
+        settings.prefiltered_environment && settings.components.reflection && settings.environment && needs.environment;
+    if (mirrors) {
+        data.prefiltered = std::make_shared<const Prefiltered>(data.scene.environment, settings.threads);
+        data.memory_bytes += data.prefiltered->memory_bytes();
+    }
+}
+
+/// Renders the probes of deferred shading.
+void prepare_probes(const RasterSettings& settings, RasterSceneData& data) {
+    const Scene& scene = data.scene;
+    if (settings.indirect_light) {
+        data.irradiance_probes = std::make_shared<const IrradianceProbes>(data, settings);
+        data.memory_bytes += static_cast<std::int64_t>(data.irradiance_probes->memory_bytes());
+    }
+    if (std::ranges::none_of(scene.materials, reflects)) return;
+    const int side = std::holds_alternative<ImageEnvironment>(scene.environment) ? 256 : 32;
+    const bool shown = settings.environment && scene.needs.environment;
+    data.environment_map = std::make_shared<const RadianceMap>(side, [&](Vec3 w) {
+        return RadianceMap::Arriving{shown ? radiance(scene.environment, w) : Rgb(), Rgb(), kInfinity};
+    }, settings.threads);
+    data.reflection_probes = std::make_shared<const ReflectionProbes>(data, settings);
+    data.glass_shapes = std::make_shared<const GlassShapes>(data, settings);
+    data.memory_bytes += static_cast<std::int64_t>(data.environment_map->memory_bytes() +
+                                                   data.reflection_probes->memory_bytes());
+}
+
+} // namespace
+
+RasterScene prepare(const Scene& scene, const RasterSettings& settings) {
+    RasterSceneData data{.scene = scene,
+                         .objects = {},
+                         .polygonal = {},
+                         .spheres = {},
+                         .irradiance = Irradiance(scene.environment, settings.threads),
+                         .shapes = std::vector<PackedShape>(scene.shapes.begin(), scene.shapes.end()),
+                         .texture_samplers = texture_samplers(scene.textures),
+                         .ambient = mean_radiance(scene.environment)};
+    for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+        const Object& object = scene.objects[i];
+        const Shape& shape = scene.shapes[object.shape];
+        data.objects.push_back(prepare_object(scene, object));
+        const bool sphere = std::holds_alternative<Sphere>(shape);
+        if (can_be_seen_through(scene, object))
+            (sphere ? data.alpha_spheres : data.alpha_polygonal).push_back(i);
+        else
+            (sphere ? data.spheres : data.polygonal).push_back(i);
+        if (all_glass(scene, object) && !can_be_seen_through(scene, object)) data.glass.push_back(i);
+        data.primitives += primitive_count(shape);
+        const bool stretched = std::holds_alternative<Sphere>(shape) && surface_light_index(scene, i, 0) < 0;
+        data.unsampled_emitters =
+            data.unsampled_emitters || ((object.moving || stretched) && any_emissive(scene, object));
+    }
+    select_reflected_lights(data);
+    std::size_t packed = 0;
+    for (const PackedShape& shape : data.shapes)
+        packed += shape.vertices.size() * sizeof(PackedVertex) + shape.halves.size() * sizeof(PackedShape::Triangle);
+    data.memory_bytes =
+        static_cast<std::int64_t>(packed + sizeof(RasterSceneData) + data.objects.size() * sizeof(RasterObject) +
+                                  scene.objects.size() * sizeof(std::uint32_t));
+    data.geometries = std::make_shared<GeometryPool>();
+    data.deferred_frames = std::make_shared<DeferredFramePool>();
+    if (settings.shadow_map_side < 64 || settings.shadow_map_side > 8192)
+        throw Error(message("shadow maps of ", settings.shadow_map_side, " texels a side: expected 64 to 8192"));
+    if (settings.shadow_cells < 1 || settings.shadow_cells > Shadows::kMaxCells)
+        throw Error(message(settings.shadow_cells, " pieces a light's side: expected 1 to ", Shadows::kMaxCells));
+    const LightComponentSet& parts = settings.components; // a reflected image includes all parts
+    const bool direct =
+        parts.direct || (parts.reflection && (settings.screen_reflections || settings.screen_refractions));
+    if (settings.shadows && settings.shading == Shading::kLit && direct && !scene.lights.empty()) {
+        data.shadows = std::make_shared<const Shadows>(data, settings);
+        data.memory_bytes += data.shadows->memory_bytes();
+        if (settings.quality == Quality::kRealtime)
+            data.soft_shadows = std::make_shared<const SoftShadowMaps>(*data.shadows);
+    }
+    if (settings.shading == Shading::kLit && scene.needs.glossy) prepare_glossy(settings, data);
+    if (settings.shading == Shading::kLit && settings.quality == Quality::kRealtime) prepare_probes(settings, data);
+    return RasterScene(std::make_shared<const RasterSceneData>(std::move(data)));
+}
+
+} // namespace duet::raster

@@ -1,0 +1,71 @@
+// Defines the data that the rasterizer computes once per scene, for any number of views.
+#pragma once
+
+#include "common/scene/scene.h"
+#include "raster/geometry/packed_shape.h"
+#include "raster/lighting/environment_irradiance.h"
+#include "raster/render.h"
+#include "raster/shading/texture_sampler.h"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace duet::raster {
+
+struct RasterObject {
+    Box3 bounds;        ///< in world space, over all of the object's motion
+    std::optional<Rgb> uniform_color;       ///< base color, if it is the same all over the object
+    std::optional<RgbSlot> uniform_texture; ///< texture slot, if one filtered texture determines the base color
+    std::optional<MetalBsdf> metal; ///< BSDF, if the object is metal of one color and roughness
+    bool closed = false; ///< a sphere, box or mesh that is closed and oriented outwards
+    bool solid = false; ///< an opaque, closed mesh, oriented outwards: its back faces are invisible from outside
+};
+
+class DeferredFramePool; // raster/shading/deferred.h
+class GeometryPool; // raster/geometry/geometry.h
+class SoftShadowMaps; // raster/shadows/map_shadows.h
+class Shadows;        // raster/shadows/shadows.h
+class IrradianceProbes; // raster/probes/irradiance_probes.h
+class RadianceMap; // raster/probes/radiance_map.h
+class ReflectionProbes; // raster/probes/reflection_probes.h
+class GlassShapes; // raster/probes/glass_shapes.h
+class Prefiltered; // raster/lighting/prefiltered_environment.h
+
+struct RasterSceneData {
+    const Scene& scene;
+    std::vector<RasterObject> objects;    ///< parallel to Scene::objects
+    std::vector<std::uint32_t> polygonal; ///< indices of the mesh and quad objects, in order
+    std::vector<std::uint32_t> spheres;   ///< indices of the sphere objects, in order
+    /// The two lists hold the alpha-masked and alpha-blended objects, which are in neither list above
+    /// (raster/shading/alpha_layers.h).
+    std::vector<std::uint32_t> alpha_polygonal{}, alpha_spheres{};
+    /// The list holds those of `polygonal` and `spheres` that are all glass, in order
+    /// (raster/screen_space/screen_space_refraction.h).
+    std::vector<std::uint32_t> glass{};
+    /// The list holds the indices of the strongest area lights, in order. Reflections include them even off-screen.
+    std::vector<std::size_t> reflected_lights{};
+    std::size_t unreflected_lights = 0;   ///< number of the other area lights
+    std::int64_t primitives = 0;          ///< triangles, quads and spheres of all objects
+    Irradiance irradiance;                ///< from the environment
+    std::vector<PackedShape> shapes{};    ///< parallel to Scene::shapes
+    std::vector<TextureSampler> texture_samplers{}; ///< one per image
+    Rgb ambient{};                        ///< mean radiance of the environment, the ambient light of Shading::kPhong
+    /// It is true if the scene has emissive surfaces that are not lights: moving objects, or non-uniformly scaled
+    /// spheres.
+    bool unsampled_emitters = false;
+    std::int64_t memory_bytes = 0;
+    std::shared_ptr<const Shadows> shadows{};   ///< null if the settings or the scene need none
+    std::shared_ptr<const SoftShadowMaps> soft_shadows{}; ///< likewise
+    std::shared_ptr<const IrradianceProbes> irradiance_probes{}; ///< null if the settings need none
+    std::shared_ptr<const RadianceMap> environment_map{}; ///< likewise, of the environment alone
+    std::shared_ptr<const ReflectionProbes> reflection_probes{}; ///< likewise
+    std::shared_ptr<const GlassShapes> glass_shapes{}; ///< likewise
+    std::shared_ptr<const Prefiltered> prefiltered{}; ///< null if the settings or the scene need none
+    bool has_layers() const { return !alpha_polygonal.empty() || !alpha_spheres.empty(); }
+    std::shared_ptr<GeometryPool> geometries{}; ///< memory that is reused from frame to frame
+    std::shared_ptr<DeferredFramePool> deferred_frames{}; ///< likewise
+};
+
+} // namespace duet::raster

@@ -1,0 +1,27 @@
+// Implements the built-in shadings as programs.
+#pragma once
+
+#include "raster/render.h"
+#include "raster/shading/packet_shader.h"
+
+#include <memory>
+
+namespace duet::raster {
+
+/// Returns the program of a shading for a camera; null for Shading::kLit, which has no program
+/// (raster/shading/shade_sample.h).
+std::unique_ptr<ShaderProgram> built_in_program(Shading shading, const Camera& camera);
+
+// Each program is defined in a file of the same name.
+std::unique_ptr<ShaderProgram> phong_program();
+std::unique_ptr<ShaderProgram> gouraud_program();
+std::unique_ptr<ShaderProgram> flat_program();
+std::unique_ptr<ShaderProgram> toon_program();
+std::unique_ptr<ShaderProgram> wireframe_program();
+std::unique_ptr<ShaderProgram> normal_program();
+std::unique_ptr<ShaderProgram>
+smooth_normal_program(); ///< in normal_shader.cpp; ignores normal and bump maps, for edge detection
+std::unique_ptr<ShaderProgram> albedo_program();
+std::unique_ptr<ShaderProgram> depth_program(const Camera& camera);
+
+} // namespace duet::raster

@@ -1,0 +1,327 @@
+#include "raster/shadows/shadows.h"
+
+#include "raster/gbuffer/screen_gbuffer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace duet::raster {
+namespace {
+
+constexpr int kVisiblePointsWidth = 256;             ///< pixels
+constexpr double kGuard = 4;                         ///< texels
+constexpr std::int64_t kCubeTexels = 64 * (1 << 20); ///< over all cubes, at most
+constexpr std::int64_t kViewTexels = 128 * (1 << 20); ///< over all other maps, at most
+constexpr int kMinSide = 64;                          ///< texels, of any map
+constexpr double kFloor = 1e-4; ///< relative to the scene's size: how far objects may penetrate a floor
+
+/// Returns a scene's prepared data restricted to some of its objects, as a shadow map needs it.
+RasterSceneData select_objects(const RasterSceneData& data, const std::vector<bool>& selected) {
+    RasterSceneData result{.scene = data.scene,
+                           .objects = data.objects,
+                           .polygonal = {},
+                           .spheres = {},
+                           .irradiance = data.irradiance,
+                           .geometries = data.geometries};
+    const auto select = [&](const std::vector<std::uint32_t>& objects, std::vector<std::uint32_t>& list) {
+        for (const std::uint32_t object : objects)
+            if (selected[object]) list.push_back(object);
+    };
+    select(data.polygonal, result.polygonal);
+    select(data.spheres, result.spheres);
+    select(data.alpha_polygonal, result.alpha_polygonal);
+    select(data.alpha_spheres, result.alpha_spheres);
+    return result;
+}
+
+RasterScene caster_scene(const RasterSceneData& data, const std::vector<bool>& selected) {
+    return RasterScene(std::make_shared<const RasterSceneData>(select_objects(data, selected)));
+}
+
+Box3 bounds_of(const RasterSceneData& data, const std::vector<bool>& selected) {
+    Box3 box;
+    for (std::size_t i = 0; i < selected.size(); ++i)
+        if (selected[i]) box.extend(data.objects[i].bounds);
+    return box;
+}
+
+/// Returns whether the object is a quad with the whole scene and the sun on one side. Such a quad casts no shadow, so
+/// views need not cover it.
+bool is_floor(const Scene& scene, std::uint32_t object, Vec3 sun_direction) {
+    const Object& o = scene.objects[object];
+    const auto* list = std::get_if<QuadList>(&scene.shapes[o.shape]);
+    if (list == nullptr || list->quads.size() != 1 || o.moving) return false;
+    const Quad& quad = list->quads.front();
+    const Vec3d p = transform_point(Mat4d(o.to_world), Vec3d(quad.corner));
+    const Vec3d u = transform_vector(Mat4d(o.to_world), Vec3d(quad.u)), v =
+        transform_vector(Mat4d(o.to_world), Vec3d(quad.v));
+    Vec3d n = normalize(cross(u, v));
+    if (dot(n, Vec3d(sun_direction)) > 0) n = -n;
+    const Box3& box = scene.bounds;
+    double lowest = 0;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        const Vec3 q(corner & 1u ? box.high.x : box.low.x, corner & 2u ? box.high.y : box.low.y,
+                     corner & 4u ? box.high.z : box.low.z);
+        lowest = min(lowest, dot(n, Vec3d(q) - p));
+    }
+    return lowest > -kFloor * length(Vec3d(box.diagonal()));
+}
+
+bool only_emits(const Scene& scene, std::uint32_t object) {
+    const Object& o = scene.objects[object];
+    return std::all_of(o.materials.begin(), o.materials.end(),
+                       [&](std::uint32_t material) { return emitter(scene.materials[material]) != nullptr; });
+}
+
+/// Returns the points that the scene's camera sees, from a low-resolution depth image.
+std::vector<VisiblePoint> visible_points(const RasterSceneData& data, int threads) {
+    const Scene& scene = data.scene;
+    const double aspect = static_cast<double>(scene.height) / scene.width;
+    const View view{scene.camera, kVisiblePointsWidth,
+                    static_cast<int>(std::clamp(kVisiblePointsWidth * aspect, 1.0, 4.0 * kVisiblePointsWidth))};
+    RasterSettings settings;
+    settings.output = Output::kReversedDepth;
+    settings.threads = threads;
+    Control control;
+    const RasterScene all = caster_scene(data, std::vector<bool>(scene.objects.size(), true));
+    const ScreenGBuffer gbuffer(CameraModel(view).pinhole(), {}, render(all, view, settings, control).reversed_depth);
+    std::vector<VisiblePoint> result;
+    for (int y = 0; y < view.height; ++y)
+        for (int x = 0; x < view.width; ++x)
+            if (const std::optional<Vec3> p = gbuffer.visible_point(x, y))
+                result.push_back({Vec3d(gbuffer.to_world_position(*p)),
+                                  static_cast<double>(gbuffer.pixel_size(gbuffer.depth(x, y)))});
+    return result;
+}
+
+std::vector<SurfaceLight> surface_lights(const Scene& scene, const std::vector<std::size_t>& lights) {
+    std::vector<SurfaceLight> result;
+    for (const std::size_t i : lights) result.push_back(std::get<SurfaceLight>(scene.lights[i]));
+    return result;
+}
+
+/// Returns the light's plane, rounded, as a key that groups coplanar primitives of one object.
+std::array<long, 4> plane_key(const SurfaceLight& light, double scene_size) {
+    const Emitter e = Emitter::of(light);
+    const auto rounded = [](double x) { return std::lround(x * 1e3); };
+    return {rounded(e.normal.x), rounded(e.normal.y), rounded(e.normal.z),
+            rounded(dot(e.normal, e.center) / scene_size * 10)};
+}
+
+/// Splits a parallelogram into n × n equal ones; a triangle or a sphere stays whole.
+std::vector<Emitter> pieces(const Emitter& emitter, int n) {
+    if (emitter.kind != Emitter::Kind::kParallelogram || n == 1) return {emitter};
+    std::vector<Emitter> result(static_cast<std::size_t>(n * n), emitter);
+    for (int i = 0; i < n * n; ++i) {
+        Emitter& piece = result[static_cast<std::size_t>(i)];
+        piece.center = emitter.center + emitter.u * ((i % n + 0.5) / n - 0.5) + emitter.v * ((i / n + 0.5) / n - 0.5);
+        piece.u = emitter.u / static_cast<double>(n), piece.v = emitter.v / static_cast<double>(n);
+    }
+    return result;
+}
+
+} // namespace
+
+Shadows::Shadows(const RasterSceneData& data, const RasterSettings& settings)
+    : scene_(data.scene), scene_size_(static_cast<double>(length(data.scene.bounds.diagonal())) + 1e-30),
+      side_(settings.shadow_map_side), cube_side_(settings.shadow_map_side / 2) {
+    sources_ = find_sources(scene_, settings.shadow_cells);
+    const Camera& camera = scene_.camera;
+    const bool moving = scene_.needs.motion && settings.samples_per_pixel > 1 &&
+        camera.shutter_open != camera.shutter_close;
+    for (int i = 0; i < (moving ? kMoments : 1); ++i)
+        moments_.push_back(moving ? camera.shutter_open + (camera.shutter_close - camera.shutter_open) *
+                           (i + 0.5) / kMoments
+                                  : camera.shutter_open);
+    std::vector<VisiblePoint> visible;
+    if (std::ranges::any_of(scene_.lights, [](const Light& light) { return std::holds_alternative<SunLight>(light); }))
+        visible = visible_points(data, settings.threads);
+    fit_sides(data, visible);
+    source_of_.assign(scene_.lights.size(), sources_.size());
+    for (std::size_t i = 0; i < sources_.size(); ++i) {
+        for (const std::size_t light : sources_[i].lights) source_of_[light] = i;
+        sources_[i].moments.resize(moments_.size());
+        const std::vector<Camera> views = views_of(data, visible, sources_[i]);
+        for (std::size_t k = 0; k < moments_.size(); ++k)
+            draw(data, settings, views, sources_[i], moments_[k], sources_[i].moments[k]);
+    }
+}
+
+/// Returns the cameras of the maps of suns and of sufficiently narrow spots, which are the same at all moments. Other
+/// lights use cubes. A sun without casters has no maps.
+std::vector<Camera> Shadows::views_of(const RasterSceneData& data, const std::vector<VisiblePoint>& visible,
+                                      const Source& source) const {
+    const Light& light = scene_.lights[source.lights.front()];
+    if (const auto* spot = std::get_if<SpotLight>(&light)) return spot_views(*spot, scene_size_, side_, kGuard);
+    const auto* sun = std::get_if<SunLight>(&light);
+    if (sun == nullptr) return {};
+    std::vector<bool> casts(scene_.objects.size());
+    for (std::uint32_t i = 0; i < casts.size(); ++i) casts[i] = !is_floor(scene_, i, sun->direction);
+    const Box3 bounds = bounds_of(data, casts);
+    if (bounds.empty()) return {};
+    return sun_views(*sun, bounds, scene_.camera, visible, side_, kGuard);
+}
+
+/// Halves the resolution of the maps until they take at most kViewTexels and kCubeTexels.
+void Shadows::fit_sides(const RasterSceneData& data, const std::vector<VisiblePoint>& visible) {
+    std::size_t views = 0, cubes = 0;
+    for (const Source& source : sources_) {
+        const std::size_t its_views = views_of(data, visible, source).size();
+        views += its_views;
+        const bool sun = std::holds_alternative<SunLight>(scene_.lights[source.lights.front()]);
+        if (its_views == 0 && !sun) cubes += std::max<std::size_t>(source.cells.size(), 1);
+    }
+    const auto fit = [&](int& side, std::size_t maps, std::int64_t most) {
+        const auto all = static_cast<std::int64_t>(maps * moments_.size());
+        while (side > kMinSide && all * side * side > most) side = std::max(side / 2, kMinSide), coarser_ = true;
+    };
+    fit(side_, views, kViewTexels);
+    fit(cube_side_, 6 * cubes, kCubeTexels);
+}
+
+std::vector<Shadows::Source> Shadows::find_sources(const Scene& scene, int cells) {
+    std::vector<Source> sources;
+    std::map<std::pair<std::uint32_t, std::array<long, 4>>, std::vector<std::size_t>> groups;
+    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+        const auto* surface = std::get_if<SurfaceLight>(&scene.lights[i]);
+        if (surface == nullptr) {
+            sources.push_back({{i}, {}, false, {}});
+        } else {
+            const bool emits_only = only_emits(scene, surface->object);
+            groups[{surface->object, emits_only ? std::array<long, 4>{} : plane_key(*surface, scene_size_)}].push_back(
+                i);
+        }
+    }
+    for (auto& [key, lights] : groups) {
+        const std::vector<SurfaceLight> surfaces = surface_lights(scene, lights);
+        sources.push_back({std::move(lights), pieces(Emitter::of(surfaces), cells), only_emits(scene, key.first), {}});
+    }
+    if (sources.size() <= kMaxSources) return sources;
+    const float radius = static_cast<float>(scene_size_ / 2);
+    const auto power = [&](const Source& source) {
+        float sum = 0;
+        for (const std::size_t i : source.lights) sum += light_power(scene.lights[i], radius);
+        return sum;
+    };
+    std::stable_sort(sources.begin(), sources.end(),
+                     [&](const Source& a, const Source& b) { return power(a) > power(b); });
+    for (std::size_t i = kMaxSources; i < sources.size(); ++i) unshadowed_ += sources[i].lights.size();
+    sources.resize(kMaxSources);
+    return sources;
+}
+
+void Shadows::draw(const RasterSceneData& data, const RasterSettings& settings, std::span<const Camera> views,
+                   Source& source, double moment, Maps& maps) {
+    std::vector<bool> selected(scene_.objects.size(), true);
+    const Light& light = scene_.lights[source.lights.front()];
+    if (!views.empty()) {
+        const RasterScene casters = caster_scene(data, selected);
+        for (Camera camera : views) {
+            camera.shutter_open = camera.shutter_close = moment;
+            maps.views.emplace_back(casters, camera, side_, settings.threads);
+            memory_bytes_ += std::int64_t{4} * side_ * side_;
+        }
+        return;
+    }
+    if (std::holds_alternative<SunLight>(light)) return;
+    const auto* surface_light = std::get_if<SurfaceLight>(&light);
+    if (surface_light == nullptr) {
+        const auto* spot = std::get_if<SpotLight>(&light);
+        const Vec3d center(spot != nullptr ? spot->position : std::get<PointLight>(light).position);
+        maps.cubes.push_back(
+            draw_cube(caster_scene(data, selected), center, nullptr, true, moment, cube_side_, settings.threads));
+        return;
+    }
+
+    const SurfaceLight& surface = *surface_light;
+    if (source.emits_only) selected[surface.object] = false;
+    const RasterScene casters = caster_scene(data, selected);
+    for (const Emitter& cell : source.cells) {
+        const bool flat = cell.kind != Emitter::Kind::kSphere;
+        // Other objects may lie in the light's plane, so the camera is slightly in front of it.
+        const double before = flat && !surface.two_sided ? 1e-3 * std::sqrt(length(cross(cell.u, cell.v))) : 0;
+        maps.cells.emplace_back(draw_cube(casters, cell.center + cell.normal * before, flat ? &cell : nullptr,
+                                          surface.two_sided, moment, cube_side_ / 2, settings.threads),
+                                cell);
+        memory_bytes_ += maps.cells.back().memory_bytes();
+    }
+}
+
+CubeMap Shadows::draw_cube(const RasterScene& casters, Vec3d center, const Emitter* plane, bool back, double moment,
+                           int side, int threads) {
+    CubeMap cube;
+    cube.center = Vec3d(Vec3(center)); // rounded as the camera rounds it
+    if (plane != nullptr) cube.frame = frame_from_normal(plane->normal);
+    std::vector<Camera> views = cube_views(cube.center, cube.frame, scene_size_, side, CubeMap::kGuard);
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        if (i == 5 && plane != nullptr && !back) continue;
+        views[i].shutter_open = views[i].shutter_close = moment;
+        cube.faces[i] = std::make_unique<ShadowMap>(casters, views[i], side, threads);
+        memory_bytes_ += std::int64_t{4} * side * side;
+    }
+    cube.near = static_cast<float>(cube.faces[0]->near());
+    cube.middle = static_cast<float>(side) / 2;
+    cube.scale = cube.middle - static_cast<float>(CubeMap::kGuard);
+    return cube;
+}
+
+std::size_t Shadows::moment_at(float time) const {
+    if (moments_.size() == 1) return 0;
+    const double open = scene_.camera.shutter_open, close = scene_.camera.shutter_close;
+    return static_cast<std::size_t>(
+        std::clamp((static_cast<double>(time) - open) / (close - open) * kMoments, 0.0, kMoments - 1.0));
+}
+
+float Shadows::visibility(std::size_t light, const ShadingPoint& point, TapRange taps) const {
+    if (source_of_[light] == sources_.size()) return 1;
+    const Source& source = sources_[source_of_[light]];
+    const SurfacePoint& surface = point.surface;
+    // On a smooth mesh the receiver is on the smooth surface that the facets approximate, where a path tracer's
+    // shadow rays start (`terminator_offset` and `terminator_normal` of the shading-terminator fix). Light above its
+    // horizon also reaches facets that are turned away; they would otherwise be lit regardless of blockers.
+    const double error = static_cast<double>(dot(abs(point.terminator_normal), surface.p_error));
+    Receiver receiver{Vec3d(surface.p) + Vec3d(surface.terminator_offset), Vec3d(point.terminator_normal), error};
+    std::size_t moment = 0;
+    if (moments_.size() > 1) {
+        const double open = scene_.camera.shutter_open, close = scene_.camera.shutter_close;
+        const double part = (static_cast<double>(surface.time) - open) / (close - open) * kMoments;
+        moment = static_cast<std::size_t>(std::clamp(part, 0.0, kMoments - 1.0));
+        const Object& object = scene_.objects[surface.object];
+        if (object.moving) {
+            const ObjectTransform now = object_transform(object, surface.time),
+                                  then = object_transform(object, static_cast<float>(moments_[moment]));
+            const Mat4d to_moment = Mat4d(then.to_world) * Mat4d(now.to_object);
+            receiver.p = transform_point(to_moment, receiver.p);
+            receiver.n = normalize(transform_normal(inverse_affine(to_moment), receiver.n));
+            receiver.error *= 4; // includes the rounding of the maps
+        }
+    }
+    return visibility(source, source.moments[moment], receiver, taps);
+}
+
+float Shadows::visibility(const Source& source, const Maps& maps, const Receiver& receiver, TapRange taps) const {
+    if (!source.cells.empty()) {
+        // If the number of cells allows it, the samples of a pixel also divide the cells among themselves.
+        const std::size_t count = maps.cells.size();
+        const bool share = taps.count == TapRange::kBlock && count % TapRange::kBlocks == 0;
+        const std::size_t first = share ? static_cast<std::size_t>(taps.first / TapRange::kBlock) : 0, step = share
+            ? TapRange::kBlocks : 1;
+        float sum = 0;
+        for (std::size_t i = first; i < count; i += step)
+            sum += maps.cells[i].visibility(receiver, share ? TapRange{} : taps);
+        return sum * static_cast<float>(step) / static_cast<float>(count);
+    }
+    for (const CubeMap& cube : maps.cubes) {
+        const Vec3 direction(cube.frame.to_local(receiver.p - cube.center));
+        const ShadowMap& face = *cube.faces[cube_face(direction)];
+        const std::optional<Vec3d> projected = face.project(receiver.p, ShadowMap::kMargin);
+        return projected ? face.lit_fraction(receiver, *projected) : 1;
+    }
+    for (const ShadowMap& view : maps.views)
+        if (const std::optional<Vec3d> projected = view.project(receiver.p, ShadowMap::kMargin))
+            return view.lit_fraction(receiver, *projected);
+    return 1;
+}
+
+} // namespace duet::raster

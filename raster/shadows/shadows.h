@@ -1,0 +1,86 @@
+// This header declares the shadow maps of all lights and their lookup.
+#pragma once
+
+#include "raster/lighting/direct_lighting.h"
+#include "raster/raster_scene.h"
+#include "raster/shadows/light_views.h"
+#include "raster/shadows/soft_shadow.h"
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace duet::raster {
+
+/// Holds all shadow maps of a scene; they do not depend on the view.
+/// A scene with motion has maps for several moments of the shutter interval. A moving receiver is looked up at its
+/// position at the map's moment, so that an object does not shade itself by its own motion.
+class Shadows {
+public:
+    /// `data` is the prepared scene except for its shadows. More than one sample per pixel causes several moments to
+    /// be rendered if the scene moves.
+    Shadows(const RasterSceneData& data, const RasterSettings& settings);
+
+    /// Returns the unshadowed fraction of the light Scene::lights[light] at the point, in [0, 1]. It is the same for
+    /// any number of threads, and 1 for lights without maps. `taps` is the range of taps for each cell of an area
+    /// light.
+    float visibility(std::size_t light, const ShadingPoint& point, TapRange taps) const;
+
+    /// Returns the number of lights without maps; the weakest lights have none.
+    std::size_t unshadowed() const { return unshadowed_; }
+    std::size_t moments() const { return moments_.size(); }
+    /// Whether maps are smaller than RasterSettings::shadow_map_side requests, to limit memory.
+    bool coarser() const { return coarser_; }
+    std::int64_t memory_bytes() const { return memory_bytes_; }
+
+    /// Holds a light's maps at one moment; a light without maps has all vectors empty. Views are tried in order; a
+    /// point light has one cube.
+    struct Maps {
+        std::vector<ShadowMap> views;
+        std::vector<CubeMap> cubes;
+        std::vector<AreaLightShadow> cells; ///< of surface lights: parallel to Source::cells
+    };
+    /// A source shares maps. It is one point, spot or sun light, or the coplanar surface lights of one object, or all
+    /// surface lights of an object that only emits.
+    struct Source {
+        std::vector<std::size_t> lights;
+        std::vector<Emitter> cells; ///< pieces of a surface light, each with its own maps; else empty
+        bool emits_only = false;    ///< its object only emits and is excluded from its own maps
+        std::vector<Maps> moments;      ///< parallel to moments_
+    };
+    const std::vector<Source>& sources() const { return sources_; }
+    /// Returns the index of a light's source; sources().size() if it has no maps.
+    std::size_t source_of(std::size_t light) const { return source_of_[light]; }
+    /// Returns the index of the moment whose maps serve a time.
+    std::size_t moment_at(float time) const;
+
+    static constexpr int kMoments = 8;
+    static constexpr std::size_t kMaxSources = 64;
+    static constexpr int kMaxCells = 8; ///< along each side of a light
+
+private:
+    std::vector<Source> find_sources(const Scene& scene, int cells);
+    /// `visible` holds the points visible to the scene's camera if there is a sun.
+    std::vector<Camera> views_of(const RasterSceneData& data, const std::vector<VisiblePoint>& visible,
+                                 const Source& source) const;
+    void fit_sides(const RasterSceneData& data, const std::vector<VisiblePoint>& visible);
+    /// `views` is the result of views_of for the source.
+    void draw(const RasterSceneData& data, const RasterSettings& settings, std::span<const Camera> views,
+              Source& source, double moment, Maps& maps);
+    /// `plane` is a planar emitter, or null; `back` says whether it also emits on its back side.
+    CubeMap draw_cube(const RasterScene& casters, Vec3d center, const Emitter* plane, bool back, double moment,
+                      int side, int threads);
+    float visibility(const Source& source, const Maps& maps, const Receiver& receiver, TapRange taps) const;
+
+    const Scene& scene_;
+    double scene_size_;
+    int side_, cube_side_;
+    std::vector<Source> sources_;
+    std::vector<std::size_t> source_of_; ///< for each light; sources_.size() if it has no maps
+    std::vector<double> moments_;
+    std::size_t unshadowed_ = 0;
+    bool coarser_ = false;
+    std::int64_t memory_bytes_ = 0;
+};
+
+} // namespace duet::raster

@@ -1,0 +1,44 @@
+// FilmCheckpoint owns the film of a render and saves it to a file while the render runs.
+#pragma once
+
+#include "common/film/film_file.h"
+#include "common/system/stopwatch.h"
+#include "raytrace/render.h"
+
+#include <atomic>
+#include <functional>
+#include <mutex>
+#include <shared_mutex>
+
+namespace duet::raytrace {
+
+/// Returns everything that decides the bits of a film's samples, except for the sample numbers. A render can
+/// continue a film, and films can be merged, only if these settings are equal.
+std::vector<StoredFilm::Setting> film_settings(const Scene& scene, const View& view,
+                                               const PathTracerSettings& settings);
+
+/// Owns the film of one render. With PathTracerSettings::film, it starts from that file if the file exists, and writes
+/// the film there at intervals and at the end. Otherwise it starts empty.
+class FilmCheckpoint {
+public:
+    /// Throws Error if the file is no film, or is a film of another image or of other samples.
+    FilmCheckpoint(const Scene& scene, const View& view, const PathTracerSettings& settings);
+
+    Film& film() { return stored_.film; }
+
+    /// Runs `work`, which adds to some pixels, then writes the film if the interval has passed. Any thread may call
+    /// it.
+    void add(const std::function<void()>& work);
+    /// Writes the film if there is a file to write to. Throws Error (exit code 1) if writing fails.
+    void save();
+
+private:
+    const std::filesystem::path path_; // empty: nothing is written
+    const double interval_;
+    StoredFilm stored_;
+    Stopwatch since_write_;
+    std::shared_mutex pixels_mutex_; // shared by threads that add to pixels, exclusive to copy all pixels
+    std::mutex write_mutex_;
+};
+
+} // namespace duet::raytrace

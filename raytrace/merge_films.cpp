@@ -1,0 +1,120 @@
+#include "raytrace/merge_films.h"
+
+#include "common/image/image_file.h"
+#include "common/program/program.h"
+#include "common/program/render_program.h"
+#include "common/system/error.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <iostream>
+
+namespace duet::raytrace {
+
+namespace {
+
+std::uint32_t max_samples(const Film& film) {
+    std::uint32_t most = 0;
+    for (int y = 0; y < film.height(); ++y)
+        for (int x = 0; x < film.width(); ++x) most = std::max(most, film.samples_taken(x, y));
+    return most;
+}
+
+void add(Film& film, const Film& other) {
+    for (std::size_t i = 0; i < film.pixels().size(); ++i) {
+        Film::Pixel& to = film.pixels()[i];
+        const Film::Pixel& from = other.pixels()[i];
+        for (std::size_t r = 0; r < Film::kReplicates; ++r) {
+            to.sum[r] += from.sum[r];
+            to.count[r] += from.count[r];
+        }
+        to.invalid += from.invalid;
+        to.target = to.count[0] + to.count[1] + to.invalid;
+    }
+}
+
+// Returns whether the merged film is one that a single run could have rendered: every pixel has the same samples,
+// and none is missing.
+bool is_contiguous(const std::vector<NamedFilm>& films) {
+    std::uint64_t next = films.front().stored.first_sample;
+    for (const NamedFilm& film : films) {
+        const std::uint32_t least = film.stored.film.min_samples_taken();
+        if (film.stored.first_sample != next || least != max_samples(film.stored.film)) return false;
+        next += least;
+    }
+    return true;
+}
+
+void sort_by_samples(std::vector<NamedFilm>& films) {
+    std::stable_sort(films.begin(), films.end(), [](const NamedFilm& a, const NamedFilm& b) {
+        return a.stored.first_sample < b.stored.first_sample;
+    });
+}
+
+struct Options {
+    std::string output, film;
+    std::vector<std::string> films;
+    bool quiet = false;
+};
+
+int merge(const Options& options) {
+    check_writable_image(options.output);
+    std::vector<NamedFilm> films;
+    for (const std::string& name : options.films) films.push_back({name, read_film(name)});
+    sort_by_samples(films);
+    const bool contiguous = is_contiguous(films);
+    const std::size_t count = films.size();
+    const StoredFilm all = merge_films(std::move(films));
+    if (!options.film.empty() && !contiguous)
+        throw Error("--film: the films leave out samples, or some pixels have more than others: the whole could not be "
+                    "continued (the picture alone can be written)");
+    if (!options.film.empty()) write_film(options.film, all);
+    write_image(options.output, all.film.image());
+    if (options.quiet) return kExitOk;
+    std::cerr << options.output << ": " << all.film.width() << " x " << all.film.height() << ", " << count << " films, "
+              << all.film.min_samples_taken() << (contiguous ? "" : " or more") << " samples a pixel";
+    if (const double error = all.film.estimated_relmse(); error >= 0) std::cerr << ", estimated relMSE " << error;
+    std::cerr << '\n';
+    return kExitOk;
+}
+
+} // namespace
+
+StoredFilm merge_films(std::vector<NamedFilm> films) {
+    if (films.empty()) throw Error("no film to merge");
+    sort_by_samples(films);
+    StoredFilm result = std::move(films.front().stored);
+    std::uint64_t end = std::uint64_t{result.first_sample} + max_samples(result.film);
+    for (std::size_t i = 1; i < films.size(); ++i) {
+        const auto& [name, stored] = films[i];
+        check_same_image(name, stored, result);
+        if (stored.first_sample < end)
+            throw Error(message(name, ": has samples from ", stored.first_sample, " on, but ", films[i - 1].name,
+                                " has those up to ", end - 1, ": expected films that share none"));
+        end = std::uint64_t{stored.first_sample} + max_samples(stored.film);
+        add(result.film, stored.film);
+    }
+    return result;
+}
+
+int run_merge(int argc, char** argv) {
+    return run_program("raytrace merge", [&] {
+        CLI::App app("Joins films of the same picture, of different samples, into one picture.", "raytrace merge");
+        app.footer("Example, two machines a half each:\n"
+                   "  raytrace models/cornell.json -o a.png --samples 0:128 --film a.exr\n"
+                   "  raytrace models/cornell.json -o b.png --samples 128:256 --film b.exr\n"
+                   "  raytrace merge -o cornell.png a.exr b.exr\n\n"
+                   "Exit codes: 0 done, 1 failed, 2 unusable arguments or input.");
+        Options options;
+        app.add_option("FILM", options.films, "Films that raytrace --film has written")->required();
+        app.add_option("-o,--output", options.output, "The picture: .png, .jpg, .tga, .ppm, .pfm, .hdr or .exr")
+            ->required();
+        app.add_option("--film", options.film, "Write the joint film, too: it can be continued, or joined with others");
+        app.add_flag("--quiet", options.quiet, "No summary");
+        const ParsedCommandLine parsed = parse_command_line(app, argc, argv);
+        return parsed.proceed ? merge(options) : parsed.exit_code;
+    });
+}
+
+} // namespace duet::raytrace

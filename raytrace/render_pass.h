@@ -1,0 +1,31 @@
+// A render consists of passes over the whole image. Each pass takes some samples of its pixels.
+#pragma once
+
+#include "common/film/film.h"
+#include "raytrace/aov.h"
+#include "raytrace/film_checkpoint.h"
+#include "raytrace/integrator/integrator.h"
+
+namespace duet::raytrace {
+
+/// Returns the camera ray of pixel (x, y) for the sampler's current sample.
+Ray camera_ray(const RenderPlan& plan, const CameraModel& camera, int x, int y, const Sampler& sampler);
+
+/// Holds everything that a pass reads and everything that it adds to.
+struct PassContext {
+    const RenderPlan& plan;
+    const View& view;
+    const PathTracerSettings& settings;
+    Control& control;
+    FilmCheckpoint& checkpoint;
+    AovBuffers& aovs;
+    RayCounts& counts;
+    std::optional<InvalidSample>& first_invalid;
+};
+
+/// Renders the samples that the film's pixels lack to reach their targets (Film::Pixel::target), tile by tile on all
+/// threads. Returns false if it was stopped: tiles in progress are finished, and the others are left out. Reports
+/// progress from `begin` to `end`.
+bool render_pass(const PassContext& context, double begin, double end);
+
+} // namespace duet::raytrace

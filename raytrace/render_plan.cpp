@@ -1,0 +1,143 @@
+#include "raytrace/render_plan.h"
+
+#include "common/system/error.h"
+#include "common/vec/simd.h"
+
+#include <algorithm>
+
+namespace duet::raytrace {
+
+namespace {
+
+bool computes_light(Integrator integrator) {
+    return integrator != Integrator::kNormal && integrator != Integrator::kAlbedo;
+}
+bool samples_lights(Integrator integrator) { return computes_light(integrator) && integrator != Integrator::kNaive; }
+
+int depth(const PathTracerSettings& settings) {
+    const int requested = std::max(settings.max_depth, 0);
+    switch (settings.integrator) {
+    case Integrator::kPath:
+    case Integrator::kNaive:
+    case Integrator::kReflection:
+        return requested;
+    case Integrator::kDirect:
+    case Integrator::kUnshadowed:
+    case Integrator::kLights:
+    case Integrator::kEnvironment:
+        return std::min(requested, 1);
+    case Integrator::kNormal:
+    case Integrator::kAlbedo:
+        break;
+    }
+    return 0;
+}
+
+} // namespace
+
+RenderPlan::RenderPlan(const PathTracerSceneData& prepared_, const View& view, const PathTracerSettings& settings,
+                       std::optional<float> known_survival_factor)
+    : prepared(prepared_), scene(prepared_.scene), filter(settings.filter), batched(scene.objects.size()),
+      max_depth(depth(settings)), russian_roulette(settings.russian_roulette && max_depth > 1) {
+    const SkipFlags& skips = settings.skips;
+    const CameraModel camera(view);
+    lens = camera.has_lens() || !skips.lens;
+    if (scene.needs.footprints) pixel_footprint.emplace(camera.pinhole(), 1);
+    motion = scene.needs.motion || !skips.motion;
+    bsdfs = skips.textures ? &prepared.bsdfs : &no_bsdfs_;
+    if (!skips.textures) no_bsdfs_.resize(prepared.bsdfs.size());
+    for (std::uint32_t i = 0; i < scene.materials.size(); ++i) details.push_back(surface_detail(scene, i));
+    emission = prepared.emitters || !skips.emission;
+    specular_light_samples = !skips.mirror_light;
+    needs_medium_stack = scene.needs.media;
+    black_shadow_rays = !skips.shadow_rays;
+    const bool with_environment =
+        settings.environment && (prepared.environment || !skips.environment) && computes_light(settings.integrator);
+    if (with_environment) environment = &scene.environment;
+    hits_find_light = with_environment || prepared.emitters || !skips.last_bounce;
+    const bool environment_only = with_environment && settings.integrator == Integrator::kEnvironment;
+    const LightSampler& chooser = environment_only   ? prepared.environment_light
+                                  : with_environment ? prepared.lights
+                                                     : prepared.finite_lights;
+    const bool lights_useful = (prepared.scatters_diffusely && !chooser.empty()) || !skips.light_samples;
+    if (samples_lights(settings.integrator) && max_depth > 0 && lights_useful) lights = &chooser;
+    // Paths are scattered in batches only with at least 4 lanes of doubles, and only if they need nothing that
+    // batches do not support: a medium stack, footprints, or the shadow rays and light samples that tests request.
+    if (kDoubleLanes >= 4 && !needs_medium_stack && !pixel_footprint && !black_shadow_rays && !specular_light_samples)
+        batched = BatchedSurfaces(scene, *bsdfs);
+    // The naive integrator does not learn this factor, so that it stays simple.
+    const bool estimates_survival = russian_roulette && settings.integrator != Integrator::kNaive;
+    survival_factor = known_survival_factor ? *known_survival_factor
+                      : estimates_survival  ? estimate_survival_factor(prepared, view, settings)
+                                            : kDefaultSurvivalFactor;
+}
+
+std::vector<SkippedWork> skipped(const RenderPlan& plan, const PathTracerSettings& settings) {
+    std::vector<SkippedWork> list;
+    const auto skip = [&](std::string what, std::string why) { list.push_back({std::move(what), std::move(why)}); };
+    const auto constant = std::count_if(plan.prepared.bsdfs.begin(), plan.prepared.bsdfs.end(),
+                                        [](const auto& bsdf) { return bsdf.has_value(); });
+    if (constant == static_cast<std::ptrdiff_t>(plan.prepared.bsdfs.size()))
+        skip("textures", "no material has one: each BSDF is made once, not at each hit");
+    else if (constant > 0)
+        list.push_back({"textures", "materials without one, whose BSDF is made once", constant});
+    if (!plan.scene.needs.alpha) skip("opacity tests", "no material has holes");
+    if (!plan.scene.needs.normal_maps) skip("normal maps", "no material has one");
+    if (!plan.needs_medium_stack) skip("insides", "no glass absorbs, or stands in other glass");
+    if (!plan.pixel_footprint) skip("texture footprints", "no material has a picture that is filtered");
+    if (!plan.lens) skip("lens samples", "the camera has no aperture");
+    if (!plan.motion) skip("time samples", "nothing moves");
+    if (!plan.scene.needs.instances && !plan.motion) skip("instance transforms", "all objects stand in the world");
+    if (!settings.aovs.any()) skip("auxiliary pictures", "not asked for");
+    if (!computes_light(settings.integrator)) {
+        skip("bounces", "the integrator shows surfaces, not light");
+        return list;
+    }
+    if (plan.environment == nullptr)
+        skip("environment", settings.environment ? "it is black" : "left out by the settings");
+    if (plan.lights == nullptr && samples_lights(settings.integrator)) {
+        if (plan.max_depth == 0)
+            skip("light samples", "only emission is asked for");
+        else if (!plan.prepared.scatters_diffusely)
+            skip("light samples", "all materials are mirrors or glass, which they cannot reach");
+        else
+            skip("light samples",
+                 plan.environment != nullptr ? "only the environment emits, so evenly that rays find it best"
+                                             : "nothing emits");
+    } else if (plan.lights != nullptr && plan.environment != nullptr && sampled_irradiance(*plan.environment) == 0) {
+        skip("light samples of the environment", "it is so even that rays find it best");
+    }
+    if (!plan.hits_find_light && settings.integrator != Integrator::kUnshadowed)
+        skip("last bounce", "rays cannot find the lights: point, spot and sun");
+    if (plan.russian_roulette)
+        skip("dim paths", message("roulette ends some whose throughput is below ", 1 / plan.survival_factor));
+    if (settings.integrator == Integrator::kUnshadowed) skip("shadow rays", "the integrator leaves visibility out");
+    return list;
+}
+
+/// A limit of at least this many scatterings, the default of PathTracerSettings::max_depth, counts as no limit.
+constexpr int kUnlimitedDepth = 64;
+
+std::vector<std::string> approximations(const RenderPlan& plan, const PathTracerSettings& settings) {
+    std::vector<std::string> list;
+    if (settings.integrator == Integrator::kNaive && plan.scene.needs.delta_lights)
+        list.emplace_back("point, spot and sun lights are missing: rays that follow the materials cannot find them");
+    if (settings.integrator == Integrator::kDirect) list.emplace_back("light arrives after one scattering at most");
+    if (settings.integrator == Integrator::kUnshadowed)
+        list.emplace_back("direct light only, and nothing casts a shadow");
+    if (settings.integrator == Integrator::kLights)
+        list.emplace_back("only emission, and direct light of lights by diffuse surfaces and rough metal");
+    if (settings.integrator == Integrator::kEnvironment)
+        list.emplace_back("only what the environment sends to diffuse surfaces");
+    if (settings.integrator == Integrator::kReflection)
+        list.emplace_back("only what is seen by way of metal and glass");
+    const bool whole_paths = settings.integrator == Integrator::kPath || settings.integrator == Integrator::kNaive ||
+                             settings.integrator == Integrator::kReflection;
+    if (whole_paths && plan.max_depth < kUnlimitedDepth)
+        list.emplace_back(
+            message("paths end after ", plan.max_depth, plan.max_depth == 1 ? " scattering" : " scatterings"));
+    if (!settings.environment && plan.prepared.environment) list.emplace_back("the environment is left out");
+    return list;
+}
+
+} // namespace duet::raytrace

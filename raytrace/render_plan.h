@@ -1,0 +1,55 @@
+// RenderPlan is what a render decides once before its loop: which steps of path tracing this scene, view and
+// settings need.
+#pragma once
+
+#include "common/camera/pixel_footprint.h"
+#include "common/film/rendering.h"
+#include "raytrace/batched_surfaces.h"
+#include "raytrace/path_tracer_scene.h"
+#include "raytrace/render.h"
+#include "raytrace/roulette.h"
+
+namespace duet::raytrace {
+
+struct RenderPlan {
+    /// Makes the plan. `known_survival_factor` sets the roulette survival factor `survival_factor`. If it is empty, the
+    /// factor is estimated by estimate_survival_factor.
+    RenderPlan(const PathTracerSceneData& prepared_, const View& view, const PathTracerSettings& settings,
+               std::optional<float> known_survival_factor = {});
+    RenderPlan(const RenderPlan&) = delete; // bsdfs may point into the plan
+    RenderPlan& operator=(const RenderPlan&) = delete;
+
+    const PathTracerSceneData& prepared;
+    const Scene& scene;
+    const PixelFilter filter;
+    const LightSampler* lights = nullptr;                    ///< null if no light is sampled
+    const Environment* environment = nullptr;                ///< null if rays that escape find no light
+    const std::vector<std::optional<Bsdf>>* bsdfs = nullptr; ///< by material; empty where a texture varies it
+    std::vector<SurfaceDetail> details; ///< by material: what its surface points need
+    bool emission = false;                                   ///< whether surfaces that are hit may emit
+    bool hits_find_light = false;   ///< whether BSDF samples may find an emitter or the environment
+    bool specular_light_samples =
+        false; ///< whether lights are sampled at mirrors and glass, too, which cannot reflect them
+    bool needs_medium_stack =
+        false; ///< whether a dielectric absorbs or has a priority, so that paths need a medium stack
+    bool black_shadow_rays = false; ///< whether shadow rays are traced even if the surface reflects none of the light
+    BatchedSurfaces batched;        ///< surfaces at which paths are scattered in batches (wavefront/batch.h)
+    int max_depth = 0;
+    bool russian_roulette = false;  ///< whether roulette may end paths after more than one scattering
+    float survival_factor =
+        kDefaultSurvivalFactor; ///< survival probability divided by throughput; see estimate_survival_factor
+    std::optional<PixelFootprint>
+        pixel_footprint; ///< of a ray that covers a whole pixel; empty if no texture is filtered
+    bool lens = false;   ///< whether rays start at points sampled on the lens
+    bool motion = false; ///< whether rays have sampled times
+
+private:
+    std::vector<std::optional<Bsdf>> no_bsdfs_; ///< what bsdfs points to if each BSDF is to be made at the hit
+};
+
+/// Returns what the plan leaves out, and why.
+std::vector<SkippedWork> skipped(const RenderPlan& plan, const PathTracerSettings& settings);
+/// Returns what the integrator leaves out although the scene has it.
+std::vector<std::string> approximations(const RenderPlan& plan, const PathTracerSettings& settings);
+
+} // namespace duet::raytrace

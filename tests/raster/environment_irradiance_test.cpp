@@ -1,0 +1,97 @@
+#include "raster/lighting/environment_irradiance.h"
+
+#include <doctest/doctest.h>
+
+#include <random>
+
+using namespace duet;
+using namespace duet::raster;
+
+namespace {
+
+/// Returns a lat-long image of a function of direction.
+template <typename F> Environment picture(int width, F radiance_of, float rotation = 0) {
+    const int height = width / 2;
+    ImageRgb image(width, height);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const double theta = kPiDouble * (y + 0.5) / height, longitude = 2 * kPiDouble * ((x + 0.5) / width - 0.5);
+            image(x, y) = radiance_of(Vec3(
+                Vec3d(std::sin(theta) * std::sin(longitude), std::cos(theta), -std::sin(theta) * std::cos(longitude))));
+        }
+    return make_image_environment(std::move(image), 1, rotation);
+}
+
+std::vector<Vec3> directions() {
+    std::mt19937 engine(3);
+    std::normal_distribution<float> normal;
+    std::vector<Vec3> result{{0, 1, 0}, {0, -1, 0}, {1, 0, 0}, {0, 0, -1}};
+    for (int i = 0; i < 60; ++i) result.push_back(normalize(Vec3(normal(engine), normal(engine), normal(engine))));
+    return result;
+}
+
+} // namespace
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("a picture of a constant gives π times it") {
+        const Environment environment = picture(64, [](Vec3) { return Rgb(0.5f, 1.0f, 2.0f); });
+        const Irradiance irradiance(environment, 2);
+        CHECK_FALSE(irradiance.is_closed_form());
+        for (const Vec3 n : directions()) {
+            const Rgb e = irradiance.at(environment, n);
+            CHECK(e.r == doctest::Approx(0.5 * kPiDouble).epsilon(1e-3));
+            CHECK(e.g == doctest::Approx(1.0 * kPiDouble).epsilon(1e-3));
+            CHECK(e.b == doctest::Approx(2.0 * kPiDouble).epsilon(1e-3));
+        }
+    }
+
+    TEST_CASE("a picture of the sky gradient gives the sky's closed form") {
+        const SkyEnvironment sky{{1.0f, 0.8f, 0.6f}, {0.2f, 0.5f, 1.0f}};
+        const Environment closed = sky;
+        const Environment environment = picture(256, [&](Vec3 w) { return lerp(sky.down, sky.up, (w.y + 1) / 2); });
+        const Irradiance exact(closed, 1), harmonic(environment, 2);
+        CHECK(exact.is_closed_form());
+        for (const Vec3 n :
+             // The radiance is linear in the direction, so spherical harmonics of the first order are exact except
+             // for the image's resolution.
+             directions())
+            for (std::size_t c = 0; c < 3; ++c)
+                CHECK(harmonic.at(environment, n)[c] == doctest::Approx(exact.at(closed, n)[c]).epsilon(2e-3));
+    }
+
+    TEST_CASE("second-order detail, and the picture's rotation, against the integral") {
+        const auto light = [](Vec3 w) { return Rgb(1 + w.x * w.z + 0.5f * w.y * w.y, 1 + 0.4f * w.x, 1 - w.x * w.y); };
+        const Environment environment = picture(256, light, 0.7f);
+        const Irradiance irradiance(environment, 2);
+        for (const Vec3 n : {Vec3(0, 1, 0), Vec3(1, 0, 0), normalize(Vec3(1, 2, 3)), normalize(Vec3(-1, -1, 0.5f))}) {
+            Rgbd sum;
+            constexpr int kRings = 200, kSectors = 400;
+            for (int i = 0; i < kRings; ++i)
+                for (int k = 0; k < kSectors; ++k) {
+                    const double y = 1 - 2 * (i + 0.5) / kRings, phi = 2 * kPiDouble * (k + 0.5) / kSectors;
+                    const double ring = std::sqrt(1 - y * y);
+                    const Vec3 w(Vec3d(ring * std::cos(phi), y, ring * std::sin(phi)));
+                    const double weight =
+                        static_cast<double>(max(0.0f, dot(w, n))) * 4 * kPiDouble / (kRings * kSectors);
+                    sum += Rgbd(radiance(environment, w)) * weight;
+                }
+            for (std::size_t c = 0; c < 3; ++c)
+                CHECK(irradiance.at(environment, n)[c] == doctest::Approx(sum[c]).epsilon(3e-3));
+        }
+    }
+
+    TEST_CASE("a small bright sun never gives negative irradiance") {
+        const Environment environment = picture(128, [](Vec3 w) { return w.y > 0.99f ? Rgb(1000.0f) : Rgb(0.0f); });
+        const Irradiance irradiance(environment, 2);
+        for (const Vec3 n : directions())
+            CHECK(min(min(irradiance.at(environment, n).r, irradiance.at(environment, n).g),
+                      irradiance.at(environment, n).b) >= 0);
+    }
+
+    TEST_CASE("the projection is the same for any number of threads") {
+        const Environment environment = picture(128, [](Vec3 w) { return Rgb(1 + w.x, 1 + w.y, 1 + w.z); });
+        const Irradiance one(environment, 1), seven(environment, 7);
+        for (const Vec3 n : directions()) CHECK(one.at(environment, n) == seven.at(environment, n));
+    }
+}

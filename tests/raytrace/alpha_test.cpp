@@ -1,0 +1,145 @@
+// These tests check which rays hit alpha-masked and partly transparent surfaces.
+#include "tests/raytrace/estimates.h"
+#include "tests/raytrace/scene_builder.h"
+#include "raytrace/acceleration/accelerator.h"
+
+#include <doctest/doctest.h>
+
+#include <random>
+
+using namespace duet;
+using namespace duet::raytrace;
+
+namespace {
+
+/// Returns a square at z = 0 with the given opacity (a texture whose left half is transparent) and an opaque one
+/// behind it at z = -1.
+Scene two_squares(SurfaceMaps maps) {
+    SceneBuilder builder;
+    ImageRgb halves(64, 1);
+    for (int x = 0; x < 64; ++x) halves(x, 0) = Rgb(x < 32 ? 0.0f : 1.0f);
+    builder.scene.textures = {{ImageTexture{0, {1, 1}, TextureFilter::kNearest}}, {halves}};
+    const std::uint32_t front = builder.material(Diffuse{}), back = builder.material(Diffuse{{Rgb(0.25f)}});
+    builder.add(quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}), front);
+    builder.add(quad({-1, -1, -1}, {2, 0, 0}, {0, 2, 0}), back);
+    builder.scene.maps = {maps};
+    return builder.finish();
+}
+
+SurfaceMaps half_open() {
+    SurfaceMaps maps;
+    maps.opacity = {1, 0};
+    return maps;
+}
+SurfaceMaps veil(float opacity) {
+    SurfaceMaps maps;
+    maps.opacity = opacity;
+    return maps;
+}
+
+} // namespace
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("rays go through holes, and only there; many at once and one by one alike") {
+        const Scene scene = two_squares(half_open());
+        REQUIRE(scene.needs.alpha);
+        const Accelerator accelerator(scene, 1);
+        std::mt19937 random(1);
+        std::uniform_real_distribution<float> uniform(-0.99f, 0.99f);
+        std::vector<Ray> rays;
+        for (int i = 0; i < 500; ++i) rays.push_back({{uniform(random), uniform(random), 2}, {0, 0, -1}});
+        std::vector<Hit> hits(rays.size());
+        accelerator.closest(rays, hits);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            const bool hole = rays[i].origin.x < 0;
+            CHECK(hits[i].object == (hole ? 1u : 0u));
+            CHECK(hits[i].t == doctest::Approx(hole ? 3 : 2));
+            CHECK(accelerator.closest(rays[i]) == hits[i]);
+            Hit end;
+            end.t = 2.5f; // between the squares
+            CHECK(accelerator.occluded(rays[i], end) == !hole);
+            end.t = 4;
+            CHECK(accelerator.occluded(rays[i], end));
+            end.object = 1; // the shadow ray targets the back square, which does not occlude itself
+            end.primitive = 0;
+            end.t = 3;
+            CHECK(accelerator.occluded(rays[i], end) == !hole);
+        }
+    }
+
+    TEST_CASE("a cutoff makes surfaces whole or holes") {
+        SurfaceMaps maps = half_open();
+        maps.opacity.value = 0.6f;
+        maps.cutoff = 0.5f;
+        const Scene scene = two_squares(maps);
+        const Accelerator accelerator(scene, 1);
+        for (float x = -0.95f; x < 1; x += 0.1f)
+            CHECK(accelerator.closest(Ray{{x, 0.1f, 1}, {0, 0, -1}}).object == (x < 0 ? 1u : 0u));
+    }
+
+    TEST_CASE("a scene without holes has no opacity to test") {
+        const Scene scene = two_squares({});
+        CHECK_FALSE(scene.needs.alpha);
+        const Accelerator accelerator(scene, 1);
+        CHECK(accelerator.closest(Ray{{-0.5f, 0.1f, 1}, {0, 0, -1}}).object == 0u);
+    }
+}
+
+TEST_SUITE("statistical") {
+
+    TEST_CASE("what is partly there stops its part of the rays") {
+        for (const float opacity : {0.1f, 0.5f, 0.85f}) {
+            const Scene scene = two_squares(veil(opacity));
+            const Accelerator accelerator(scene, 1);
+            std::mt19937 random(2);
+            std::uniform_real_distribution<float> uniform(-0.99f, 0.99f);
+            constexpr int kRays = 40000;
+            int stopped = 0;
+            for (int i = 0; i < kRays; ++i)
+                stopped += accelerator.closest(Ray{{uniform(random), uniform(random), 2}, {0, 0, -1}}).object == 0;
+            const double p = static_cast<double>(opacity), deviation = std::sqrt(p * (1 - p) / kRays);
+            CHECK(std::abs(stopped / static_cast<double>(kRays) - p) < 4.5 * deviation); // odds 7e-6 each
+        }
+    }
+
+    TEST_CASE("a lamp that shows a picture: light sampling finds the light that chance finds") {
+        for (const int kind : {0, 1, 2}) { // quad, triangle, sphere
+            SceneBuilder builder;
+            ImageRgb picture(8, 4);
+            for (std::size_t i = 0; i < 32; ++i)
+                picture[i] = Rgb(i % 5 == 0 ? 1.0f : 0.1f * static_cast<float>(i % 7));
+            builder.scene.textures = {{ImageTexture{0}}, {picture}};
+            Emissive lamp{Rgb(5.0f), true, {}};
+            lamp.radiance_texture = 0;
+            const std::uint32_t light = builder.material(lamp), grey = builder.material(Diffuse{});
+            if (kind == 0) builder.add(quad({-0.5f, 1, 0.5f}, {1, 0, 0}, {0, 0, -1}), light);
+            if (kind == 1) {
+                Mesh mesh;
+                mesh.positions = {{-0.5f, 1, 0.5f}, {0.7f, 1, 0.4f}, {0, 1.1f, -0.5f}};
+                mesh.uvs = {{0, 0}, {1, 0.2f}, {0.4f, 1}};
+                mesh.triangles = {{0, 1, 2}};
+                builder.add(mesh, light);
+            }
+            if (kind == 2) builder.add(Sphere{{0, 1, 0}, 0.4f}, light);
+            builder.add(quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}), grey);
+            builder.scene.camera.eye = {0, 0.6, 3};
+            builder.scene.camera.look_at = {0, 0, 0};
+            builder.scene.camera.fov_degrees = 20;
+            const Scene scene = builder.finish();
+            REQUIRE(scene.needs.emitter_textures);
+            PathTracerSettings settings;
+            settings.samples_per_pixel = 256;
+            settings.max_depth = 1;
+            const Estimate sampled = estimate(scene, 16, settings);
+            settings.integrator = Integrator::kNaive;
+            settings.samples_per_pixel = 2048;
+            const Estimate found = estimate(scene, 16, settings);
+            CAPTURE(kind);
+            CAPTURE(sampled.mean);
+            CAPTURE(found.mean);
+            CHECK(sampled.mean > 0.05);
+            CHECK(deviations(sampled, found) < 6); // see deviations()
+        }
+    }
+}
