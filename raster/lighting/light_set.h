@@ -31,7 +31,7 @@ struct LightField {
 struct LightsOfCluster {
     std::vector<std::uint32_t> near, far; ///< columns of a LightSet; `field` holds the irradiance of the far ones
     LightField field;
-    std::vector<float, CacheAligned<float>> error, distant; ///< scratch memory, one number per light
+    std::vector<float, CacheAlignedAllocator<float>> error, distant; ///< scratch memory, one number per light
 };
 
 /// Holds bounds of lights as a structure of arrays.
@@ -90,7 +90,7 @@ private:
 
     std::vector<std::uint32_t> lights_;
     std::size_t stride_ = 0;
-    std::vector<float, CacheAligned<float>> bounds_; ///< kRows rows with a column per light, and padding
+    std::vector<float, CacheAlignedAllocator<float>> bounds_; ///< kRows rows with a column per light, and padding
 };
 
 } // namespace duet::raster

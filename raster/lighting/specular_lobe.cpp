@@ -54,7 +54,7 @@ struct Columns {
 
 Columns steepness_columns(const Floats& alpha, const Floats& cosine) {
     const Floats width = clamp(alpha, Floats(sqr(GgxAlbedoTables::kSmoothest)), Floats(1.0f));
-    return Columns(GgxAlbedoTables::steepness(width, cosine), GgxAlbedoTables::kSide);
+    return Columns(GgxAlbedoTables::steepness(width, cosine), GgxAlbedoTables::kSize);
 }
 
 } // namespace
@@ -94,7 +94,7 @@ void LobeLookup::for_each_alpha(const Floats& alpha, const xsimd::batch_bool<flo
 
 LobeTables LobeLookup::operator()(const Floats& alpha, const Floats& cosine, const xsimd::batch_bool<float>& lanes) {
     const Columns by_angle(xsimd::sqrt(max(Floats(1.0f) - cosine, Floats(0.0f))), kLobeSide);
-    const Columns by_height(xsimd::sqrt(cosine), GgxAlbedoTables::kSide);
+    const Columns by_height(xsimd::sqrt(cosine), GgxAlbedoTables::kSize);
     const Columns by_steepness = steepness_columns(alpha, cosine);
     LobeTables result{};
     for_each_alpha(alpha, lanes, [&](const xsimd::batch_bool<float>& equal) {

@@ -88,7 +88,7 @@ TEST_SUITE("lesson") {
                 const float fraction =
                     lesson::lit_fraction(map, Vec3(p), lesson::slope_bias(map, to_sun, {0, 1, 0}, 3), 3);
                 if (fraction > 0 && fraction < 1) continue;
-                const auto found = library.place(p, raster::ShadowMap::kMargin);
+                const auto found = library.project(p, raster::ShadowMap::kMargin);
                 REQUIRE(found);
                 REQUIRE(library.lit_fraction({p, {0, 1, 0}, 0}, *found) == fraction);
                 REQUIRE(is_blocked(scene.world, p, Vec3d(to_sun)) == (fraction == 0));

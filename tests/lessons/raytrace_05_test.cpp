@@ -22,7 +22,7 @@ TEST_SUITE("lesson") {
             if (!hit || !hit->front) continue;
             ++rays;
             const Vec3 direction = lesson::random_diffuse_direction(hit->n, random);
-            const Vec3 origin = lesson::beyond_error(sphere, *hit);
+            const Vec3 origin = lesson::offset_point(sphere, *hit);
             at_once += lesson::hit_sphere(sphere, {hit->p, direction}).has_value();
             beyond += lesson::hit_sphere(sphere, {origin, direction}).has_value();
             library += intersect_sphere({origin, direction}, {sphere.center, radius}).has_value();

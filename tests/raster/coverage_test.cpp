@@ -212,45 +212,45 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("a batch's outlines, coverage_masks and fragments are sorted by tile, in their order within each") {
+    TEST_CASE("a batch's triangles, coverage masks and fragments are sorted by tile, in their order within each") {
         Random random(7);
         TileSorter sorter;
         for (int trial = 0; trial < 20; ++trial) {
             constexpr std::size_t kTiles = 50;
             Batch batch;
-            std::vector<TileSorter::Touch> touches, patch_touches;
-            std::array<std::vector<std::uint32_t>, kTiles> wanted, wanted_patches, wanted_fragments;
+            std::vector<TileSorter::TileOverlap> triangle_overlaps, mask_overlaps;
+            std::array<std::vector<std::uint32_t>, kTiles> wanted, wanted_masks, wanted_fragments;
             for (std::uint32_t i = 0; i < 500; ++i) {
                 const auto tile = static_cast<std::uint32_t>(random.integer(0, kTiles - 1) * random.integer(0, 1));
-                touches.push_back({tile, i});
+                triangle_overlaps.push_back({tile, i});
                 wanted[tile].push_back(i);
                 const auto other = static_cast<std::uint32_t>((tile + 7) % kTiles);
-                patch_touches.push_back({other, i});
-                wanted_patches[other].push_back(i);
+                mask_overlaps.push_back({other, i});
+                wanted_masks[other].push_back(i);
                 Fragment fragment;
                 fragment.id = i;
                 fragment.tile = static_cast<std::uint16_t>(kTiles - 1 - tile);
                 batch.fragments.push_back(fragment);
                 wanted_fragments[kTiles - 1 - tile].push_back(i);
             }
-            sorter.sort(batch, touches, patch_touches, kTiles);
+            sorter.sort(batch, triangle_overlaps, mask_overlaps, kTiles);
             const std::vector<Batch> batches{batch};
-            TileLists outlines, coverage_masks, fragments;
-            outlines.gather(batches, &Batch::triangle_segments, kTiles);
-            coverage_masks.gather(batches, &Batch::patch_segments, kTiles);
+            TileLists triangles, coverage_masks, fragments;
+            triangles.gather(batches, &Batch::triangle_segments, kTiles);
+            coverage_masks.gather(batches, &Batch::mask_segments, kTiles);
             fragments.gather(batches, &Batch::fragment_segments, kTiles);
             for (std::size_t tile = 0; tile < kTiles; ++tile) {
-                std::vector<std::uint32_t> found, found_patches, found_fragments;
-                for (const TileLists::Item& item : outlines.tile(tile))
+                std::vector<std::uint32_t> found, found_masks, found_fragments;
+                for (const TileLists::Item& item : triangles.tile(tile))
                     for (std::uint32_t k = 0; k < item.count; ++k) found.push_back(batch.order[item.first + k]);
                 for (const TileLists::Item& item : coverage_masks.tile(tile))
                     for (std::uint32_t k = 0; k < item.count; ++k)
-                        found_patches.push_back(batch.patch_order[item.first + k]);
+                        found_masks.push_back(batch.mask_order[item.first + k]);
                 for (const TileLists::Item& item : fragments.tile(tile))
                     for (std::uint32_t k = 0; k < item.count; ++k)
                         found_fragments.push_back(batch.fragments[item.first + k].id);
                 REQUIRE(found == wanted[tile]);
-                REQUIRE(found_patches == wanted_patches[tile]);
+                REQUIRE(found_masks == wanted_masks[tile]);
                 REQUIRE(found_fragments == wanted_fragments[tile]);
             }
         }
@@ -310,8 +310,8 @@ TEST_SUITE("unit") {
         compare::SetupTriangles setup;
         const std::array<FixedPoint, 3> corners{{{0, 0}, {kFull, 0}, {0, kFull}}};
         for (std::uint32_t id = 0; id < 4; ++id) {
-            setup.wholes.push_back({vertex(0, 0), vertex(kSize, 0), vertex(0, kSize)});
-            setup.triangles.push_back(set_up_triangles(setup.wholes[id], corners, id, false, viewport));
+            setup.source_triangles.push_back({vertex(0, 0), vertex(kSize, 0), vertex(0, kSize)});
+            setup.triangles.push_back(set_up(setup.source_triangles[id], corners, id, false, viewport));
         }
         std::vector<std::size_t> order{0, 1, 2, 3};
         do {

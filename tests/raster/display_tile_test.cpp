@@ -259,7 +259,7 @@ TEST_SUITE("unit") {
         for (int trial = 0; trial < 30; ++trial) {
             struct SetupTriangles : raster::UnclippedTriangles {
                 std::vector<raster::UnclippedTriangle> wholes;
-                std::vector<raster::DrawTriangle> outlines;
+                std::vector<raster::DrawTriangle> triangles;
                 raster::UnclippedTriangle unclipped(std::uint32_t id) const override { return wholes[id]; }
             } setup;
             for (std::uint32_t id = 0; id < 40; ++id) {
@@ -274,16 +274,16 @@ TEST_SUITE("unit") {
                 std::array<raster::FixedPoint, 3> p{snap(t.a), snap(t.b), snap(t.c)};
                 if (raster::doubled_area(p[0], p[1], p[2]) < 0) std::swap(p[1], p[2]);
                 if (raster::doubled_area(p[0], p[1], p[2]) != 0)
-                    setup.triangles.push_back(set_up_triangles(t, p, id, false, viewport));
+                    setup.triangles.push_back(raster::set_up(t, p, id, false, viewport));
             }
             raster::DepthTile together, alone;
             together.reset({0, 0, 128, 128}, {}, viewport);
             Image<float> nearest(128, 128, 0.0f);
             Image<std::uint32_t> id(128, 128, raster::kNoTriangle);
-            for (const raster::DrawTriangle& outline : setup.triangles) {
-                together.draw(outline, setup);
+            for (const raster::DrawTriangle& triangle : setup.triangles) {
+                together.draw(triangle, setup);
                 alone.reset({0, 0, 128, 128}, {}, viewport);
-                alone.draw(outline, setup);
+                alone.draw(triangle, setup);
                 for (int y = 0; y < 128; ++y)
                     for (int x = 0; x < 128; ++x) {
                         if (!(alone.reversed_depth(x, y) > nearest(x, y))) continue;
