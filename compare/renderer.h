@@ -23,7 +23,7 @@ struct Renderer {
     std::string name;       ///< "raster" or "raytrace"
     RenderFunction render_image; ///< renders the full image
     RenderFunction render_hits;  ///< renders Rendering::hit: one ray per pixel through its center and the lens center,
-                                ///< when the shutter opens
+                                 ///< when the shutter opens
     double prepare_seconds = 0;
 };
 

@@ -64,8 +64,8 @@ inline PointOnShapeT<T> point_on_sphere(const Vec3T<T>& center, T radius, const 
 /// Twice the bound of one rounding to float.
 inline constexpr double kPointRounding = 2 * static_cast<double>(kRoundoff<float>);
 
-/// Sets the shading normal, and the shading-terminator fix by the offset to the smooth surface. The other fields must have been set. T is float
-/// or a batch of floats.
+/// Sets the shading normal, and the shading-terminator fix by the offset to the smooth surface. The other fields must
+/// have been set. T is float or a batch of floats.
 template <typename T> inline void set_shading_normal(SurfaceGeometryT<T>& point, Vec3T<T> ns, Vec3T<T> offset) {
     ns = select(is_finite(ns), ns, point.ng);
     point.ns = select(dot(ns, point.ng) < T(0), -ns, ns);

@@ -10,7 +10,9 @@ struct LobesOf {
 
     SurfaceLobes operator()(const DiffuseBsdf& b) const { return {.diffuse = b.albedo, .specular = {}}; }
     /// The directional albedo is exact under uniform light, and close under light from an area.
-    SurfaceLobes operator()(const RoughDiffuseBsdf& b) const { return {.diffuse = b.directional_albedo(cosine), .specular = {}}; }
+    SurfaceLobes operator()(const RoughDiffuseBsdf& b) const {
+        return {.diffuse = b.directional_albedo(cosine), .specular = {}};
+    }
     SurfaceLobes operator()(const MetalBsdf& b) const {
         return {.diffuse = {}, .specular = b.reflectance, .alpha = b.alpha};
     }

@@ -19,7 +19,8 @@ struct LightField {
         const Vec3T<T> q = (p - broadcast<T>(center)) * broadcast<T>(inverse_extent);
         const auto channel = [&](const std::array<Vec3, 4>& v) {
             const auto axis = [&](float Vec3::*c) {
-                return multiply_add(T(v[1].*c), q.x, multiply_add(T(v[2].*c), q.y, multiply_add(T(v[3].*c), q.z, T(v[0].*c))));
+                return multiply_add(T(v[1].*c), q.x,
+                                    multiply_add(T(v[2].*c), q.y, multiply_add(T(v[3].*c), q.z, T(v[0].*c))));
             };
             return max(T(dot(Vec3T<T>(axis(&Vec3::x), axis(&Vec3::y), axis(&Vec3::z)), n)), T(0));
         };

@@ -20,8 +20,8 @@ Color black_outside(const Lanes& lanes, const Color& c) {
     return {xsimd::select(lanes, c.r, kNone), xsimd::select(lanes, c.g, kNone), xsimd::select(lanes, c.b, kNone)};
 }
 
-/// Returns ggx_multiple_scattering(…)·lost(wo): the BRDF of the light that leaves after several reflections between microfacets,
-/// over lost(wi). `normal` is the reflectance at normal incidence.
+/// Returns ggx_multiple_scattering(…)·lost(wo): the BRDF of the light that leaves after several reflections between
+/// microfacets, over lost(wi). `normal` is the reflectance at normal incidence.
 Color several_reflections(const Color& normal, const LobeTables& tables) {
     constexpr float kLeast = 0.004f; // as in ggx_multiple_scattering: what narrow lobes lose is neglected
     const Floats mean = max(tables.mean_lost, Floats(kLeast));

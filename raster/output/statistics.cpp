@@ -103,9 +103,9 @@ std::vector<std::string> list_approximations(const RasterSceneData& data, const 
     if (data.irradiance_probes) {
         add_if(true, "Light between surfaces is interpolated from irradiance probes; caustics are left out.");
         add_if(!scene.lights.empty() && settings.shadows,
-             "Shadows come from shadow maps; those of area lights use few taps per pixel.");
+               "Shadows come from shadow maps; those of area lights use few taps per pixel.");
         add_if(data.reflection_probes != nullptr,
-             "Reflections and glass show the image, or probes that see the scene from one point per object.");
+               "Reflections and glass show the image, or probes that see the scene from one point per object.");
         return result;
     }
 

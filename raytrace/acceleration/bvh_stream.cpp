@@ -132,7 +132,8 @@ public:
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const std::size_t high = std::bit_cast<std::uint32_t>(sign_[axis][ray]) >> 31;
             const auto slab = [&](std::size_t plane, float offset) {
-                return multiply_add(Batch::load_aligned(node.planes[plane].data()), Batch(scale_[axis][ray]), Batch(offset));
+                return multiply_add(Batch::load_aligned(node.planes[plane].data()), Batch(scale_[axis][ray]),
+                                    Batch(offset));
             };
             near = xsimd::max(slab(axis + 3 * high, near_[axis][ray]), near);
             far = xsimd::min(slab(axis + 3 - 3 * high, far_[axis][ray]), far);

@@ -141,7 +141,8 @@ TEST_SUITE("unit") {
             const Vec3 place = gbuffer->project(gbuffer->to_eye_relative(to));
             CHECK(std::abs(hit->x - place.x) < 1);
             CHECK(std::abs(hit->y - place.y) < 1);
-            const Rgb seen = around.incoming_radiance({.p = p, .n = n, .direction = direction, .from_visible_surface = false});
+            const Rgb seen =
+                around.incoming_radiance({.p = p, .n = n, .direction = direction, .from_visible_surface = false});
             CHECK(seen.r < 0.2f); // from the sky
             CHECK(std::abs(seen.g - seen.b) > 0.02f);
             CHECK((seen.g > seen.b) == (x < 0));

@@ -587,7 +587,8 @@ TEST_SUITE("unit") {
                     if (hits(x, y).object != object) continue;
                     const bool is_weak = hits(x, y).primitive == 0;
                     ++(is_weak ? weak : strong);
-                    wrong += gbuffer->color_prepass().radiance_without_lights.finest()(x, y) != (is_weak ? Rgb(3.0f) : Rgb(0.0f));
+                    wrong += gbuffer->color_prepass().radiance_without_lights.finest()(x, y) !=
+                             (is_weak ? Rgb(3.0f) : Rgb(0.0f));
                 }
             CHECK(weak > 2);
             CHECK(strong > 500);

@@ -24,7 +24,8 @@ void index_groups(const Scene& scene, const std::vector<SceneNode>& nodes, Group
             const auto [entry, added] = groups.try_emplace(node.name, &node);
             if (!added)
                 fail_at(scene, node,
-                        "a second group of the name " + quoted_text(node.name) + "; the first is " + entry->second->path);
+                        "a second group of the name " + quoted_text(node.name) + "; the first is " +
+                            entry->second->path);
         }
         index_groups(scene, node.members, groups);
     }
