@@ -48,7 +48,7 @@ std::uint32_t parse_number(const std::filesystem::path& path, const std::string&
     std::uint32_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size())
-        throw Error(message(path.string(), ": ", kPrefix, kFirstSample, ": found ", text, ", expected a parse_number"));
+        throw Error(message(path.string(), ": ", kPrefix, kFirstSample, ": found ", text, ", expected a number"));
     return value;
 }
 

@@ -213,7 +213,7 @@ constexpr StressTest kTests[] = {
      .required_fraction = 0.15},
     {.name = "projection/depth",
      .what =
-         "distance and reversed_depth (near/depth) are right on triangles whose corners are up to 1000 times as far as "
+         "distance and reversed depth (near/depth) are right on triangles whose corners are up to 1000 times as far as "
          "others",
      .bound = 1.01,
      .unit = "2^-24 of itself",
@@ -237,7 +237,7 @@ constexpr StressTest kTests[] = {
      .what = "of triangles at the same place and depth the one of the lowest number is seen, in any order of drawing",
      .bound = 0,
      .unit = "wrong samples",
-     .source = "each triangle drawn by itself, and the rule applied by hand: of equal reversed_depth the lower number",
+     .source = "each triangle drawn by itself, and the rule applied by hand: of equal reversed depth the lower number",
      .naive = "nearer replaces, else whoever came first stays",
      .trials = 10'000,
      .run = draw_order},

@@ -16,7 +16,7 @@ public:
         : from_(gbuffer.project(p)), perspective_(gbuffer.perspective()) {
         if (!(from_.z > 0)) return;
         const float deeper = gbuffer.homogeneous_change(direction)[2]; // depth gained per meter
-        // The ray ends at the near plane, or at a depth beyond which its projection hardly spans_pixels.
+        // The ray ends at the near plane, or at a depth beyond which its projection spans hardly a pixel.
         const float nearest = std::min(from_.z, std::max(gbuffer.near(), 1e-4f * from_.z));
         const float to_nearest = deeper < 0 ? (from_.z - nearest) / -deeper : kInfinity, farthest = 1e3f * from_.z;
         reach_ = std::min(to_nearest, farthest);

@@ -311,7 +311,7 @@ private:
         return as_hidden(approximate_hit(source_.at(end.x, end.y), middle(end.x), middle(end.y), hidden_since_));
     }
 
-    /// Returns a hit at a distance with the color of a pixel, as a approximate_hit.
+    /// Returns a hit at a distance with the color of a pixel, as an approximate hit.
     ScreenHit approximate_hit(const ScreenGBuffer& gbuffer, float x, float y, float distance) const {
         const std::optional<Vec3> seen = gbuffer.visible_point(static_cast<int>(x), static_cast<int>(y));
         return {x, y, distance, seen ? length(*seen - ray_.p - ray_.direction * distance) : 0.0f};
@@ -392,7 +392,7 @@ bool ReflectionSource::shows_one_object(float x, float y, float reach) const {
 }
 
 bool ReflectionSource::includes_own(float x, float y, float reach) const {
-    if (behind_object != nullptr) return false; // the layer behind_object this object does not contain it
+    if (behind_object != nullptr) return false; // the layer without this object does not contain it
     for (const float dx : {-reach, reach})
         for (const float dy : {-reach, reach}) {
             const auto [column, row] = image.pixel_at({x + dx, y + dy, 0});

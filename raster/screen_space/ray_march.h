@@ -14,7 +14,7 @@ namespace duet::raster {
 /// direction.
 struct ReflectionSource {
     const ScreenGBuffer& image; ///< has a color prepass
-    /// This is the same view behind_object the front surface of each pixel, or null if nothing is transparent.
+    /// This is the same view without the front surface of each pixel, or null if nothing is transparent.
     const ScreenGBuffer* behind_object = nullptr;
     std::uint32_t object = kNoObject; ///< the object that reflects or refracts
 
@@ -60,7 +60,7 @@ struct ScreenRay {
     Vec3 p; ///< relative to the eye, inside or outside the image
     Vec3 n, direction;                ///< unit: normal of its surface; direction
     bool from_visible_surface = true; ///< p is on a visible surface, which the ray cannot hit at once
-    /// Lights that rays intersect directly (ScreenGBuffer::ColorPrepass::lamps) are ignored, as none is on the ray.
+    /// Lights that rays intersect directly (ScreenGBuffer::ColorPrepass::light_mask) are ignored, as none is on the ray.
     bool ignore_lights = false;
 };
 

@@ -36,7 +36,7 @@ inline constexpr float kMaxReflectionAlpha = 0.3f;
 constexpr float reflection_blur(float alpha) { return 4 * alpha; }
 constexpr float blur_to_alpha(float spread) { return 0.25f * spread; }
 
-/// Computes the radiance along a ray from the image and the scene's lists, behind_object ray tracing. Its sources are
+/// Computes the radiance along a ray from the image and the scene's lists, without ray tracing. Its sources are
 /// the visible surfaces (raster/screen_space/ray_march.h), the few lights at any position, and the environment as
 /// background.
 class ScreenSpaceTracer {

@@ -9,7 +9,7 @@ namespace duet::raster {
 class ScreenGBuffer; // raster/gbuffer/screen_gbuffer.h
 
 /// Holds the radiance towards the viewer as Shading::kLit approximates it. The parts sum to the color of the image. A
-/// part that RasterSettings::parts turns off is black.
+/// part that RasterSettings::components turns off is black.
 struct LightComponents {
     Rgb emission;    ///< directly visible emissive surfaces, and the environment as the background
     Rgb direct;      ///< from Scene::lights, reflected by diffuse surfaces and rough metal

@@ -20,7 +20,7 @@ Vec3 cell_direction(std::size_t face, int x, int y, int n) {
 } // namespace
 
 /// For each cell of directions, stores the least distance of any surface that may lie in the cone of a receiver in
-/// that cell. Every point of a cone is within the light's radius r of the row_depths from the light's center to the
+/// that cell. Every point of a cone is within the light's radius r of the line from the light's center to the
 /// receiver. So a surface at distance d and angle ψ from the receiver's direction can lie in the cone only if d sin ψ
 /// ≤ r.
 void AreaLightShadow::compute_closest() {

@@ -17,7 +17,7 @@ namespace duet::raster {
 /// does not depend on the drawing order.
 ///
 /// Samples are stored in blocks of 8 × 8 (tile_sample_index). Each block has a bound of its farthest sample; primitives
-/// entirely behind it are culled (Greene, Kass and Miller 1993, "Hierarchical Z-Buffer LightVisibility", with two
+/// entirely behind it are culled (Greene, Kass and Miller 1993, "Hierarchical Z-Buffer Visibility", with two
 /// levels).
 class DepthTile {
 public:

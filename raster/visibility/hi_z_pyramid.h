@@ -9,7 +9,7 @@
 namespace duet::raster {
 
 /// Holds the maxima of an image over blocks of 2 × 2, 4 × 4 … pixels (Greene, Kass and Miller 1993, "Hierarchical
-/// Z-Buffer LightVisibility", §3).
+/// Z-Buffer Visibility", §3).
 class HiZPyramid {
 public:
     explicit HiZPyramid(ImageFloat image);

@@ -10,7 +10,7 @@
 //     };
 //     Rendering image = draw(prepared, view, settings, Stripes{}, control);   // raster/draw.h
 //
-// LightVisibility is resolved first (an image of triangle ids). A fragment function therefore runs once for each packet
+// Visibility is resolved first (an image of triangle ids). A fragment function therefore runs once for each packet
 // of samples in which an object is visible; its results for other samples are discarded. A vertex function runs
 // only for the corners of visible triangles and for each sample of a sphere. Both are inlined into the loop over
 // packets. They can't change the position of a vertex in the image, which is computed exactly

@@ -60,7 +60,7 @@ private:
 // Loads the BSDFs of the paths, which all hold the type BsdfT<float>, number by number.
 template <template <typename> typename BsdfT> auto numbers_of_bsdfs(std::span<const BatchPath> paths) {
     // The numbers are loaded in rows of four. The last row overlaps the one before, or ends behind a BSDF of fewer
-    // random_samples, but within the Bsdf.
+    // numbers, but within the Bsdf.
     constexpr std::size_t kRow = 4, kNumbers = std::max(sizeof(BsdfT<float>) / sizeof(float), kRow);
     static_assert(kNumbers * sizeof(float) <= sizeof(Bsdf));
     std::array<const float*, kLanes> first;

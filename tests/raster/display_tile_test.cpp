@@ -145,7 +145,7 @@ TEST_SUITE("unit") {
             }
     }
 
-    TEST_CASE("a depth-only picture has the very reversed_depth that shading sees") {
+    TEST_CASE("a depth-only picture has the same reversed depth that shading sees") {
         for (const View& view : {perspective(), orthographic()}) {
             const Scene scene = varied_scene(90);
             raster::RasterSettings settings = phong(raster::Output::kReversedDepth);

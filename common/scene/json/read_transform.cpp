@@ -111,7 +111,7 @@ const char* transform_error(const MotionTransform& transform) {
         for (const double t : critical_times(transform))
             is_regular = is_regular && sign * determinant3(lerp(transform.start, transform.end, t)) > least;
         if (!is_regular)
-            return "the motion is_regular through a singular transform (matrix entries are interpolated: turn by less "
+            return "the motion passes through a singular transform (matrix entries are interpolated: turn by less "
                    "than "
                    "180 degrees)";
     }

@@ -61,9 +61,9 @@ inline PixelHit trace_pixel(const Scene& scene, const View& view, double x, doub
         if (!(distance > start) || distance == kInfinity) continue;
         const bool wins = mistakes.farthest ? pixel_hit.triangle < 0 || distance > pixel_hit.distance
                                             : mistakes.painter || distance < pixel_hit.distance;
-        if (wins) seen = {static_cast<int>(i), distance, distance * dot(d, view.forward)};
+        if (wins) pixel_hit = {static_cast<int>(i), distance, distance * dot(d, view.forward)};
     }
-    return seen;
+    return pixel_hit;
 }
 
 /// All triangles that rays through the point (x, y) and eight points around it see.

@@ -41,9 +41,9 @@ int mask_of_eight(const Edges& edges, int x, int y) {
 namespace {
 
 /// The triangle itself, in front of an orthographic camera at the depth 1.
-struct Whole : raster::WholeTriangles {
-    raster::WholeTriangle triangle;
-    raster::WholeTriangle whole(std::uint32_t) const override { return triangle; }
+struct SourceTriangle : raster::UnclippedTriangles {
+    raster::UnclippedTriangle triangle;
+    raster::UnclippedTriangle unclipped(std::uint32_t) const override { return triangle; }
 };
 
 } // namespace
@@ -51,18 +51,18 @@ struct Whole : raster::WholeTriangles {
 Image<int> cover(const std::array<GridPoint, 3>& corners, int width, int height) {
     const raster::Viewport viewport{width, height, 1e-6, true};
     const auto vertex = [](GridPoint p) { return raster::PixelVertex{p.x / 256.0, p.y / 256.0, 1, 1}; };
-    Whole whole;
-    whole.triangle = {vertex(corners[0]), vertex(corners[1]), vertex(corners[2])};
+    SourceTriangle source;
+    source.triangle = {vertex(corners[0]), vertex(corners[1]), vertex(corners[2])};
     const std::array<raster::FixedPoint, 3> grid{
         {{corners[0].x, corners[0].y}, {corners[1].x, corners[1].y}, {corners[2].x, corners[2].y}}};
-    const raster::DrawTriangle triangle = raster::set_up(whole.triangle, grid, 0, false, viewport);
+    const raster::DrawTriangle triangle = raster::set_up(source.triangle, grid, 0, false, viewport);
     Image<int> image(width, height, 0);
     const auto tile = std::make_unique<raster::DepthTile>();
     const raster::TileGrid tiles{{0, 0, width, height}};
     for (std::size_t i = 0; i < tiles.size(); ++i) {
         const raster::PixelRect rect = tiles.tile(i);
         tile->reset(rect, {}, viewport);
-        tile->draw(triangle, whole);
+        tile->draw(triangle, source);
         for (int y = rect.y0; y < rect.y1; ++y)
             for (int x = rect.x0; x < rect.x1; ++x) image(x, y) = tile->id(x, y) == 0;
     }
