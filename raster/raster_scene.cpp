@@ -1,11 +1,9 @@
 #include "raster/raster_scene.h"
 
 #include "raster/geometry/geometry.h"
-#include "raster/lighting/prefiltered_environment.h"
 #include "raster/probes/glass_shapes.h"
 #include "raster/probes/irradiance_probes.h"
 #include "raster/probes/reflection_probes.h"
-#include "raster/screen_space/screen_space_tracer.h"
 #include "raster/shading/deferred.h"
 #include "raster/shadows/map_shadows.h"
 #include "raster/shadows/shadows.h"
@@ -106,31 +104,6 @@ RasterObject prepare_object(const Scene& scene, const Object& object) {
     return result;
 }
 
-/// Selects the strongest area lights, because intersecting each reflected ray with all of them would take too long.
-void select_reflected_lights(RasterSceneData& data) {
-    const std::vector<Light>& lights = data.scene.lights;
-    for (std::size_t i = data.scene.first_surface_light; i < lights.size(); ++i) data.reflected_lights.push_back(i);
-    if (data.reflected_lights.size() <= ScreenSpaceTracer::kMaxReflectedLights) return;
-    const float radius = length(data.scene.bounds.diagonal()) / 2;
-    std::stable_sort(data.reflected_lights.begin(), data.reflected_lights.end(), [&](std::size_t a, std::size_t b) {
-        return light_power(lights[a], radius) > light_power(lights[b], radius);
-    });
-    data.unreflected_lights = data.reflected_lights.size() - ScreenSpaceTracer::kMaxReflectedLights;
-    data.reflected_lights.resize(ScreenSpaceTracer::kMaxReflectedLights);
-    std::sort(data.reflected_lights.begin(), data.reflected_lights.end());
-}
-
-/// Prefilters the environment for rough metal and frosted glass, so that the first frame is not delayed.
-void prepare_glossy(const RasterSettings& settings, RasterSceneData& data) {
-    const SceneNeeds& needs = data.scene.needs;
-    const bool mirrors =
-        settings.prefiltered_environment && settings.components.reflection && settings.environment && needs.environment;
-    if (mirrors) {
-        data.prefiltered = std::make_shared<const Prefiltered>(data.scene.environment, settings.threads);
-        data.memory_bytes += data.prefiltered->memory_bytes();
-    }
-}
-
 /// Renders the probes of deferred shading.
 void prepare_probes(const RasterSettings& settings, RasterSceneData& data) {
     const Scene& scene = data.scene;
@@ -148,6 +121,16 @@ void prepare_probes(const RasterSettings& settings, RasterSceneData& data) {
     data.glass_shapes = std::make_shared<const GlassShapes>(data, settings);
     data.memory_bytes += static_cast<std::int64_t>(data.environment_map->memory_bytes() +
                                                    data.reflection_probes->memory_bytes());
+}
+
+/// Renders what Shading::kLit reads: shadow maps, then the probes, whose light they shadow.
+void prepare_lit(const RasterSettings& settings, RasterSceneData& data) {
+    if (settings.shadows && !data.scene.lights.empty()) {
+        data.shadows = std::make_shared<const Shadows>(data, settings);
+        data.soft_shadows = std::make_shared<const SoftShadowMaps>(*data.shadows);
+        data.memory_bytes += data.shadows->memory_bytes();
+    }
+    prepare_probes(settings, data);
 }
 
 } // namespace
@@ -176,7 +159,6 @@ RasterScene prepare(const Scene& scene, const RasterSettings& settings) {
         data.unsampled_emitters =
             data.unsampled_emitters || ((object.moving || stretched) && any_emissive(scene, object));
     }
-    select_reflected_lights(data);
     std::size_t packed = 0;
     for (const PackedShape& shape : data.shapes)
         packed += shape.vertices.size() * sizeof(PackedVertex) + shape.halves.size() * sizeof(PackedShape::Triangle);
@@ -189,17 +171,7 @@ RasterScene prepare(const Scene& scene, const RasterSettings& settings) {
         throw Error(message("shadow maps of ", settings.shadow_map_side, " texels a side: expected 64 to 8192"));
     if (settings.shadow_cells < 1 || settings.shadow_cells > Shadows::kMaxCells)
         throw Error(message(settings.shadow_cells, " pieces a light's side: expected 1 to ", Shadows::kMaxCells));
-    const LightComponentSet& parts = settings.components; // a reflected image includes all parts
-    const bool direct =
-        parts.direct || (parts.reflection && (settings.screen_reflections || settings.screen_refractions));
-    if (settings.shadows && settings.shading == Shading::kLit && direct && !scene.lights.empty()) {
-        data.shadows = std::make_shared<const Shadows>(data, settings);
-        data.memory_bytes += data.shadows->memory_bytes();
-        if (settings.quality == Quality::kRealtime)
-            data.soft_shadows = std::make_shared<const SoftShadowMaps>(*data.shadows);
-    }
-    if (settings.shading == Shading::kLit && scene.needs.glossy) prepare_glossy(settings, data);
-    if (settings.shading == Shading::kLit && settings.quality == Quality::kRealtime) prepare_probes(settings, data);
+    if (settings.shading == Shading::kLit && settings.output != Output::kReversedDepth) prepare_lit(settings, data);
     return RasterScene(std::make_shared<const RasterSceneData>(std::move(data)));
 }
 

@@ -31,7 +31,6 @@ class IrradianceProbes; // raster/probes/irradiance_probes.h
 class RadianceMap; // raster/probes/radiance_map.h
 class ReflectionProbes; // raster/probes/reflection_probes.h
 class GlassShapes; // raster/probes/glass_shapes.h
-class Prefiltered; // raster/lighting/prefiltered_environment.h
 
 struct RasterSceneData {
     const Scene& scene;
@@ -41,12 +40,8 @@ struct RasterSceneData {
     /// The two lists hold the alpha-masked and alpha-blended objects, which are in neither list above
     /// (raster/shading/alpha_layers.h).
     std::vector<std::uint32_t> alpha_polygonal{}, alpha_spheres{};
-    /// The list holds those of `polygonal` and `spheres` that are all glass, in order
-    /// (raster/screen_space/screen_space_refraction.h).
+    /// The list holds those of `polygonal` and `spheres` that are all glass, in order (raster/probes/glass_shapes.h).
     std::vector<std::uint32_t> glass{};
-    /// The list holds the indices of the strongest area lights, in order. Reflections include them even off-screen.
-    std::vector<std::size_t> reflected_lights{};
-    std::size_t unreflected_lights = 0;   ///< number of the other area lights
     std::int64_t primitives = 0;          ///< triangles, quads and spheres of all objects
     Irradiance irradiance;                ///< from the environment
     std::vector<PackedShape> shapes{};    ///< parallel to Scene::shapes
@@ -62,7 +57,6 @@ struct RasterSceneData {
     std::shared_ptr<const RadianceMap> environment_map{}; ///< likewise, of the environment alone
     std::shared_ptr<const ReflectionProbes> reflection_probes{}; ///< likewise
     std::shared_ptr<const GlassShapes> glass_shapes{}; ///< likewise
-    std::shared_ptr<const Prefiltered> prefiltered{}; ///< null if the settings or the scene need none
     bool has_layers() const { return !alpha_polygonal.empty() || !alpha_spheres.empty(); }
     std::shared_ptr<GeometryPool> geometries{}; ///< memory that is reused from frame to frame
     std::shared_ptr<DeferredFramePool> deferred_frames{}; ///< likewise

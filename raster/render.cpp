@@ -1,6 +1,5 @@
 #include "raster/render.h"
 
-#include "raster/gbuffer/screen_gbuffer.h"
 #include "raster/geometry/geometry.h"
 #include "raster/output/alpha_depth.h"
 #include "raster/output/display_tile.h"
@@ -10,9 +9,7 @@
 #include "raster/shading/alpha_layers.h"
 #include "raster/shading/built_in_shaders.h"
 #include "raster/shading/deferred.h"
-#include "raster/shading/light_components.h"
-#include "raster/shading/screen_gbuffer_pass.h"
-#include "raster/shading/shade_sample.h"
+#include "raster/shading/sample_attributes.h"
 #include "raster/visibility/hit_lists.h"
 #include "raster/visibility/hit_tile.h"
 #include "raster/visibility/multisample.h"
@@ -73,23 +70,21 @@ PassView pass_view_of(const CameraModel& camera, const View& view, const Pass& p
             .samples = pass.samples};
 }
 
+/// Processes the geometry of a pass.
+void process_pass(const FrameContext& frame, const PassView& pass_view) {
+    process_geometry(frame.data, frame.grid, pass_view, frame.settings, frame.geometry);
+    frame.collector.add(frame.geometry);
+    if (frame.layers == nullptr) return;
+    process_layers(frame.data, frame.grid, pass_view, frame.settings, *frame.layers);
+    frame.collector.add(*frame.layers);
+}
+
 /// Renders one pass: processes its geometry, then calls render_tile(view, index) for each tile.
 template <typename RenderTile>
 void render_pass(const FrameContext& frame, const CameraModel& camera, const View& view, const Pass& pass,
                  const RenderTile& render_tile) {
-    PassView pass_view = pass_view_of(camera, view, pass);
-    process_geometry(frame.data, frame.grid, pass_view, frame.settings, frame.geometry);
-    frame.collector.add(frame.geometry);
-    if (frame.layers != nullptr) {
-        process_layers(frame.data, frame.grid, pass_view, frame.settings, *frame.layers);
-        frame.collector.add(*frame.layers);
-    }
-    const Stopwatch watch;
-    const std::unique_ptr<const ScreenGBuffer> gbuffer =
-        render_screen_gbuffer(frame.data, frame.settings, frame.grid, pass_view, frame.control);
-    pass_view.gbuffer = gbuffer.get();
-    frame.collector.prepass += watch.seconds();
-    if (gbuffer) frame.collector.add(*gbuffer, *frame.data.geometries);
+    const PassView pass_view = pass_view_of(camera, view, pass);
+    process_pass(frame, pass_view);
     const Stopwatch tiles_watch;
     parallel_for(frame.grid.size(), frame.settings.threads, [&](std::size_t i) {
         if (frame.control.stopped()) return;
@@ -128,35 +123,24 @@ void shade_tile(const FrameContext& frame, const PassView& view, const DepthTile
 bool has_layers_in(const FrameContext& frame, std::size_t tile) {
     return frame.layers != nullptr && overlaps_tile(*frame.layers, tile);
 }
-/// Returns true if the tile's radiance is computed sample by sample: always for Shading::kLit, and for any shading
-/// in front of which there are transparent layers.
-bool shades_per_sample(const FrameContext& frame, std::size_t tile) {
-    return frame.program == nullptr || has_layers_in(frame, tile);
-}
-/// Returns true if any output of the tile is computed sample by sample, auxiliary images included.
-bool needs_per_sample(const FrameContext& frame, std::size_t tile) {
-    return shades_per_sample(frame, tile) || frame.settings.aovs.any();
+/// Returns true if the tile's samples are visited one by one: for auxiliary images, and for a program in front of whose
+/// surfaces there are transparent layers.
+bool visits_samples(const FrameContext& frame, std::size_t tile) {
+    return frame.settings.aovs.any() || (frame.program != nullptr && has_layers_in(frame, tile));
 }
 
-/// Shades the samples of a tile one by one.
-void shade_samples(const FrameContext& frame, const PassView& view, std::size_t index, const DepthTile& depths,
+/// Visits the samples of a tile one by one. Adds their auxiliary values and, in front of transparent layers, the
+/// program's radiance.
+void visit_samples(const FrameContext& frame, const PassView& view, std::size_t index, const DepthTile& depths,
                    Framebuffer& framebuffer) {
     HitTile tile(depths, frame.geometry, view);
     std::optional<Layers> layers;
     if (has_layers_in(frame, index))
         layers.emplace(frame.data, frame.settings, frame.program, *frame.layers, view, depths.offset(), index, tile);
     const PixelRect& rect = depths.rect();
-    const bool central =
-        view.samples.size() == 1 && depths.offset().x == SampleOffset().x && depths.offset().y == SampleOffset().y;
     for (int y = rect.y0; y < rect.y1; ++y)
         for (int x = rect.x0; x < rect.x1; ++x) {
-            const Rgb* prepass_color =
-                central && !layers ? prepass_radiance(frame.data, frame.settings, tile, x, y) : nullptr;
-            if (prepass_color != nullptr) {
-                framebuffer.add(x, y, *prepass_color);
-                continue;
-            }
-            ShadedSample shaded = shade_sample(frame.data, frame.settings, tile, x, y);
+            ShadedSample shaded = sample_attributes(frame.data, frame.settings, tile, x, y);
             if (layers) {
                 if (frame.program != nullptr && tile.hit(x, y).valid())
                     shaded.radiance =
@@ -164,7 +148,7 @@ void shade_samples(const FrameContext& frame, const PassView& view, std::size_t 
                 shaded = layers->over(x, y, shaded);
             }
             if (frame.settings.aovs.any()) framebuffer.add_aovs(tile, x, y, shaded);
-            if (shades_per_sample(frame, index)) framebuffer.add(x, y, shaded.radiance);
+            if (layers && frame.program != nullptr) framebuffer.add(x, y, shaded.radiance);
         }
 }
 
@@ -178,21 +162,14 @@ void shade_layer(const FrameContext& frame, const PassView& view, const LayeredT
             for (int x = rect.x0; x < rect.x1; ++x)
                 if (const int count = tile.layer(layer).count(tile.sample_index(x, y)); count > 0) visit(x, y, count);
     };
-    if (frame.program == nullptr || frame.settings.aovs.any()) {
+    if (frame.settings.aovs.any()) {
         const HitTile hits(tile, layer, frame.geometry, view);
-        const int samples = static_cast<int>(view.samples.size());
         for_each([&](int x, int y, int count) {
-            if (const Rgb* prepass_color =
-                    count == samples ? prepass_radiance(frame.data, frame.settings, hits, x, y) : nullptr) {
-                framebuffer.add(x, y, *prepass_color, count);
-                return;
-            }
-            const ShadedSample shaded = shade_sample(frame.data, frame.settings, hits, x, y);
-            for (int i = 0; i < count && frame.settings.aovs.any(); ++i) framebuffer.add_aovs(hits, x, y, shaded);
-            if (frame.program == nullptr) framebuffer.add(x, y, shaded.radiance, count);
+            const ShadedSample attributes = sample_attributes(frame.data, frame.settings, hits, x, y);
+            for (int i = 0; i < count; ++i) framebuffer.add_aovs(hits, x, y, attributes);
         });
     }
-    if (frame.program == nullptr) return;
+    if (frame.program == nullptr) return; // deferred shading follows
     const auto shader = frame.program->for_tile(frame.data, frame.geometry, view, rect);
     LayeredTile::LayerPacket layer_packet;
     for (int y0 = rect.y0; y0 < rect.y1; y0 += DepthTile::kPacketRows)
@@ -227,7 +204,7 @@ void render_multisampled_tile(const FrameContext& frame, const PassView& view, s
     frame.collector.shade_work += static_cast<std::int64_t>(watch.lap() * 1e9);
 }
 
-/// Renders one tile: determines the coverage of each sample, then shades it.
+/// Renders one tile: determines the coverage of each sample, then shades it with the program.
 void render_tile(const FrameContext& frame, const PassView& view, std::size_t index, Framebuffer& framebuffer) {
     const PixelRect rect = frame.grid.tile(index);
     DepthTile depths;
@@ -235,20 +212,20 @@ void render_tile(const FrameContext& frame, const PassView& view, std::size_t in
         Stopwatch watch;
         rasterize_tile(frame.geometry, view, offset, rect, index, depths);
         frame.collector.coverage_work += static_cast<std::int64_t>(watch.lap() * 1e9);
-        if (needs_per_sample(frame, index)) shade_samples(frame, view, index, depths, framebuffer);
-        if (!shades_per_sample(frame, index)) shade_tile(frame, view, depths, framebuffer);
+        if (visits_samples(frame, index)) visit_samples(frame, view, index, depths, framebuffer);
+        if (!has_layers_in(frame, index)) shade_tile(frame, view, depths, framebuffer);
         frame.collector.shade_work += static_cast<std::int64_t>(watch.lap() * 1e9);
     }
 }
 
-/// Renders a pass with one sample per pixel, and adds its edges to the overlay.
-void render_with_edges(const FrameContext& frame, const CameraModel& camera, const View& view, const Pass& pass,
-                       Framebuffer& framebuffer, Overlay& overlay) {
+/// Adds the edges of a pass, whose geometry has been processed, to the overlay.
+void add_edges(const FrameContext& frame, const CameraModel& camera, const View& view, const Pass& pass,
+               Overlay& overlay) {
     EdgeBuffer edge_buffer(view.width, view.height);
     const std::unique_ptr<ShaderProgram> normals = smooth_normal_program(); // bumps are not edges
-    render_pass(frame, camera, view, pass, [&](const PassView& pass_view, std::size_t i) {
-        render_tile(frame, pass_view, i, framebuffer);
-        const SampleOffset offset = pass_view.samples.front();
+    const PassView pass_view = pass_view_of(camera, view, pass);
+    const SampleOffset offset = pass_view.samples.front(); // the only one
+    parallel_for(frame.grid.size(), frame.settings.threads, [&](std::size_t i) {
         DepthTile depths;
         rasterize_tile(frame.geometry, pass_view, offset, frame.grid.tile(i), i, depths);
         edge_buffer.add(depths, frame.geometry,
@@ -257,43 +234,68 @@ void render_with_edges(const FrameContext& frame, const CameraModel& camera, con
             edge_buffer.add_layers(frame.data, *frame.layers, pass_view, offset, i,
                                    HitTile(depths, frame.geometry, pass_view), *normals);
     });
-    if (!frame.control.stopped()) overlay.add_edges(edge_buffer);
-}
-
-/// Returns true if deferred shading renders the frame. It does not handle transparent layers, auxiliary images and
-/// multisampling yet; frames with them are shaded sample by sample.
-bool is_deferred(const FrameContext& frame) {
-    const RasterSettings& settings = frame.settings;
-    return frame.program == nullptr && settings.quality == Quality::kRealtime && frame.layers == nullptr &&
-           !settings.aovs.any() && settings.multisamples == 0;
-}
-
-/// Renders one pass of Shading::kLit by deferred shading, and calls use(radiance) for each sample of a pixel.
-template <typename Use>
-void render_deferred(const FrameContext& frame, const CameraModel& camera, const View& view, const Pass& pass,
-                     const Use& use) {
-    const PassView pass_view = pass_view_of(camera, view, pass);
-    process_geometry(frame.data, frame.grid, pass_view, frame.settings, frame.geometry);
-    frame.collector.add(frame.geometry);
-    const Stopwatch watch;
-    DeferredFramePool& pool = *frame.data.deferred_frames;
-    std::unique_ptr<DeferredFrame> images = pool.take();
-    for (const SampleOffset offset : pass.samples) {
-        if (frame.control.stopped()) break;
-        shade_deferred(frame.data, frame.settings, frame.geometry, pass_view, frame.grid, offset, frame.control,
-                       *images);
-        for (const auto& [stage, seconds] : images->seconds) frame.collector.add_stage(stage, seconds);
-        use(images->radiance);
-    }
-    pool.give_back(std::move(images));
-    frame.collector.tiles += watch.seconds();
-    for (std::size_t i = 0; i < frame.grid.size(); ++i) frame.collector.tiles_done += 1, frame.progress.step();
+    overlay.add_edges(edge_buffer);
 }
 
 /// Calls visit(x, y) for all pixels, in parallel.
 template <typename Visit> void for_each_pixel(const View& view, int threads, const Visit& visit) {
     parallel_for(static_cast<std::size_t>(view.height), threads, [&](std::size_t row) {
         for (int x = 0; x < view.width; ++x) visit(x, static_cast<int>(row));
+    });
+}
+
+bool is_multisampled(const FrameContext& frame) {
+    // Transparent layers are sorted per sample, so each sample is shaded.
+    return frame.settings.multisamples > 0 && !frame.settings.sample_shading && frame.layers == nullptr;
+}
+
+/// Calls use(sample) for each sample of a pixel of one pass of Shading::kLit.
+template <typename Use>
+void for_each_lit_sample(const FrameContext& frame, const CameraModel& camera, const View& view, const Pass& pass,
+                         const Use& use) {
+    const PassView pass_view = pass_view_of(camera, view, pass);
+    process_pass(frame, pass_view);
+    const Stopwatch watch;
+    for (const SampleOffset offset : pass.samples) {
+        if (frame.control.stopped()) break;
+        use(SampleView{frame.data, frame.settings, frame.geometry, frame.layers, pass_view, frame.grid, offset,
+                       frame.control});
+        if (is_multisampled(frame)) break; // one shading of all samples
+    }
+    frame.collector.tiles += watch.seconds();
+    for (std::size_t i = 0; i < frame.grid.size(); ++i) frame.collector.tiles_done += 1, frame.progress.step();
+}
+
+/// Adds the auxiliary values of a sample of every pixel to the framebuffer.
+void add_aovs(const FrameContext& frame, const SampleView& sample, Framebuffer& framebuffer) {
+    if (!frame.settings.aovs.any()) return;
+    parallel_for(frame.grid.size(), frame.settings.threads, [&](std::size_t i) {
+        if (is_multisampled(frame)) return render_multisampled_tile(frame, sample.view, i, framebuffer);
+        DepthTile depths;
+        rasterize_tile(frame.geometry, sample.view, sample.offset, frame.grid.tile(i), i, depths);
+        visit_samples(frame, sample.view, i, depths, framebuffer);
+    });
+}
+
+/// Renders one pass of Shading::kLit by deferred shading.
+void render_lit(const FrameContext& frame, const CameraModel& camera, const View& view, const Pass& pass,
+                Framebuffer& framebuffer) {
+    PooledDeferredFrame images(*frame.data.deferred_frames);
+    for_each_lit_sample(frame, camera, view, pass, [&](const SampleView& sample) {
+        add_aovs(frame, sample, framebuffer);
+        const auto add = [&](const Planes3& radiance, const auto& count) {
+            for_each_pixel(view, frame.settings.threads, [&](int x, int y) {
+                if (const int samples = count(x, y); samples > 0)
+                    framebuffer.add(x, y, radiance.color_at(x, y), samples);
+            });
+        };
+        if (is_multisampled(frame)) {
+            shade_multisampled(sample, *images, add);
+        } else {
+            shade_deferred(sample, *images);
+            add((*images).radiance, [](int, int) { return 1; });
+        }
+        frame.collector.add(*images);
     });
 }
 
@@ -306,25 +308,17 @@ Rendering render_image(const FrameContext& frame, const CameraModel& camera, con
     if (lines || edges) overlay.emplace(frame.data, frame.settings, view);
     for (const Pass& pass : passes) {
         if (frame.control.stopped()) break;
-        if (edges) {
-            render_with_edges(frame, camera, view, pass, framebuffer, *overlay);
-            continue;
-        }
         if (lines) overlay->add_lines(pass_view_of(camera, view, pass));
-        if (is_deferred(frame)) {
-            render_deferred(frame, camera, view, pass, [&](const Planes3& radiance) {
-                for_each_pixel(view, frame.settings.threads,
-                               [&](int x, int y) { framebuffer.add(x, y, radiance.color_at(x, y)); });
+        if (frame.program == nullptr)
+            render_lit(frame, camera, view, pass, framebuffer);
+        else
+            render_pass(frame, camera, view, pass, [&](const PassView& pass_view, std::size_t i) {
+                if (is_multisampled(frame))
+                    render_multisampled_tile(frame, pass_view, i, framebuffer);
+                else
+                    render_tile(frame, pass_view, i, framebuffer);
             });
-            continue;
-        }
-        render_pass(frame, camera, view, pass, [&](const PassView& pass_view, std::size_t i) {
-            // Transparent layers are sorted per sample, so each sample is shaded.
-            if (frame.settings.multisamples > 0 && !frame.settings.sample_shading && frame.layers == nullptr)
-                render_multisampled_tile(frame, pass_view, i, framebuffer);
-            else
-                render_tile(frame, pass_view, i, framebuffer);
-        });
+        if (edges && !frame.control.stopped()) add_edges(frame, camera, view, pass, *overlay);
     }
     const Stopwatch watch;
     frame.collector.framebuffer_bytes = framebuffer.memory_bytes();
@@ -349,11 +343,14 @@ void render_direct_output(const FrameContext& frame, const CameraModel& camera, 
         resize(result.srgb, view);
         frame.collector.framebuffer_bytes = result.srgb.size() * sizeof(Rgba8);
     }
-    if (!depth_only && is_deferred(frame)) {
+    if (!depth_only && frame.program == nullptr) {
         const SrgbEncoder& encoder = srgb_encoder();
-        render_deferred(frame, camera, view, pass, [&](const Planes3& radiance) {
+        PooledDeferredFrame images(*frame.data.deferred_frames);
+        for_each_lit_sample(frame, camera, view, pass, [&](const SampleView& sample) {
+            shade_deferred(sample, *images);
+            frame.collector.add(*images);
             for_each_pixel(view, frame.settings.threads, [&](int x, int y) {
-                const Rgb c = radiance.color_at(x, y);
+                const Rgb c = (*images).radiance.color_at(x, y);
                 result.srgb(x, y) = {encoder(c.r), encoder(c.g), encoder(c.b), 255};
             });
         });
@@ -366,8 +363,7 @@ void render_direct_output(const FrameContext& frame, const CameraModel& camera, 
         else if (depth_only)
             render_depth_tile(frame.geometry, pass_view, frame.grid.tile(i), i, result.reversed_depth);
         else
-            display_tile(frame.data, frame.settings, frame.program, frame.geometry, pass_view, frame.grid.tile(i), i,
-                         result.srgb);
+            display_tile(frame.data, *frame.program, frame.geometry, pass_view, frame.grid.tile(i), i, result.srgb);
     });
 }
 
@@ -403,14 +399,6 @@ void render_with(const RasterScene& prepared, const View& view, const RasterSett
 }
 
 } // namespace
-
-std::shared_ptr<const ScreenGBuffer> make_screen_gbuffer(const RasterScene& prepared, const View& view,
-                                                         const RasterSettings& settings) {
-    validate(view, settings);
-    const RasterSceneData& data = prepared.data();
-    const TileGrid grid{{0, 0, view.width, view.height}};
-    return render_screen_gbuffer(data, settings, grid, pass_view_of(CameraModel(view), view, Pass{}), Control{});
-}
 
 void render(const RasterScene& prepared, const View& view, const RasterSettings& settings, Control& control,
             Rendering& result) {

@@ -14,7 +14,7 @@
 namespace duet::raster {
 
 enum class Shading {
-    kLit,       ///< materials and lights: direct light in closed form where possible, environment irradiance
+    kLit,       ///< materials and lights, by deferred shading (raster/shading/deferred.h)
     kPhong,     ///< Phong's model: diffuse light and highlights of the lights, the environment's mean as ambient light
     kGouraud,   ///< Phong's model, computed at the vertices and interpolated
     kFlat,      ///< Phong's model, once per triangle
@@ -31,26 +31,12 @@ Shading parse_shading(std::string_view name);
 /// Returns the list of names, "lit, phong … or depth".
 std::string shading_names();
 
-/// Selects the method that estimates the environment's occlusion from screen-space depths
-/// (raster/screen_space/ambient_occlusion.h).
-enum class AmbientOcclusion { kNone, kSsao, kGtao };
-/// Returns the method named "none", "ssao" or "gtao". Throws Error for any other name.
-AmbientOcclusion parse_ambient_occlusion(std::string_view name);
-
-/// Selects the light parts that Shading::kLit computes (LightComponents in raster/shading/light_components.h).
+/// Selects the components of light that Shading::kLit computes (LightComponentImages in raster/shading/deferred.h).
 struct LightComponentSet {
     bool emission = true, direct = true, environment = true, reflection = true;
 
     bool all() const { return emission && direct && environment && reflection; }
 };
-
-/// Selects how Shading::kLit computes its effects.
-enum class Quality {
-    kRealtime, ///< deferred shading (raster/shading/deferred.h)
-    kHigh,     ///< sample by sample
-};
-/// Returns the quality named "realtime" or "high". Throws Error for any other name.
-Quality quality(std::string_view name);
 
 /// Selects the output format of a rendering.
 enum class Output {
@@ -61,7 +47,6 @@ enum class Output {
 
 struct RasterSettings : RenderSettings {
     Shading shading = Shading::kLit;
-    Quality quality = Quality::kHigh;
     Output output = Output::kRadiance; ///< kReversedDepth uses only one sample per pixel
     bool front_faces_only = false;     ///< cull back faces of all meshes and quads, as real-time renderers do
     /// Multisampling (raster/visibility/multisample.h) takes 2, 4, 8 or 16 samples per pixel for coverage and depth,
@@ -76,19 +61,15 @@ struct RasterSettings : RenderSettings {
     /// area light's map a quarter. Maps are smaller if all of them would take too much memory.
     int shadow_map_side = 2048;
     int shadow_cells = 2; ///< a rectangular light is divided into this many cells per side, in [1, 8], each with a map
-    AmbientOcclusion ambient_occlusion = AmbientOcclusion::kGtao; ///< Shading::kLit: on diffuse surfaces
-    bool indirect_light = true; ///< Shading::kLit, Quality::kRealtime: light between surfaces, from irradiance probes
-    /// Occluders of the environment are at most this far away, in meters. 0 stands for half (with SSAO an eighth) of
-    /// the minimum of the scene's diagonal and the distance from the camera's eye to its look-at point.
+    bool ambient_occlusion = true; ///< Shading::kLit: GTAO on diffuse surfaces (raster/screen_space/gtao.h)
+    bool indirect_light = true;    ///< Shading::kLit: diffuse light between surfaces, from irradiance probes
+    /// Without indirect light, occluders of the environment are at most this far away, in meters. 0 stands for half of
+    /// the minimum of the scene's diagonal and the distance from the camera's eye to its look-at point. With it, the
+    /// probes see distant occluders, and half of their spacing is the limit.
     double occlusion_radius = 0;
-    bool prefiltered_environment = true; ///< Shading::kLit: rough metal reflects a blurred environment, not a sharp one
-    bool screen_reflections = true;  ///< Shading::kLit: smooth and moderately rough metal has screen-space reflections
-    bool screen_refractions = true;  ///< Shading::kLit: glass has screen-space refractions
-    bool transformed_cosines = true; ///< Shading::kLit: area lights on rough metal by LTCs; off: from their centers
     /// The environment lights surfaces and is the background. If it is off, there are only area, point, spot and sun
     /// lights.
-    bool environment =
-        true;
+    bool environment = true;
 };
 
 struct RasterSceneData; // raster/raster_scene.h

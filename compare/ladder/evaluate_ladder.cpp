@@ -1,11 +1,11 @@
 #include "compare/ladder/evaluate_ladder.h"
 
 #include "common/system/parallel.h"
-#include "raster/shading/light_components.h"
+#include "raster/shading/hit_shader.h"
 #include "raytrace/component_tracer.h"
 
+#include <algorithm>
 #include <atomic>
-#include <mutex>
 
 namespace duet::compare {
 
@@ -14,62 +14,97 @@ namespace {
 /// Contributions of one camera sample to I₁ … I₇.
 using StageValues = std::array<Rgbd, kRungCount>;
 
-StageValues stage_values(const PreparedPair& pair, const raster::ScreenGBuffer* gbuffer,
-                         const raytrace::PixelSample& sample) {
-    const raster::LightComponents hit = raster::shade_hit(pair.raster, pair.raster_settings, sample.ray, sample.hit,
-                                                          sample.footprint ? &*sample.footprint : nullptr, gbuffer);
-    const raster::LightComponents surface =
-        sample.surface ? raster::shade_surface(pair.raster, pair.raster_settings, sample.surface->point,
-                                               sample.surface->bsdf, -sample.ray.direction, gbuffer)
-                       : hit;
-    const raytrace::LightComponents& light = sample.light;
-    const Rgbd v(surface.environment), r(surface.reflection);
-    const Rgbd emission(light.emission), shadowed_direct(light.direct), environment(light.environment);
-    const Rgbd emitted_and_direct = emission + shadowed_direct;
-    return {Rgbd(hit.sum()),
-            Rgbd(surface.sum()),
-            emission + Rgbd(light.unshadowed()) - Rgbd(surface.shadowed) + v + r,
-            emitted_and_direct + v + r,
-            emitted_and_direct + environment + r,
-            emitted_and_direct + environment + Rgbd(light.reflection),
-            emitted_and_direct + environment + Rgbd(light.reflection) + Rgbd(light.indirect)};
-}
+/// The rasterizer's light towards the viewer in one pixel.
+struct RasterLight {
+    Rgbd emission, direct, environment, indirect, reflection, shadowed;
 
-bool is_valid(const StageValues& steps) {
-    constexpr std::size_t kShadowsRemoved = 2; // I₃ may be negative: a light sample minus the shadows of all lights
-    for (std::size_t k = 0; k < kRungCount; ++k) {
-        const Rgbd& c = steps[k];
-        if (!is_finite(c) || (k != kShadowsRemoved && (c.r < 0 || c.g < 0 || c.b < 0))) return false;
+    RasterLight(const raster::LightComponentImages& images, int x, int y)
+        : emission(at(images.emission, x, y)), direct(at(images.direct, x, y)),
+          environment(at(images.environment, x, y)), indirect(at(images.indirect, x, y)),
+          reflection(at(images.reflection, x, y)), shadowed(at(images.shadowed, x, y)) {}
+    Rgbd sum() const { return emission + direct + environment + indirect + reflection; }
+
+private:
+    static Rgbd at(const raster::Planes3& image, int x, int y) {
+        return image.empty() ? Rgbd() : Rgbd(image.color_at(x, y)); // empty if the scene has no such light
     }
-    return true;
-}
-
-/// Sums over one half of a pixel's samples.
-struct Sums {
-    StageValues steps{};
-    int count = 0;
-
-    bool add(const StageValues& sample) {
-        if (!is_valid(sample)) return false;
-        for (std::size_t k = 0; k < kRungCount; ++k) steps[k] += sample[k];
-        ++count;
-        return true;
-    }
-    Rgb mean(std::size_t k) const { return count > 0 ? Rgb(steps[k] / static_cast<double>(count)) : Rgb(); }
 };
 
-/// Evaluates all ladder stages for one pixel. Returns the number of invalid samples.
-int evaluate_pixel(const PreparedPair& pair, const raster::ScreenGBuffer* gbuffer,
-                   const raytrace::ComponentTracer& tracer, int x, int y, LadderImages& images) {
-    std::array<Sums, 2> sums;
-    int invalid = 0;
-    const auto samples = static_cast<std::uint32_t>(pair.raytrace_settings.samples_per_pixel);
-    for (std::uint32_t i = 0; i < samples; ++i)
-        if (!sums[i % 2].add(stage_values(pair, gbuffer, tracer.sample(x, y, i)))) ++invalid;
-    for (std::size_t half = 0; half < 2; ++half)
-        for (std::size_t k = 0; k < kRungCount; ++k) images.halves[half][k](x, y) = sums[half].mean(k);
-    return invalid;
+StageValues stage_values(const RasterLight& hit, const RasterLight& surface, const raytrace::LightComponents& light) {
+    const Rgbd &v = surface.environment, &g = surface.indirect, &r = surface.reflection;
+    const Rgbd emission(light.emission), environment(light.environment), reflection(light.reflection);
+    const Rgbd direct = emission + Rgbd(light.direct);
+    return {hit.sum(),
+            surface.sum(),
+            emission + Rgbd(light.unshadowed()) - surface.shadowed + v + g + r,
+            direct + v + g + r,
+            direct + environment + g + r,
+            direct + environment + g + reflection,
+            direct + environment + Rgbd(light.indirect) + reflection};
 }
+
+/// Differences of the path tracer's noisy light and the rasterizer's may be negative, whole images may not.
+bool is_valid(const StageValues& steps) {
+    const Rgbd& last = steps.back();
+    return std::all_of(steps.begin(), steps.end(), [](const Rgbd& c) { return is_finite(c); }) && last.r >= 0 &&
+           last.g >= 0 && last.b >= 0;
+}
+
+/// Traces and shades one sample of each pixel, and adds it to the means.
+class LadderEvaluation {
+public:
+    LadderEvaluation(const PreparedPair& pair, const View& view, LadderImages& images)
+        : pair_(pair), view_(view), images_(images), tracer_(pair.raytrace, view, pair.raytrace_settings),
+          hits_(pair.raster, view, pair.raster_settings), surfaces_(pair.raster, view, pair.raster_settings),
+          light_(view.width, view.height) {
+        counts_.fill(Image<int>(view.width, view.height, 0));
+    }
+
+    void add_sample(std::uint32_t index) {
+        for_each_pixel([&](int x, int y) { trace(x, y, index); });
+        const raster::LightComponentImages hit = hits_.shade(), surface = surfaces_.shade();
+        for_each_pixel([&](int x, int y) {
+            add(x, y, index % 2, stage_values(RasterLight(hit, x, y), RasterLight(surface, x, y), light_(x, y)));
+        });
+    }
+    std::int64_t invalid() const { return invalid_; }
+
+private:
+    template <typename Visit> void for_each_pixel(const Visit& visit) const {
+        parallel_for(static_cast<std::size_t>(view_.height), pair_.raytrace_settings.threads, [&](std::size_t row) {
+            for (int x = 0; x < view_.width; ++x) visit(x, static_cast<int>(row));
+        });
+    }
+    void trace(int x, int y, std::uint32_t index) {
+        const raytrace::PixelSample sample = tracer_.sample(x, y, index);
+        light_(x, y) = sample.light;
+        hits_.set(x, y, sample.ray, sample.hit, sample.footprint ? &*sample.footprint : nullptr);
+        if (sample.surface)
+            surfaces_.set(x, y, sample.ray, sample.surface->point, sample.surface->bsdf);
+        else
+            surfaces_.set(x, y, sample.ray, Hit{}, nullptr);
+    }
+    void add(int x, int y, std::size_t half, const StageValues& steps) {
+        if (!is_valid(steps)) {
+            ++invalid_;
+            return;
+        }
+        const double part = 1.0 / ++counts_[half](x, y);
+        for (std::size_t k = 0; k < kRungCount; ++k) {
+            Rgb& mean = images_.halves[half][k](x, y);
+            mean = Rgb(Rgbd(mean) + (steps[k] - Rgbd(mean)) * part);
+        }
+    }
+
+    const PreparedPair& pair_;
+    const View& view_;
+    LadderImages& images_;
+    raytrace::ComponentTracer tracer_;
+    raster::HitShader hits_, surfaces_;
+    Image<raytrace::LightComponents> light_; ///< of the current sample
+    std::array<Image<int>, 2> counts_;       ///< valid samples of each half
+    std::atomic<std::int64_t> invalid_ = 0;
+};
 
 } // namespace
 
@@ -84,21 +119,13 @@ LadderImages evaluate_ladder(ImageRgb first, const PreparedPair& pair, const Vie
     LadderImages images;
     images.first = std::move(first);
     for (auto& half : images.halves) half.fill(ImageRgb(view.width, view.height));
-    const raytrace::ComponentTracer tracer(pair.raytrace, view, pair.raytrace_settings);
-    const std::shared_ptr<const raster::ScreenGBuffer> gbuffer =
-        raster::make_screen_gbuffer(pair.raster, view, pair.raster_settings);
-    std::atomic<std::int64_t> invalid = 0;
-    std::mutex mutex; // protects the progress
-    int rows_done = 0;
-    parallel_for(static_cast<std::size_t>(view.height), pair.raytrace_settings.threads, [&](std::size_t row) {
-        for (int x = 0; x < view.width; ++x) {
-            if (control.stopped()) return;
-            invalid += evaluate_pixel(pair, gbuffer.get(), tracer, x, static_cast<int>(row), images);
-        }
-        const std::lock_guard lock(mutex);
-        control.report(static_cast<double>(++rows_done) / view.height);
-    });
-    images.invalid_samples = invalid;
+    LadderEvaluation evaluation(pair, view, images);
+    const auto samples = static_cast<std::uint32_t>(pair.raytrace_settings.samples_per_pixel);
+    for (std::uint32_t i = 0; i < samples && !control.stopped(); ++i) {
+        evaluation.add_sample(i);
+        control.report(static_cast<double>(i + 1) / samples);
+    }
+    images.invalid_samples = evaluation.invalid();
     return images;
 }
 

@@ -20,19 +20,20 @@ struct LadderImages {
 };
 
 /// Renders the images of all ladder stages. Each camera sample is shaded in two ways. The rasterizer's shading
-/// yields the light components of raster::LightComponents: e, d, v, r, and s, the light that shadows remove from d.
-/// The path tracer yields those of raytrace::LightComponents: emission E, direct D, unshadowed U, environment V,
-/// reflection R, indirect G. The stages are the means, over the path tracer's camera samples, of
+/// yields the components of raster::LightComponentImages: emission e, direct d, environment v, indirect g, reflection r,
+/// and s, the light that shadows remove from d. The path tracer yields those of raytrace::LightComponents: emission E,
+/// direct D, unshadowed U, environment V, reflection R, indirect G. The stages are the means, over the path tracer's
+/// camera samples, of
 ///
-///   I₁ = e + d + v + r at the traced hits      I₄ = E + D + v + r
-///   I₂ = the same at the traced surfaces       I₅ = E + D + V + r
-///   I₃ = E + U − s + v + r                     I₆ = E + D + V + R
-///                                              I₇ = E + D + V + R + G, the path tracer's image.
+///   I₁ = e + d + v + g + r at the traced hits      I₄ = E + D + v + g + r
+///   I₂ = the same at the traced surfaces           I₅ = E + D + V + g + r
+///   I₃ = E + U − s + v + g + r                     I₆ = E + D + V + g + R
+///                                                  I₇ = E + D + V + G + R, the path tracer's image.
 ///
-/// The rasterizer's approximations of reflections and of environment occlusion are part of r and v. Its
-/// screen-space effects use the G-buffer, which is seen through the lens center when the shutter opens.
+/// The rasterizer shades the hits of one sample of all pixels together, since its effects look at other pixels. It takes
+/// the lens center as their viewer, at the time the shutter opens (raster::HitShader).
 ///
-/// `first` is I₀. If `control` is stopped, returns what is finished, with the other pixels black.
+/// `first` is I₀. If `control` is stopped, returns what is finished.
 LadderImages evaluate_ladder(ImageRgb first, const PreparedPair& pair, const View& view, Control& control);
 
 } // namespace duet::compare

@@ -107,20 +107,22 @@ std::array<RungPlan, kRungCount> plan_rungs(const Scene& scene, const PreparedPa
                            "The same light, times the part that shadow maps let pass.",
                            "Light and BSDF samples with shadow rays, combined by multiple importance sampling.",
                            paragraph(raster::approximations(pair.raster, raster_lights))};
+    PreparedPair sky = pair; // renders without light between surfaces
+    sky.raster_settings.indirect_light = false;
     const RungPlan environment{
-        {light_renderers("environment", pair, kEnvironment, Integrator::kEnvironment, true)},
-        "Irradiance in closed form or by spherical harmonics, times the part of the environment that the depths in the "
-        "picture leave in sight.",
+        {light_renderers("environment", sky, kEnvironment, Integrator::kEnvironment, true)},
+        "Irradiance in closed form or by spherical harmonics, times the fraction of the environment that the image's "
+        "depths leave visible.",
         "Light and BSDF samples of the environment, with shadow rays.",
         ""};
     const RungPlan reflections{
         {light_renderers("reflections", pair, kReflection, Integrator::kReflection, true)},
-        "Looks up the mirrored and the refracted ray in what the picture shows, past that the environment, blurred "
-        "where metal is rough.",
+        "Looks up the mirrored and the refracted ray in the image, else in probes that see the scene from one point per "
+        "object, blurred where metal is rough.",
         "Follows the path on from metal and glass to whatever it meets.",
         ""};
     const RungPlan everything{{light_renderers("everything", pair, {}, Integrator::kPath, true)},
-                              "All of the above. Light that surfaces reflect onto each other is left out.",
+                              "All of the above, and diffuse light between surfaces from irradiance probes.",
                               "Whole paths.",
                               ""};
     return {visibility,

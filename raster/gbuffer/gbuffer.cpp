@@ -11,7 +11,7 @@ GBuffer::GBuffer(const ScreenProjection& view, int width, int height, bool coats
 std::size_t GBuffer::memory_bytes() const {
     return reversed_depth.memory_bytes() + normal.memory_bytes() + diffuse.memory_bytes() + specular.memory_bytes() +
            alpha.memory_bytes() + coat.memory_bytes() + coat_alpha.memory_bytes() + object.memory_bytes() +
-           material.memory_bytes();
+           material.memory_bytes() + position.memory_bytes();
 }
 
 } // namespace duet::raster

@@ -24,12 +24,16 @@ struct GBuffer {
     PlaneFloat coat_alpha;      ///< GGX width of the coat; empty if no material has one
     PlaneInt object;            ///< index into Scene::objects; −1 for the background
     PlaneInt material;          ///< index into Scene::materials; −1 for the background
+    /// Points relative to the eye, for surfaces that a caller found along its own rays (raster/shading/hit_shader.h).
+    /// It is empty for rasterized surfaces, whose points follow from their pixels and depths.
+    Planes3 position;
 
     GBuffer(const ScreenProjection& view, int width, int height, bool coats);
     int width() const { return reversed_depth.width(); }
     int height() const { return reversed_depth.height(); }
     /// Returns the points of a batch of pixels, relative to the eye. Those of the background are at a finite distance.
     Vec3T<Floats> points(int x, int y) const {
+        if (!position.empty()) return position.vector(x, y);
         const Floats depth = load(reversed_depth, x, y);
         return projection.point(Floats(static_cast<float>(x)) + load(kLanesAsFloats, 0),
                                 Floats(static_cast<float>(y)),

@@ -9,6 +9,7 @@
 #include "common/system/control.h"
 #include "common/system/parallel.h"
 
+#include <atomic>
 #include <bit>
 #include <optional>
 
@@ -35,43 +36,45 @@ struct Frame {
     const Geometry& geometry;
     const PassView& view;
     std::vector<std::optional<LobesOfColor>> of_color; ///< by material
-    std::vector<bool> emits;                           ///< by material
+    std::vector<bool> emits;                           ///< by material, and whether emission is requested
     AttributeShader shader{};
 };
 
 /// Fills the G-buffer of one tile, packet by packet.
 class TileFiller {
 public:
-    TileFiller(const Frame& frame, const DepthTile& tile, GBuffer& gbuffer, Planes3& emission)
+    TileFiller(const Frame& frame, const PixelRect& rect, GBuffer& gbuffer, Planes3& emission)
         : scene_(frame.data.scene), geometry_(frame.geometry), view_(frame.view), of_color_(frame.of_color),
-          emits_(frame.emits), tile_(tile), gbuffer_(gbuffer), emission_(emission), reader_(geometry_.triangles),
-          shader_(frame.data, geometry_, view_, tile.rect(), frame.shader) {}
+          emits_(frame.emits), rect_(rect), gbuffer_(gbuffer), emission_(emission), reader_(geometry_.triangles),
+          shader_(frame.data, geometry_, view_, rect, frame.shader) {}
 
-    void run() {
-        const PixelRect& rect = tile_.rect();
-        for (int y = rect.y0; y < rect.y1; y += DepthTile::kPacketRows)
-            for (int x = rect.x0; x < rect.x1; x += static_cast<int>(kPacketWidth)) fill_packet(x, y);
+    /// packet_at(x, y) returns the packet whose first pixel is (x, y), or null where nothing is visible.
+    template <typename PacketAt> void run(const PacketAt& packet_at) {
+        for (int y = rect_.y0; y < rect_.y1; y += DepthTile::kPacketRows)
+            for (int x = rect_.x0; x < rect_.x1; x += static_cast<int>(kPacketWidth))
+                fill_packet(packet_at(x, y), x, y);
     }
 
 private:
-    void fill_packet(int x, int y) {
-        const SamplePacket place = sample_packet(tile_, x, y);
-        reader_.read(place.ids, samples_);
+    void fill_packet(const SamplePacket* visible, int x, int y) {
+        if (visible == nullptr) return clear_packet(x, y);
+        const SamplePacket& packet = *visible;
+                reader_.read(packet.ids, samples_);
         if (samples_.visible == 0) return clear_packet(x, y);
-        shader_.shade(place, shaded_);
+        shader_.shade(packet, shaded_);
         find_materials();
         store_packet(object_, x, y, gbuffer_.object);
         store_packet(material_, x, y, gbuffer_.material);
         clear_emission(x, y);
-        store_depths_and_normals(place);
+        store_depths_and_normals(packet);
         const auto of_packet =
             static_cast<std::uint32_t>(material_[static_cast<std::size_t>(std::countr_zero(samples_.visible))]);
         if (one_material_ && of_color_[of_packet])
-            fill_lobes(place, *of_color_[of_packet]);
+            fill_lobes(packet, *of_color_[of_packet]);
         else
-            for_each_seen(place, [&](int column, int row, std::size_t i) { fill_lobes(column, row, i, place); });
+            for_each_visible(packet, [&](int column, int row, std::size_t i) { fill_lobes(column, row, i, packet); });
         if (emits_[of_packet] || !one_material_)
-            for_each_seen(place, [&](int column, int row, std::size_t i) { add_emission(column, row, i, place); });
+            for_each_visible(packet, [&](int column, int row, std::size_t i) { add_emission(column, row, i, packet); });
     }
 
     /// Marks a packet as background; its other attributes are not read.
@@ -89,12 +92,12 @@ private:
         for (PlaneFloat* plane : {&emission_.x, &emission_.y, &emission_.z}) store_packet(kZero, x, y, *plane);
     }
 
-    template <typename Visit> void for_each_seen(const SamplePacket& place, const Visit& visit) const {
-        const PixelRect& rect = tile_.rect();
+    template <typename Visit> void for_each_visible(const SamplePacket& packet, const Visit& visit) const {
+        const PixelRect& rect = rect_;
         for (std::uint32_t left = samples_.visible; left != 0; left &= left - 1) {
             const auto i = static_cast<std::size_t>(std::countr_zero(left));
-            const int x = place.x + static_cast<int>(i % kPacketWidth),
-                      y = place.y + static_cast<int>(i / kPacketWidth);
+            const int x = packet.x + static_cast<int>(i % kPacketWidth),
+                      y = packet.y + static_cast<int>(i / kPacketWidth);
             if (x < rect.x1 && y < rect.y1) visit(x, y, i);
         }
     }
@@ -122,61 +125,61 @@ private:
         }
     }
 
-    void store_depths_and_normals(const SamplePacket& place) {
+    void store_depths_and_normals(const SamplePacket& packet) {
         PacketOf<float> depth;
         for (std::size_t i = 0; i < kPacketSize; i += Floats::size)
             store(depth, i,
                   xsimd::select(lanes_from<float>(samples_.visible >> i),
-                                Floats::load_aligned(place.reversed_depth + i), Floats(0.0f)));
-        store_packet(depth, place.x, place.y, gbuffer_.reversed_depth);
-        store_packet(shaded_.normal.x, place.x, place.y, gbuffer_.normal.x);
-        store_packet(shaded_.normal.y, place.x, place.y, gbuffer_.normal.y);
-        store_packet(shaded_.normal.z, place.x, place.y, gbuffer_.normal.z);
+                                Floats::load_aligned(packet.reversed_depth + i), Floats(0.0f)));
+        store_packet(depth, packet.x, packet.y, gbuffer_.reversed_depth);
+        store_packet(shaded_.normal.x, packet.x, packet.y, gbuffer_.normal.x);
+        store_packet(shaded_.normal.y, packet.x, packet.y, gbuffer_.normal.y);
+        store_packet(shaded_.normal.z, packet.x, packet.y, gbuffer_.normal.z);
     }
 
     /// Fills the lobes of a packet of one material, in lanes.
-    void fill_lobes(const SamplePacket& place, const LobesOfColor& lobes) {
+    void fill_lobes(const SamplePacket& packet, const LobesOfColor& lobes) {
         ColorPacket diffuse, specular;
         PacketOf<float> constant;
         for (std::size_t i = 0; i < kPacketSize; i += Floats::size) {
             const ColorPacket& base = shaded_.color;
             const RgbT<Floats> color{load(base.r, i), load(base.g, i), load(base.b, i)};
-            const RgbT<Floats> d = lobes.diffuse(color, cosines(place, i)), s = lobes.specular(color);
+            const RgbT<Floats> d = lobes.diffuse(color, cosines(packet, i)), s = lobes.specular(color);
             store(diffuse.r, i, d.r), store(diffuse.g, i, d.g), store(diffuse.b, i, d.b);
             store(specular.r, i, s.r), store(specular.g, i, s.g), store(specular.b, i, s.b);
         }
-        store_packet(diffuse.r, place.x, place.y, gbuffer_.diffuse.x);
-        store_packet(diffuse.g, place.x, place.y, gbuffer_.diffuse.y);
-        store_packet(diffuse.b, place.x, place.y, gbuffer_.diffuse.z);
-        store_packet(specular.r, place.x, place.y, gbuffer_.specular.x);
-        store_packet(specular.g, place.x, place.y, gbuffer_.specular.y);
-        store_packet(specular.b, place.x, place.y, gbuffer_.specular.z);
-        constant.fill(lobes.alpha), store_packet(constant, place.x, place.y, gbuffer_.alpha);
+        store_packet(diffuse.r, packet.x, packet.y, gbuffer_.diffuse.x);
+        store_packet(diffuse.g, packet.x, packet.y, gbuffer_.diffuse.y);
+        store_packet(diffuse.b, packet.x, packet.y, gbuffer_.diffuse.z);
+        store_packet(specular.r, packet.x, packet.y, gbuffer_.specular.x);
+        store_packet(specular.g, packet.x, packet.y, gbuffer_.specular.y);
+        store_packet(specular.b, packet.x, packet.y, gbuffer_.specular.z);
+        constant.fill(lobes.alpha), store_packet(constant, packet.x, packet.y, gbuffer_.alpha);
         if (gbuffer_.coat.empty()) return;
-        constant.fill(lobes.coat), store_packet(constant, place.x, place.y, gbuffer_.coat);
-        constant.fill(lobes.coat_alpha), store_packet(constant, place.x, place.y, gbuffer_.coat_alpha);
+        constant.fill(lobes.coat), store_packet(constant, packet.x, packet.y, gbuffer_.coat);
+        constant.fill(lobes.coat_alpha), store_packet(constant, packet.x, packet.y, gbuffer_.coat_alpha);
     }
 
     /// Returns the cosines between shading normal and viewer.
-    Floats cosines(const SamplePacket& place, std::size_t i) const {
+    Floats cosines(const SamplePacket& packet, std::size_t i) const {
         const auto at = [&](const PacketOf<float>& offsets, int start) {
             return load(offsets, i) + Floats(static_cast<float>(start));
         };
-        const Vec3T<Floats> p = gbuffer_.projection.point(at(kColumns<float>, place.x), at(kRows<float>, place.y),
+        const Vec3T<Floats> p = gbuffer_.projection.point(at(kColumns<float>, packet.x), at(kRows<float>, packet.y),
                                                           Floats(gbuffer_.projection.near()));
         return dot(Vec3T<Floats>{load(shaded_.normal.x, i), load(shaded_.normal.y, i), load(shaded_.normal.z, i)}, gbuffer_.projection.to_viewer(p));
     }
 
-    void add_emission(int x, int y, std::size_t i, const SamplePacket& place) {
+    void add_emission(int x, int y, std::size_t i, const SamplePacket& packet) {
         if (!emits_[static_cast<std::size_t>(material_[i])]) return;
-        const Vec2d pixel = place.position(i);
+        const Vec2d pixel = packet.position(i);
         const Hit hit = find_hit(geometry_, view_, samples_.id(i), pixel);
         emission_.set_at(x, y, hit_emission(scene_, view_, hit, pixel, 1));
     }
 
     /// Fills the lobes of one pixel, whose material has parameters that vary over the surface.
-    void fill_lobes(int x, int y, std::size_t i, const SamplePacket& place) {
-        const Vec2d pixel = place.position(i);
+    void fill_lobes(int x, int y, std::size_t i, const SamplePacket& packet) {
+        const Vec2d pixel = packet.position(i);
         const Ray ray = rounded(view_.pinhole.ray(pixel), view_.time);
         const Hit hit = find_hit(geometry_, view_, samples_.id(i), pixel);
         const RayFootprint footprint =
@@ -207,7 +210,7 @@ private:
     const PassView& view_;
     const std::vector<std::optional<LobesOfColor>>& of_color_;
     const std::vector<bool>& emits_;
-    const DepthTile& tile_;
+    PixelRect rect_;
     GBuffer& gbuffer_;
     Planes3& emission_;
     PacketReader reader_;
@@ -228,20 +231,87 @@ bool any_clear_coat(const Scene& scene) {
     });
 }
 
-void fill_gbuffer(const RasterSceneData& data, const RasterSettings& settings, const Geometry& geometry,
-                  const PassView& view, const TileGrid& grid, SampleOffset offset, const Control& control,
-                  GBuffer& gbuffer, Planes3& emission) {
+void store_surface(const Scene& scene, const VisibleSurface& surface, bool emits, int x, int y, GBuffer& gbuffer,
+                   Planes3& emission) {
+    const SurfacePoint& point = surface.point;
+    const Vec3 n = dot(point.ng, surface.to_viewer) < 0 ? -point.ns : point.ns;
+    const float cosine = clamp(dot(n, surface.to_viewer), 1e-4f, 1.0f);
+    const SurfaceLobes lobes = surface_lobes(surface.bsdf, cosine);
+    gbuffer.reversed_depth(x, y) = surface.reversed_depth;
+    gbuffer.normal.set_at(x, y, n);
+    gbuffer.diffuse.set_at(x, y, lobes.diffuse);
+    gbuffer.specular.set_at(x, y, lobes.specular);
+    gbuffer.alpha(x, y) = lobes.alpha;
+    if (!gbuffer.coat.empty()) gbuffer.coat(x, y) = lobes.coat, gbuffer.coat_alpha(x, y) = lobes.coat_alpha;
+    gbuffer.object(x, y) = static_cast<std::int32_t>(point.object);
+    gbuffer.material(x, y) = static_cast<std::int32_t>(point.material);
+    emission.set_at(x, y, emits ? emitted(scene.materials[point.material], scene.textures, point, surface.to_viewer)
+                                : Rgb());
+}
+
+void clear(GBuffer& gbuffer, Planes3& emission) {
+    gbuffer.reversed_depth.fill(0), gbuffer.object.fill(-1), gbuffer.material.fill(-1);
+    for (PlaneFloat* plane : {&emission.x, &emission.y, &emission.z}) plane->fill(0);
+}
+
+namespace {
+
+Frame frame_of(const RasterSceneData& data, const RasterSettings& settings, const Geometry& geometry,
+               const PassView& view) {
     Frame frame{data, geometry, view, {}, {}};
     for (const Material& material : data.scene.materials) {
         frame.of_color.push_back(LobesOfColor::of(material));
-        frame.emits.push_back(emitter(material) != nullptr);
+        frame.emits.push_back(settings.components.emission && emitter(material) != nullptr);
     }
+    return frame;
+}
+
+} // namespace
+
+void fill_gbuffer(const RasterSceneData& data, const RasterSettings& settings, const Geometry& geometry,
+                  const PassView& view, const TileGrid& grid, SampleOffset offset, const Control& control,
+                  GBuffer& gbuffer, Planes3& emission) {
+    const Frame frame = frame_of(data, settings, geometry, view);
     parallel_for(grid.size(), settings.threads, [&](std::size_t i) {
         if (control.stopped()) return;
         DepthTile tile;
         rasterize_tile(geometry, view, offset, grid.tile(i), i, tile);
-        TileFiller(frame, tile, gbuffer, emission).run();
+        SamplePacket packet;
+        TileFiller(frame, tile.rect(), gbuffer, emission).run([&](int x, int y) {
+            packet = sample_packet(tile, x, y);
+            return &packet;
+        });
     });
+}
+
+bool fill_gbuffer_layer(const RasterSceneData& data, const RasterSettings& settings, const Geometry& geometry,
+                        const PassView& view, const TileGrid& grid, std::size_t k, const Control& control,
+                        GBuffer& gbuffer, Planes3& emission, PlaneInt& counts) {
+    const Frame frame = frame_of(data, settings, geometry, view);
+    std::atomic<bool> any = false;
+    parallel_for(grid.size(), settings.threads, [&](std::size_t i) {
+        if (control.stopped()) return;
+        const PixelRect rect = grid.tile(i);
+        LayeredTile tile(rect, static_cast<int>(view.samples.size()));
+        DepthTile depths;
+        for (const SampleOffset offset : view.samples) {
+            rasterize_tile(geometry, view, offset, rect, i, depths);
+            tile.add(depths);
+        }
+        const bool has_layer = k < tile.layers();
+        if (has_layer) any = true;
+        for (int y = rect.y0; y < rect.y1; ++y)
+            for (int x = rect.x0; x < rect.x1; ++x)
+                counts(x, y) = has_layer ? tile.layer(k).count(tile.sample_index(x, y)) : 0;
+        LayeredTile::LayerPacket packet;
+        TileFiller(frame, rect, gbuffer, emission).run([&](int x, int y) -> const SamplePacket* {
+            if (!has_layer) return nullptr;
+            tile.layer_packet(k, x, y, packet);
+            packet.packet.reversed_depth = packet.mean_reversed_depth.data();
+            return packet.packet.ids != nullptr ? &packet.packet : nullptr;
+        });
+    });
+    return any;
 }
 
 } // namespace duet::raster

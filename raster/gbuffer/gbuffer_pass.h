@@ -4,6 +4,7 @@
 #include "raster/gbuffer/gbuffer.h"
 #include "raster/geometry/geometry.h"
 #include "raster/geometry/tiles.h"
+#include "raster/visibility/multisample.h"
 
 namespace duet {
 struct Control;
@@ -17,6 +18,26 @@ namespace duet::raster {
 void fill_gbuffer(const RasterSceneData& data, const RasterSettings& settings, const Geometry& geometry,
                   const PassView& view, const TileGrid& grid, SampleOffset offset, const Control& control,
                   GBuffer& gbuffer, Planes3& emission);
+
+/// Fills the G-buffer with the k-th primitive that the samples of each pixel see (raster/visibility/multisample.h).
+/// `counts` receives the number of samples that see it; pixels with fewer primitives become background, with 0. Returns
+/// whether any pixel has a k-th primitive.
+bool fill_gbuffer_layer(const RasterSceneData& data, const RasterSettings& settings, const Geometry& geometry,
+                        const PassView& view, const TileGrid& grid, std::size_t k, const Control& control,
+                        GBuffer& gbuffer, Planes3& emission, PlaneInt& counts);
+
+/// Describes a visible surface, evaluated by the functions that both pipelines share.
+struct VisibleSurface {
+    const SurfacePoint& point;
+    const Bsdf& bsdf;
+    Vec3 to_viewer;       ///< unit, in world space
+    float reversed_depth; ///< near / depth, in (0, 1]
+};
+/// Stores one surface in a pixel.
+void store_surface(const Scene& scene, const VisibleSurface& surface, bool emits, int x, int y, GBuffer& gbuffer,
+                   Planes3& emission);
+/// Marks all pixels as background.
+void clear(GBuffer& gbuffer, Planes3& emission);
 
 /// Returns whether some material has a clear coat, which the G-buffer then needs planes for.
 bool any_clear_coat(const Scene& scene);

@@ -25,6 +25,7 @@ public:
     int stride() const { return stride_; }
     bool empty() const { return values_.empty(); }
     std::size_t memory_bytes() const { return values_.size() * sizeof(T); }
+    void fill(T value) { std::fill(values_.begin(), values_.end(), value); }
 
     T* row(int y) { return values_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(stride_); }
     const T* row(int y) const {

@@ -134,12 +134,9 @@ std::size_t Geometry::memory_bytes() const {
 
 namespace {
 
-/// Selects the sides of surfaces that are drawn.
-enum class Sides { kAsSettings, kBacks };
-
 void process(const RasterSceneData& data, const std::vector<std::uint32_t>& all_polygonal,
              const std::vector<std::uint32_t>& all_spheres, const TileGrid& grid, const PassView& view,
-             const RasterSettings& settings, bool coverage_masks, Geometry& result, Sides sides = Sides::kAsSettings) {
+             const RasterSettings& settings, bool coverage_masks, Geometry& result) {
     Stopwatch watch;
     result.culled = {};
     const auto visible = [&](const std::vector<std::uint32_t>& objects) {
@@ -154,16 +151,9 @@ void process(const RasterSceneData& data, const std::vector<std::uint32_t>& all_
 
     result.spheres = set_up_spheres(data.scene, visible(all_spheres), view.pinhole, view.time, view.viewport);
     result.triangles.runs = assign_ids(data.scene, polygonal, result.spheres);
-    const bool backs = sides == Sides::kBacks; // drawn as front faces of an inverted object
-    for (DrawSphere& sphere : result.spheres) sphere.far_side = backs;
-    const auto flip = [&] {
-        for (TransformedObject& object : result.triangles.objects) object.mirrored = object.mirrored != backs;
-    };
-    flip();
     assemble(data,
-             {view.viewport, grid, view.samples, settings.skips, settings.front_faces_only || backs, coverage_masks},
+             {view.viewport, grid, view.samples, settings.skips, settings.front_faces_only, coverage_masks},
              settings.threads, result);
-    flip();
     result.setup_seconds = watch.lap();
 
     result.triangle_lists.gather(result.batches, &Batch::triangle_segments, grid.size());
@@ -207,33 +197,6 @@ void process_only(const RasterSceneData& data, const std::vector<std::uint32_t>&
                   const PassView& view, const RasterSettings& settings, Geometry& result) {
     process(data, common_to(data.polygonal, objects), common_to(data.spheres, objects), grid, view, settings, true,
             result);
-}
-
-void process_without_glass(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
-                           const RasterSettings& settings, Geometry& result) {
-    process_without(data, data.glass, grid, view, settings, result);
-}
-
-void process_glass(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
-                   const RasterSettings& settings, Geometry& result) {
-    process(data, common_to(data.polygonal, data.glass), common_to(data.spheres, data.glass), grid, view, settings,
-            false, result);
-}
-
-void process_back_faces(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
-                        const RasterSettings& settings, bool glass, Geometry& result) {
-    const auto closed = [&](const Objects& objects) {
-        Objects selected = glass ? objects : without(objects, data.glass);
-        std::erase_if(selected, [&](std::uint32_t object) { return !data.objects[object].closed; });
-        return selected;
-    };
-    process(data, closed(data.polygonal), closed(data.spheres), grid, view, settings, true, result, Sides::kBacks);
-}
-
-void process_glass_back_faces(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
-                              const RasterSettings& settings, bool coverage_masks, Geometry& result) {
-    process(data, common_to(data.polygonal, data.glass), {}, grid, view, settings, coverage_masks, result,
-            Sides::kBacks);
 }
 
 void process_layers(const RasterSceneData& data, const TileGrid& grid, const PassView& view,

@@ -11,15 +11,12 @@
 
 namespace duet::raster {
 
-class ScreenGBuffer; // raster/gbuffer/screen_gbuffer.h
-
 /// Represents one view of the scene: a point on the lens, a time, and the sample positions in the pixel.
 struct PassView {
     Pinhole pinhole;
     float time = 0;
     Viewport viewport;
     const std::vector<SampleOffset>& samples;
-    const ScreenGBuffer* gbuffer = nullptr; ///< the depths that a screen-space effect reads; null if there is none
 };
 
 /// Stores the primitives of a pass, ready to be rasterized tile by tile. They are rebuilt for each pass in the same
@@ -47,20 +44,6 @@ void process_without(const RasterSceneData& data, const std::vector<std::uint32_
 /// Processes those objects of process_geometry() that are listed, in order.
 void process_only(const RasterSceneData& data, const std::vector<std::uint32_t>& objects, const TileGrid& grid,
                   const PassView& view, const RasterSettings& settings, Geometry& result);
-/// Processes the objects of process_geometry() except RasterSceneData::glass.
-void process_without_glass(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
-                           const RasterSettings& settings, Geometry& result);
-/// Processes only RasterSceneData::glass, without coverage masks (CoverageMask).
-void process_glass(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
-                   const RasterSettings& settings, Geometry& result);
-/// Processes only the back faces of closed objects, which include the far sides of spheres. RasterSceneData::glass is
-/// included if `glass` is true.
-void process_back_faces(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
-                        const RasterSettings& settings, bool glass, Geometry& result);
-/// Processes only the back faces of the meshes and quads of RasterSceneData::glass. `coverage_masks` allows coverage
-/// masks (CoverageMask).
-void process_glass_back_faces(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
-                              const RasterSettings& settings, bool coverage_masks, Geometry& result);
 /// Processes only the objects with alpha mask or alpha blending (RasterSceneData::alpha_polygonal and alpha_spheres).
 void process_layers(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
                     const RasterSettings& settings, Geometry& result);

@@ -81,12 +81,7 @@ float DrawSphere::nearest(const Ray& ray) const {
 }
 
 std::optional<float> DrawSphere::intersect(const Ray& ray) const {
-    Ray local = identity ? ray : to_object_space(ray, to_world, to_object);
-    const std::optional<float> t = intersect_sphere(local, sphere);
-    if (!t || !far_side) return t;
-    local.t_min = *t;
-    const std::optional<float> out = intersect_sphere(local, sphere);
-    return out ? out : t;
+    return intersect_sphere(identity ? ray : to_object_space(ray, to_world, to_object), sphere);
 }
 
 Doubles DrawSphere::intersect(const CameraRays& rays) const {
@@ -113,7 +108,7 @@ Doubles DrawSphere::intersect(const CameraRays& rays) const {
                   t_min = round_to_float(rays.t_min);
     const Doubles beyond = xsimd::select((far > t_min) & (far < none), far, none);
     const Doubles first = xsimd::select((near > t_min) & (near < none), near, beyond);
-    return xsimd::select(met, far_side ? max(first, beyond) : first, none);
+    return xsimd::select(met, first, none);
 }
 
 PixelRect sphere_bounds(const Sphere& sphere, const Mat4d& to_pixel, const Viewport& viewport) {

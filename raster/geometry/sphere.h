@@ -18,7 +18,7 @@ struct DrawSphere {
     PixelRect bounds; ///< pixels it may cover, within the image
     Sphere sphere;    ///< in object space
     bool identity = true;
-    bool far_side = false; ///< draw the ray's exit point instead of its entry point
+
     Mat4 to_world, to_object;
 
     /// Returns the ray parameter of the hit, by intersect_sphere in object space as in the ray tracer; none on a

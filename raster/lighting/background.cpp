@@ -1,10 +1,19 @@
 #include "raster/lighting/background.h"
 
-#include "raster/lighting/environment_light.h"
-
 #include <bit>
 
 namespace duet::raster {
+
+bool shows_environment(const RasterSceneData& data, const RasterSettings& settings) {
+    return settings.environment && (data.scene.needs.environment || !settings.skips.environment);
+}
+
+std::optional<Rgb> constant_background(const RasterSceneData& data, const RasterSettings& settings) {
+    if (settings.shading != Shading::kLit || !settings.components.emission || !shows_environment(data, settings))
+        return Rgb();
+    const auto* constant = std::get_if<ConstantEnvironment>(&data.scene.environment);
+    return constant != nullptr ? std::optional(constant->radiance) : std::nullopt;
+}
 
 void draw_background(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
                      Planes3& radiance) {
@@ -16,6 +25,7 @@ void draw_background(const RasterSceneData& data, const RasterSettings& settings
             const int column = x + std::countr_zero(open);
             if (column >= gbuffer.width()) break;
             const auto direction = [&] {
+                if (!gbuffer.position.empty()) return normalize(gbuffer.position.vector_at(column, y));
                 return -gbuffer.projection.to_viewer(gbuffer.projection.point(
                     static_cast<float>(column), static_cast<float>(y), gbuffer.projection.near()));
             };

@@ -1,4 +1,4 @@
-// DirectRadiance light: what the scene's lights send to the viewer by the diffuse and specular lobes of the visible
+// Direct light: what the scene's lights send to the viewer by the diffuse and specular lobes of the visible
 // surfaces. Area lights are integrated in closed form (raster/lighting/polygon_light.h, sphere_light.h), so there is no
 // noise.
 #pragma once
@@ -11,7 +11,7 @@ namespace duet::raster {
 
 /// Holds radiance towards the viewer, for each pixel. Its quotient is the visible fraction of all lights together,
 /// which may be filtered without blurring the surfaces (Heitz, Hill and McGuire 2018, "Combining Analytic
-/// DirectRadiance Illumination and Stochastic Shadows").
+/// Direct Illumination and Stochastic Shadows").
 struct DirectLight {
     Planes3 unshadowed;
     Planes3 shadowed; ///< empty without a shadow lookup

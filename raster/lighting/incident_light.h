@@ -2,7 +2,7 @@
 // batch.
 #pragma once
 
-#include "raster/lighting/direct_lighting.h"
+#include "common/light/light.h"
 #include "raster/visibility/shader.h"
 
 namespace duet::raster {
@@ -11,6 +11,10 @@ template <typename T> struct IncidentT {
     Vec3T<T> wi;        ///< unit, towards the light
     RgbT<T> irradiance; ///< on a surface facing the light, without occlusion
 };
+
+/// Approximates a surface light by a distant light in the direction of its center. The irradiance is that at p on a
+/// surface facing this direction. The result is black if p is the center itself.
+IncidentT<float> as_distant(const SurfaceLight& light, Vec3 p);
 
 /// Returns the incident light at a world-space point, for any light but a sun. An area light counts as a distant
 /// light of equal irradiance in the direction of its center.

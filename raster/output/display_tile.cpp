@@ -1,8 +1,6 @@
 #include "raster/output/display_tile.h"
 
-#include "raster/lighting/environment_light.h"
 #include "raster/shading/packet_shader.h"
-#include "raster/shading/shade_sample.h"
 #include "raster/visibility/packet_primitives.h"
 
 #include "common/image/srgb.h"
@@ -24,6 +22,7 @@ bool is_empty(const Geometry& geometry, std::size_t index) {
 }
 
 constexpr int kBlock = DepthTile::kBlock;
+constexpr Rgba8 kBackground{0, 0, 0, 255};
 
 /// Copies a row of a tile's blocks to the image, from pixel row y on. row_of(block, row) returns the address of
 /// eight pixels of a block. Whole cache lines are written with non-temporal stores, because a frame is larger than
@@ -69,16 +68,13 @@ void copy_depth(const DepthTile& tile, ImageFloat& image) {
     finish_streams();
 }
 
-/// Shades a tile's pixels and stores them in the image: packet by packet with a program, else one by one.
+/// Shades a tile's pixels packet by packet and stores them in the image. The background is black.
 class TileDisplay {
 public:
-    TileDisplay(const RasterSceneData& data, const RasterSettings& settings, const ShaderProgram* program,
-                const Geometry& geometry, const PassView& view, const DepthTile& tile, std::optional<Rgba8> background,
-                Image<Rgba8>& image)
-        : data_(data), settings_(settings), geometry_(geometry), view_(view), tile_(tile), image_(image),
-          shader_(program != nullptr ? program->for_tile(data, geometry, view, tile.rect()) : nullptr),
-          background_(background) {
-        if (background_) background_packet_.fill(*background_);
+    TileDisplay(const RasterSceneData& data, const ShaderProgram& program, const Geometry& geometry,
+                const PassView& view, const DepthTile& tile, Image<Rgba8>& image)
+        : tile_(tile), image_(image), shader_(program.for_tile(data, geometry, view, tile.rect())) {
+        background_packet_.fill(kBackground);
     }
 
     void run() {
@@ -104,12 +100,12 @@ private:
 
     /// Queues the packets of the block whose first pixel is (x, y), or fills them with the background.
     void block(int x, int y, std::uint32_t sample_index, std::size_t slot) {
-        if (background_ && !tile_.drawn(sample_index / kBlockSamples)) {
+        if (!tile_.drawn(sample_index / kBlockSamples)) {
             std::fill_n(codes_.begin() + static_cast<std::ptrdiff_t>(slot), kPacketsPerBlock, background_packet_);
             return;
         }
         for (std::size_t s = 0; s < kPacketsPerBlock; ++s, y += kPacketRows, sample_index += kPacketSize, ++slot) {
-            if (background_ && visible_lanes(tile_.ids() + sample_index) == 0)
+            if (visible_lanes(tile_.ids() + sample_index) == 0)
                 codes_[slot] = background_packet_;
             else
                 queue_packet(x, y, sample_index, slot);
@@ -117,8 +113,6 @@ private:
     }
 
     void queue_packet(int x, int y, std::uint32_t sample_index, std::size_t slot) {
-        if (shader_ == nullptr)
-            return shade_one_by_one(intersect(tile_.rect(), {x, y, x + kBlock, y + kPacketRows}), codes_[slot]);
         const std::size_t next = count_++;
         destinations_[next] = &codes_[slot];
         packets_[next] = sample_packet(tile_, x, y, sample_index);
@@ -128,23 +122,10 @@ private:
     void shade_queued() {
         if (count_ == 0) return;
         shader_->shade(std::span(packets_).first(count_), colors_.data(), visible_.data());
-        // A program implies a background.
-        encode_packets(std::span(colors_).first(count_), visible_.data(), *background_, destinations_.data());
+        encode_packets(std::span(colors_).first(count_), visible_.data(), kBackground, destinations_.data());
         count_ = 0;
     }
 
-    void shade_one_by_one(const PixelRect& r, SrgbPacket& codes) {
-        if (!hits_) hits_.emplace(tile_, geometry_, view_);
-        for (int y = r.y0; y < r.y1; ++y)
-            for (int x = r.x0; x < r.x1; ++x)
-                codes[static_cast<std::size_t>(y - r.y0) * kPacketWidth + static_cast<std::size_t>(x - r.x0)] =
-                    encoded(srgb_encoder(), shade_sample(data_, settings_, *hits_, x, y).radiance);
-    }
-
-    const RasterSceneData& data_;
-    const RasterSettings& settings_;
-    const Geometry& geometry_;
-    const PassView& view_;
     const DepthTile& tile_;
     Image<Rgba8>& image_;
     std::unique_ptr<PacketShader> shader_;
@@ -155,68 +136,28 @@ private:
     std::array<ColorPacket, kMaxPackets> colors_;
     std::array<std::uint32_t, kMaxPackets> visible_{};
     std::size_t count_ = 0;
-    std::optional<HitTile> hits_; ///< created on first use
-    std::optional<Rgba8> background_;
     SrgbPacket background_packet_; ///< filled with the background
 };
 
 } // namespace
 
-void display_tile(const RasterSceneData& data, const RasterSettings& settings, const ShaderProgram* program,
-                  const Geometry& geometry, const PassView& view, const PixelRect& rect, std::size_t index,
-                  Image<Rgba8>& image) {
-    const std::optional<Rgb> color = constant_background(data, settings);
-    std::optional<Rgba8> background;
-    if (color) background = encoded(srgb_encoder(), *color);
-    if (background && is_empty(geometry, index)) {
-        fill(rect, *background, image);
+void display_tile(const RasterSceneData& data, const ShaderProgram& program, const Geometry& geometry,
+                  const PassView& view, const PixelRect& rect, std::size_t index, Image<Rgba8>& image) {
+    if (is_empty(geometry, index)) {
+        fill(rect, kBackground, image);
         return;
     }
     DepthTile tile;
     rasterize_drawn_blocks(geometry, view, view.samples.front(), rect, index, tile);
-    if (!background || program == nullptr) tile.clear_undrawn(); // undrawn blocks are read as well
-    TileDisplay(data, settings, program, geometry, view, tile, background, image).run();
+    TileDisplay(data, program, geometry, view, tile, image).run();
 }
-
-namespace {
-
-/// Does the same as render_depth_tile(), and leaves the depth buffer in `depths`. Returns false if the tile is empty.
-bool render_depths(const Geometry& geometry, const PassView& view, const PixelRect& rect, std::size_t index,
-                   DepthTile& depths, ImageFloat& image) {
-    if (is_empty(geometry, index)) {
-        fill(rect, 0.0f, image);
-        return false;
-    }
-    rasterize_drawn_blocks(geometry, view, view.samples.front(), rect, index, depths);
-    copy_depth(depths, image);
-    return true;
-}
-
-} // namespace
 
 void render_depth_tile(const Geometry& geometry, const PassView& view, const PixelRect& rect, std::size_t index,
                        ImageFloat& image) {
+    if (is_empty(geometry, index)) return fill(rect, 0.0f, image);
     DepthTile depths;
-    render_depths(geometry, view, rect, index, depths, image);
-}
-
-void render_depth_and_color_tile(const RasterSceneData& data, const Geometry& geometry, const PassView& view,
-                                 const ShaderProgram& program, const PixelRect& rect, std::size_t index,
-                                 ImageFloat& reversed_depth, ImageRgb& colors) {
-    DepthTile depths;
-    if (!render_depths(geometry, view, rect, index, depths, reversed_depth)) return;
-    depths.clear_undrawn(); // undrawn blocks are read as well
-    const auto shader = program.for_tile(data, geometry, view, rect);
-    for (int y0 = rect.y0; y0 < rect.y1; y0 += DepthTile::kPacketRows)
-        for (int x0 = rect.x0; x0 < rect.x1; x0 += static_cast<int>(kPacketWidth)) {
-            ColorPacket packet_colors;
-            const std::uint32_t visible = shader->shade(sample_packet(depths, x0, y0), packet_colors);
-            for (std::size_t i = 0; i < kPacketSize; ++i) {
-                const int x = x0 + static_cast<int>(i % kPacketWidth), y = y0 + static_cast<int>(i / kPacketWidth);
-                if (x < rect.x1 && y < rect.y1 && (visible >> i & 1))
-                    colors(x, y) = Rgb(packet_colors.r[i], packet_colors.g[i], packet_colors.b[i]);
-            }
-        }
+    rasterize_drawn_blocks(geometry, view, view.samples.front(), rect, index, depths);
+    copy_depth(depths, image);
 }
 
 void encode(const ImageRgb& radiance, int threads, Image<Rgba8>& image) {

@@ -3,7 +3,7 @@
 
 #include "common/film/rendering.h"
 #include "raster/render.h"
-#include "raster/shading/shade_sample.h"
+#include "raster/shading/sample_attributes.h"
 
 #include <atomic>
 

@@ -2,10 +2,8 @@
 
 #include "common/system/control.h"
 #include "common/system/error.h"
-#include "raster/gbuffer/screen_gbuffer.h"
-#include "raster/lighting/prefiltered_environment.h"
-#include "raster/screen_space/required_passes.h"
-#include "raster/screen_space/screen_space_refraction.h"
+#include "raster/probes/reflection_probes.h"
+#include "raster/shading/deferred.h"
 #include "raster/shadows/shadows.h"
 
 #include <algorithm>
@@ -49,37 +47,28 @@ std::vector<SkippedWork> list_skipped(const RasterSceneData& data, const RasterS
     return result;
 }
 
-/// Returns true if an object has glass together with other materials or with an alpha mask. Rays through such glass
-/// are not traced.
-bool has_mixed_glass(const RasterSceneData& data) {
-    for (std::uint32_t i = 0; i < data.scene.objects.size(); ++i)
-        for (const std::uint32_t material : data.scene.objects[i].materials)
-            if (std::holds_alternative<Dielectric>(data.scene.materials[material]) && !is_glass(data, i)) return true;
-    return false;
-}
-
 void list_shadow_approximations(const RasterSceneData& data, const RasterSettings& settings,
                                 std::vector<std::string>& result) {
     const Scene& scene = data.scene;
     if (!settings.components.direct || scene.lights.empty()) return;
     if (!settings.shadows || !data.shadows) {
-        result.emplace_back("DirectRadiance light is unshadowed.");
+        result.emplace_back("Direct light is unshadowed.");
         return;
     }
     if (scene.needs.delta_lights)
         result.emplace_back("Shadows of point, spot and sun lights are filtered over about three texels of a map.");
     if (scene.needs.surface_lights)
         result.emplace_back(
-            "Soft shadows are estimated from the depths that the light's centre sees, with one width of "
-            "penumbra a point.");
+            "Soft shadows are estimated from the depths that the light's center sees, by few taps per pixel that neighbors "
+            "share.");
     if (std::any_of(scene.maps.begin(), scene.maps.end(),
                     [](const SurfaceMaps& maps) { return maps.has_transparency() && !(maps.cutoff > 0); }))
         result.emplace_back(
-            "Shadows of what stops a part of the light are dithered: it stops all of that part of a map's texels.");
+            "Shadows of partly transparent surfaces are dithered: they stop all light at that fraction of a map's texels.");
     if (data.shadows->moments() > 1)
         result.push_back(message("Shadows of moving objects are those of ", data.shadows->moments(), " moments."));
     if (data.shadows->coarser())
-        result.emplace_back("Shadow maps are coarser than asked for: there are too many of them.");
+        result.emplace_back("Shadow maps are coarser than requested: there are too many of them.");
     if (data.shadows->unshadowed() > 0)
         result.push_back(message("The ", data.shadows->unshadowed(), " weakest lights are unshadowed."));
 }
@@ -100,77 +89,30 @@ std::vector<std::string> list_approximations(const RasterSceneData& data, const 
            "Moving objects stand where they are when the shutter opens: one sample a pixel sees no motion.");
     add_if(moving && many, "Motion blur is the mean of one moment a sample, the same moments in every pixel.");
     if (settings.shading != Shading::kLit || scene.objects.empty()) return result;
-    if (data.irradiance_probes) {
-        add_if(true, "Light between surfaces is interpolated from irradiance probes; caustics are left out.");
-        add_if(!scene.lights.empty() && settings.shadows,
-               "Shadows come from shadow maps; those of area lights use few taps per pixel.");
-        add_if(data.reflection_probes != nullptr,
-               "Reflections and glass show the image, or probes that see the scene from one point per object.");
-        return result;
-    }
 
     const LightComponentSet& parts = settings.components;
     const bool environment = settings.environment && needs.environment;
-    add_if(parts.emission && parts.direct && parts.environment && parts.reflection,
-           "Light that surfaces reflect onto each other is left out.");
     list_shadow_approximations(data, settings, result);
-    add_if(parts.environment && environment && settings.ambient_occlusion == AmbientOcclusion::kNone,
-           "Light from the environment is unoccluded.");
-    if (parts.environment && environment && settings.ambient_occlusion != AmbientOcclusion::kNone) {
-        const bool even = settings.ambient_occlusion == AmbientOcclusion::kSsao;
-        result.push_back(message(
-            "What hides the environment from diffuse surfaces is guessed from the picture's depths, up to ",
-            occlusion_radius(data, settings), even ? " m away, as if all of it were equally bright." : " m away."));
+    if (parts.environment && data.irradiance_probes && settings.indirect_light) {
+        add_if(true, "Diffuse light between surfaces is interpolated from irradiance probes; caustics are left out.");
+        add_if(settings.ambient_occlusion, "What is nearer than the probes resolve hides light by the image's depths.");
+    } else if (parts.environment) {
+        add_if(true, "Light that surfaces reflect onto each other is left out.");
+        add_if(environment && settings.ambient_occlusion,
+               "What hides the environment from diffuse surfaces is estimated from the image's depths.");
+        add_if(environment && !settings.ambient_occlusion, "Light from the environment is unoccluded.");
+        add_if(environment && !data.irradiance.is_closed_form(),
+               "Diffuse surfaces receive the environment image's spherical harmonics up to the second order.");
     }
-    add_if(parts.environment && environment && !data.irradiance.is_closed_form(),
-           "Diffuse surfaces receive the environment picture's spherical harmonics up to the second order.");
-    const bool refracts = needs_glass_layers(data, settings);
-    const bool mirrors = needs_color_prepass(data, settings),
-               any = parts.reflection && (needs.specular || needs.glossy);
-    const bool has_fallback = needs.transmission && (!refracts || has_mixed_glass(data));
-    const char* fallback_glass = refracts ? "Glass with holes, or in one object with other materials," : "Glass";
-    add_if(any && !mirrors && !refracts,
-           "Metal and glass mirror the environment alone, no surfaces and no lights that have one.");
-    if (any && (mirrors || refracts) && has_fallback)
-        result.push_back(
-            message(fallback_glass, " mirrors the environment alone, no surfaces and no lights that have one."));
-    if ((mirrors || refracts) && data.unreflected_lights > 0)
-        result.push_back(
-            message("The ", data.unreflected_lights, " weakest lamps are mirrored only where the picture shows them."));
-    add_if(any && (mirrors || refracts) && needs.glossy,
-           "Rougher metal mirrors the environment alone, no surfaces and no lights that have one.");
-    add_if(mirrors, "Smooth and moderately rough metal mirrors what the picture shows, and in that no reflections; "
-                    "past its edge and behind "
-                    "things what is seen there is taken to go on.");
-    const bool prefiltered = settings.prefiltered_environment && data.prefiltered;
-    add_if(parts.reflection && needs.glossy && environment && !prefiltered,
-           "Rough metal and frosted glass show the environment as smooth ones do.");
-    add_if(parts.reflection && needs.glossy && environment && prefiltered,
-           "Rough metal and frosted glass show the environment blurred as by a surface that faces the viewer.");
-    add_if(parts.direct && needs.glossy && needs.surface_lights && settings.transformed_cosines,
-           "Light surfaces shine on rough metal and frosted glass by linearly transformed cosines that look like its "
-           "lobe.");
-    add_if(parts.direct && needs.glossy && needs.surface_lights && !settings.transformed_cosines,
-           "Rough metal and frosted glass see each light surface as a distant light in its centre's direction.");
-    if (refracts)
-        result.push_back(
-            message("Glass mirrors and refracts what the picture shows without it, up to ", kMaxGlassDepth,
-                    " objects of glass deep, its far side found in the picture's depths, and casts no caustics."));
-    add_if(refracts && needs.media, "Glass overlaps as if it did not.");
-    if (parts.reflection && has_fallback)
-        result.push_back(message(
-            fallback_glass, " shows the environment refracted once at its front, not the surfaces behind it, and casts "
-                            "no caustics."));
-    if (parts.reflection && needs.media && has_fallback)
-        result.push_back(
-            message(fallback_glass,
-                    " absorbs as over the mean way through a ball of its size, and overlaps as if it did not."));
-    add_if(
-        needs.layers,
-        "The layers of principled and coated surfaces are shaded each by itself, by as much as the viewer sees of it.");
-    add_if(parts.direct && needs.emitter_textures, "Surfaces that emit a picture light others by its mean.");
+    add_if(parts.reflection && data.reflection_probes != nullptr,
+           "Reflections show the image's pixels, or probes that see the scene from one point per object.");
+    add_if(parts.reflection && needs.transmission,
+           "Glass refracts once on entry and once on exit, and casts no caustics.");
+    add_if(parts.direct && needs.glossy && needs.surface_lights,
+           "Area lights on rough metal and frosted glass are reflected by linearly transformed cosines.");
+    add_if(parts.direct && needs.emitter_textures, "Textured area lights light other surfaces by their mean radiance.");
     add_if(parts.direct && data.unsampled_emitters,
-           "Light surfaces that move, and stretched spheres, are seen but light nothing.");
+           "Emissive surfaces that move, and stretched spheres, are visible but light nothing.");
     return result;
 }
 
@@ -188,8 +130,9 @@ void StatisticsCollector::add(const Geometry& geometry) {
     geometry_bytes = std::max(geometry_bytes, geometry.memory_bytes());
 }
 
-void StatisticsCollector::add(const ScreenGBuffer& gbuffer, GeometryPool& pool) {
-    gbuffer_bytes = std::max(gbuffer_bytes, gbuffer.memory_bytes() + pool.memory_bytes());
+void StatisticsCollector::add(const DeferredFrame& frame) {
+    gbuffer_bytes = std::max(gbuffer_bytes, frame.memory_bytes());
+    for (const auto& [stage, seconds] : frame.seconds) add_stage(stage, seconds);
 }
 
 void StatisticsCollector::add_stage(std::string_view stage, double seconds) {
@@ -205,7 +148,7 @@ std::vector<std::pair<std::string, double>> StatisticsCollector::seconds() const
     const double covering = work > 0 ? tiles * cover / work : 0;
     std::vector<std::pair<std::string, double>> result{{"transform", transform}, {"setup", setup}, {"bin", bin}};
     if (stages.empty())
-        result.insert(result.end(), {{"prepass", prepass}, {"cover", covering}, {"shade", tiles - covering}});
+        result.insert(result.end(), {{"cover", covering}, {"shade", tiles - covering}});
     else
         result.insert(result.end(), stages.begin(), stages.end());
     result.emplace_back("resolve", resolve);

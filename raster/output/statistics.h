@@ -14,23 +14,25 @@ struct Control;
 
 namespace duet::raster {
 
+struct DeferredFrame; // raster/shading/deferred.h
+
 /// Accumulates the statistics during a rendering. Several threads may add to the atomic members.
 struct StatisticsCollector {
     std::vector<std::pair<std::string, double>> stages; ///< of deferred shading, in order: seconds of wall-clock time
-    double transform = 0, setup = 0, bin = 0, prepass = 0, tiles = 0, resolve = 0; ///< seconds of wall-clock time
+    double transform = 0, setup = 0, bin = 0, tiles = 0, resolve = 0; ///< seconds of wall-clock time
     std::atomic<std::int64_t> coverage_work{0}, shade_work{0};                     ///< nanoseconds, summed over threads
     std::atomic<std::size_t> tiles_done{0};                           ///< over all passes
     CullCounts culled;                                                ///< over all passes
     std::size_t geometry_bytes = 0;                                   ///< of the pass that needed most
     std::size_t gbuffer_bytes =
-        0; ///< memory of the G-buffer pass (ScreenGBuffer), of the rendering pass that needed most
+        0; ///< of deferred shading's images
     std::size_t framebuffer_bytes = 0;
 
     void add(const Geometry& geometry);
     /// Adds to the seconds of a stage of deferred shading.
     void add_stage(std::string_view stage, double seconds);
     /// Adds a G-buffer and the memory that its pass returned to the pool.
-    void add(const ScreenGBuffer& gbuffer, GeometryPool& pool);
+    void add(const DeferredFrame& frame);
     /// Returns the wall-clock seconds by stage. Coverage and shading alternate in each tile, so the time of the
     /// tile loop is divided between them in proportion to their work.
     std::vector<std::pair<std::string, double>> seconds() const;

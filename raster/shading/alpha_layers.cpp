@@ -45,7 +45,7 @@ bool Layers::add(int x, int y, const Hit& hit) {
     if (opacity_here == 1) return true;
     Pixel& p = pixel(x, y);
     if (!p.blocking_hit.valid() && !passes_alpha_mask(data_.scene, tile_.ray(x, y), hit)) p.blocking_hit = hit;
-    ShadedSample shaded = shade_sample(data_, settings_, tile_, x, y);
+    ShadedSample shaded = sample_attributes(data_, settings_, tile_, x, y);
     if (program_ != nullptr) shaded.radiance = program_->shade_hit(data_, view_, hit, offset_.position(x, y));
     add_weighted(p.front, shaded, p.transmittance * opacity_here);
     p.transmittance *= 1 - opacity_here;

@@ -2,7 +2,7 @@
 // depth.
 #pragma once
 
-#include "raster/shading/shade_sample.h"
+#include "raster/shading/sample_attributes.h"
 
 #include <vector>
 
@@ -14,8 +14,8 @@ namespace duet::raster {
 class Layers {
 public:
     /// Shades the layers. It changes the visible surface in `tile` where an opaque hit lies in front. `geometry`
-    /// comes from process_layers, `offset` is that of the tile's samples, `program` is the shading program; null
-    /// for Shading::kLit.
+    /// comes from process_layers, `offset` is that of the tile's samples, `program` is the shading program. If it is
+    /// null, radiance is not computed, because deferred shading computes it (raster/shading/blended_layers.h).
     Layers(const RasterSceneData& data, const RasterSettings& settings, const ShaderProgram* program,
            const Geometry& geometry, const PassView& view, SampleOffset offset, std::size_t tile_index, HitTile& tile);
 

@@ -53,17 +53,4 @@ std::unique_ptr<ShaderProgram> built_in_program(Shading shading, const Camera& c
     return nullptr;
 }
 
-Quality quality(std::string_view name) {
-    if (name == "realtime") return Quality::kRealtime;
-    if (name == "high") return Quality::kHigh;
-    throw Error(message("quality: found ", name, ", expected realtime or high"));
-}
-
-AmbientOcclusion parse_ambient_occlusion(std::string_view name) {
-    if (name == "none") return AmbientOcclusion::kNone;
-    if (name == "ssao") return AmbientOcclusion::kSsao;
-    if (name == "gtao") return AmbientOcclusion::kGtao;
-    throw Error(message("ambient occlusion: found ", name, ", expected none, ssao or gtao"));
-}
-
 } // namespace duet::raster

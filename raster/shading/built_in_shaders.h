@@ -9,7 +9,7 @@
 namespace duet::raster {
 
 /// Returns the program of a shading for a camera; null for Shading::kLit, which has no program
-/// (raster/shading/shade_sample.h).
+/// (raster/shading/sample_attributes.h).
 std::unique_ptr<ShaderProgram> built_in_program(Shading shading, const Camera& camera);
 
 // Each program is defined in a file of the same name.

@@ -3,12 +3,10 @@
 #include "raster/gbuffer/gbuffer_pass.h"
 #include "raster/lighting/background.h"
 #include "raster/lighting/direct_light.h"
-#include "raster/lighting/environment_light.h"
 #include "raster/lighting/indirect_light.h"
 #include "raster/lighting/reflections.h"
 #include "raster/lighting/refraction.h"
 #include "raster/lighting/sky_light.h"
-#include "raster/screen_space/required_passes.h"
 #include "raster/shadows/map_shadows.h"
 #include "raster/shadows/shadow_filter.h"
 
@@ -20,49 +18,86 @@ namespace {
 /// Occlusion by what is nearer than half the distance between probes; they see the rest themselves.
 constexpr float kOccluded = 0.5f;
 
-void prepare_frame(const ScreenProjection& projection, int width, int height, bool coats, DeferredFrame& frame) {
-    const bool fits = frame.gbuffer && frame.gbuffer->width() == width && frame.gbuffer->height() == height;
-    if (fits) {
-        frame.gbuffer->projection = projection;
-    } else {
-        frame.gbuffer.emplace(projection, width, height, coats);
-        frame.radiance = Planes3(width, height);
-    }
-    frame.seconds.clear();
+double occlusion_radius(const RasterSceneData& data, const RasterSettings& settings) {
+    if (settings.occlusion_radius > 0) return settings.occlusion_radius;
+    const Camera& camera = data.scene.camera;
+    return min(static_cast<double>(length(data.scene.bounds.diagonal())), length(camera.look_at - camera.eye)) / 2;
 }
+
+/// Splits the radiance into components, each of which is what the stages since the last call added.
+class ComponentRecorder {
+public:
+    ComponentRecorder(const Planes3& radiance, int threads, LightComponentImages* components)
+        : radiance_(radiance), threads_(threads), components_(components) {
+        if (components_ != nullptr) before_ = Planes3(radiance.x.width(), radiance.x.height());
+    }
+    void record(Planes3 LightComponentImages::*component) {
+        if (components_ == nullptr) return;
+        Planes3& image = components_->*component;
+        const bool first = image.empty();
+        if (first) image = Planes3(radiance_.x.width(), radiance_.x.height());
+        for_each_batch(radiance_.x.width(), radiance_.x.height(), threads_, [&](int x, int y) {
+            const RgbT<Floats> now = radiance_.color(x, y), added = now - before_.color(x, y);
+            image.set(x, y, first ? added : image.color(x, y) + added);
+            before_.set(x, y, now);
+        });
+    }
+    /// Records the direct light that shadows remove, after the direct light itself.
+    void record_shadowed(const DirectLight& light) {
+        if (components_ == nullptr) return;
+        components_->shadowed = light.unshadowed;
+        for_each_batch(radiance_.x.width(), radiance_.x.height(), threads_, [&](int x, int y) {
+            components_->shadowed.set(x, y, light.unshadowed.color(x, y) - components_->direct.color(x, y));
+        });
+    }
+
+private:
+    const Planes3& radiance_;
+    int threads_;
+    LightComponentImages* components_;
+    Planes3 before_;
+};
 
 } // namespace
 
-void shade_deferred(const RasterSceneData& data, const RasterSettings& settings, const Geometry& geometry,
-                    const PassView& view, const TileGrid& grid, SampleOffset offset, const Control& control,
-                    DeferredFrame& frame) {
-    prepare_frame(ScreenProjection(view.pinhole, offset), grid.region.width(), grid.region.height(),
-                  any_clear_coat(data.scene), frame);
-    GBuffer& gbuffer = *frame.gbuffer;
+void DeferredFrame::start(const Scene& scene, const ScreenProjection& projection, int width, int height) {
+    const bool fits = gbuffer && gbuffer->width() == width && gbuffer->height() == height;
+    if (fits) {
+        gbuffer->projection = projection;
+    } else {
+        gbuffer.emplace(projection, width, height, any_clear_coat(scene));
+        radiance = Planes3(width, height);
+    }
+}
+
+void shade_gbuffer(const RasterSceneData& data, const RasterSettings& settings, float time, bool background,
+                   DeferredFrame& frame, LightComponentImages* components) {
+    const GBuffer& gbuffer = *frame.gbuffer;
     Planes3& radiance = frame.radiance;
     const int threads = settings.threads;
+    ComponentRecorder recorder(radiance, threads, components);
     Stopwatch watch;
     const auto done = [&](const char* stage) { frame.seconds.emplace_back(stage, watch.lap()); };
 
-    fill_gbuffer(data, settings, geometry, view, grid, offset, control, gbuffer, radiance);
-    done("surface attributes");
-    if (settings.components.direct && !data.scene.lights.empty()) {
-        if (settings.shadows && data.soft_shadows) {
-            const MapShadows shadows(*data.shadows, *data.soft_shadows, gbuffer.projection.eye(), view.time);
-            const DirectLight light = direct_light(data, settings, gbuffer, &shadows);
-            done("direct light and shadows");
-            add_filtered(gbuffer, light, threads, radiance);
-            done("shadow filter");
-        } else {
-            add(direct_light(data, settings, gbuffer, nullptr), threads, radiance);
-            done("direct light");
-        }
-    }
-    draw_background(data, settings, gbuffer, radiance);
+    if (background) draw_background(data, settings, gbuffer, radiance);
+    recorder.record(&LightComponentImages::emission);
     done("background");
     const LightComponentSet& parts = settings.components;
-    const bool occluded = settings.ambient_occlusion != AmbientOcclusion::kNone;
-    if (data.irradiance_probes && parts.environment) {
+    if (parts.direct && !data.scene.lights.empty()) {
+        const bool shadowed = settings.shadows && data.soft_shadows;
+        std::optional<MapShadows> shadows;
+        if (shadowed) shadows.emplace(*data.shadows, *data.soft_shadows, gbuffer.projection.eye(), time);
+        const DirectLight light = direct_light(data, settings, gbuffer, shadowed ? &*shadows : nullptr);
+        done("direct light and shadows");
+        if (shadowed)
+            add_filtered(gbuffer, light, threads, radiance);
+        else
+            add(light, threads, radiance);
+        recorder.record(&LightComponentImages::direct), recorder.record_shadowed(light);
+        done("shadow filter");
+    }
+    const bool occluded = settings.ambient_occlusion;
+    if (data.irradiance_probes && settings.indirect_light && parts.environment) {
         const float radius = occluded ? kOccluded * data.irradiance_probes->spacing() : 0;
         frame.occlusion.compute(gbuffer, radius, threads);
         done("ambient occlusion");
@@ -74,6 +109,7 @@ void shade_deferred(const RasterSceneData& data, const RasterSettings& settings,
         add_sky_light(data, settings, gbuffer, occluded ? &frame.occlusion : nullptr, radiance);
         done("sky light");
     }
+    recorder.record(&LightComponentImages::environment);
     if (data.reflection_probes && parts.reflection) {
         add_reflections(data, settings, gbuffer, data.reflection_probes.get(), radiance);
         done("reflections");
@@ -81,6 +117,50 @@ void shade_deferred(const RasterSceneData& data, const RasterSettings& settings,
             add_refraction(data, settings, gbuffer, radiance);
             done("refraction");
         }
+    }
+    recorder.record(&LightComponentImages::reflection);
+}
+
+void shade_deferred(const SampleView& sample, DeferredFrame& frame) {
+    const RasterSceneData& data = sample.data;
+    const ScreenProjection projection(sample.view.pinhole, sample.offset);
+    const int width = sample.grid.region.width(), height = sample.grid.region.height();
+    frame.seconds.clear();
+    frame.start(data.scene, projection, width, height);
+    const Stopwatch watch;
+    fill_gbuffer(data, sample.settings, sample.geometry, sample.view, sample.grid, sample.offset, sample.control,
+                 *frame.gbuffer, frame.radiance);
+    std::optional<BlendedLayers> layers;
+    if (sample.layers != nullptr) layers.emplace(sample, *frame.gbuffer, frame.radiance);
+    frame.seconds.emplace_back("surface attributes", watch.seconds());
+    shade_gbuffer(data, sample.settings, sample.view.time, true, frame);
+    if (!layers || layers->count() == 0) return;
+    layers->attenuate(frame.radiance);
+    const std::unique_ptr<DeferredFrame> blended = std::make_unique<DeferredFrame>();
+    blended->start(data.scene, projection, width, height);
+    const Stopwatch blending;
+    for (std::size_t k = 0; k < layers->count() && !sample.control.stopped(); ++k) {
+        layers->fill(sample, k, *blended->gbuffer, blended->radiance);
+        shade_gbuffer(data, sample.settings, sample.view.time, false, *blended);
+        layers->add(k, blended->radiance, frame.radiance);
+    }
+    frame.seconds.emplace_back("blended surfaces", blending.seconds());
+}
+
+void shade_multisampled(const SampleView& sample, DeferredFrame& frame,
+                        const std::function<void(const Planes3& radiance, const PlaneInt& counts)>& use) {
+    const int width = sample.grid.region.width(), height = sample.grid.region.height();
+    frame.seconds.clear();
+    frame.start(sample.data.scene, ScreenProjection(sample.view.pinhole, {}), width, height);
+    PlaneInt counts(width, height);
+    for (std::size_t k = 0; !sample.control.stopped(); ++k) {
+        const Stopwatch watch;
+        const bool any = fill_gbuffer_layer(sample.data, sample.settings, sample.geometry, sample.view, sample.grid, k,
+                                            sample.control, *frame.gbuffer, frame.radiance, counts);
+        frame.seconds.emplace_back("surface attributes", watch.seconds());
+        if (!any) break;
+        shade_gbuffer(sample.data, sample.settings, sample.view.time, true, frame);
+        use(frame.radiance, counts);
     }
 }
 

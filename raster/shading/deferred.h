@@ -5,18 +5,26 @@
 #include "raster/geometry/geometry.h"
 #include "raster/geometry/tiles.h"
 #include "raster/screen_space/gtao.h"
+#include "raster/shading/blended_layers.h"
 
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
-namespace duet {
-struct Control;
-}
-
 namespace duet::raster {
+
+/// Holds the radiance towards the viewer, split by its source. The components sum to the color of the image.
+struct LightComponentImages {
+    Planes3 emission;    ///< of visible emissive surfaces, and the environment as the background
+    Planes3 direct;      ///< from Scene::lights
+    Planes3 environment; ///< diffuse light from the environment and, with RasterSettings::indirect_light, from surfaces
+    Planes3 indirect;    ///< diffuse light from surfaces, if HitShader has taken it out of `environment`
+    Planes3 reflection;  ///< mirrored and refracted light of everything but Scene::lights on rough surfaces
+    Planes3 shadowed;    ///< not included in the sum: the direct light that shadows remove
+};
 
 /// Holds the images of a frame. Rendering frame after frame into the same one allocates no memory.
 struct DeferredFrame {
@@ -25,13 +33,25 @@ struct DeferredFrame {
     GtaoImage occlusion;
     std::vector<std::pair<std::string, double>> seconds; ///< wall-clock time of each stage, in order
 
+    /// Sets the size and the projection. The contents are undefined.
+    void start(const Scene& scene, const ScreenProjection& projection, int width, int height);
     std::size_t memory_bytes() const { return (gbuffer ? gbuffer->memory_bytes() : 0) + radiance.memory_bytes(); }
 };
 
-/// Computes the radiance of one sample per pixel, at `offset` in its pixel.
-void shade_deferred(const RasterSceneData& data, const RasterSettings& settings, const Geometry& geometry,
-                    const PassView& view, const TileGrid& grid, SampleOffset offset, const Control& control,
-                    DeferredFrame& frame);
+/// Shades the surfaces in frame.gbuffer. frame.radiance holds what they emit, and receives the radiance towards the
+/// viewer. `time` is that of the shadows. Without `background`, pixels without a surface stay black. `components` may be
+/// null; else it receives the parts of the radiance.
+void shade_gbuffer(const RasterSceneData& data, const RasterSettings& settings, float time, bool background,
+                   DeferredFrame& frame, LightComponentImages* components = nullptr);
+
+/// Computes the radiance of one sample per pixel: fills the G-buffer, shades it, and composites the blended surfaces
+/// in front of it.
+void shade_deferred(const SampleView& sample, DeferredFrame& frame);
+
+/// Computes the radiance of a multisampled view, which shades each primitive that a pixel's samples see once. Calls
+/// use(radiance, counts) for each layer; counts holds the number of a pixel's samples that see it.
+void shade_multisampled(const SampleView& sample, DeferredFrame& frame,
+                        const std::function<void(const Planes3& radiance, const PlaneInt& counts)>& use);
 
 /// Provides frames whose memory is reused, one for each rendering that runs at the same time.
 class DeferredFramePool {
@@ -42,6 +62,20 @@ public:
 private:
     std::mutex mutex_;
     std::vector<std::unique_ptr<DeferredFrame>> free_;
+};
+
+/// Holds a frame taken from a pool and returned to it by the destructor.
+class PooledDeferredFrame {
+public:
+    explicit PooledDeferredFrame(DeferredFramePool& pool) : pool_(pool), frame_(pool.take()) {}
+    ~PooledDeferredFrame() { pool_.give_back(std::move(frame_)); }
+    PooledDeferredFrame(const PooledDeferredFrame&) = delete;
+    PooledDeferredFrame& operator=(const PooledDeferredFrame&) = delete;
+    DeferredFrame& operator*() { return *frame_; }
+
+private:
+    DeferredFramePool& pool_;
+    std::unique_ptr<DeferredFrame> frame_;
 };
 
 } // namespace duet::raster

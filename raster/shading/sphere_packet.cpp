@@ -59,7 +59,7 @@ SpherePacket::SpherePacket(const PassView& view, const SamplePacket& packet, con
         test.discriminant = max(test.discriminant, zero); // a ray that misses by rounding hits the closest point
         const auto roots = test.roots();
         const Doubles t =
-            sphere.far_side ? roots.far : xsimd::select(roots.near > Doubles(view.pinhole.near), roots.near, roots.far);
+            xsimd::select(roots.near > Doubles(view.pinhole.near), roots.near, roots.far);
         const Vector here = normalized(o + d * t);
         store(n, i, here);
         store_rounded(side, i, xsimd::select(dot(here, d) > zero, Doubles(-1.0), one));

@@ -22,7 +22,7 @@ SoftShadowMaps::SoftShadowMaps(const Shadows& shadows) {
         auto& moments = maps_.emplace_back();
         for (const Shadows::Maps& maps : source.moments) {
             auto& cells = moments.emplace_back();
-            for (std::size_t i = 0; i < maps.cells.size(); ++i) cells.emplace_back(maps.cells[i].cube(), source.cells[i]);
+            for (std::size_t i = 0; i < maps.cells.size(); ++i) cells.emplace_back(maps.cells[i], source.cells[i]);
         }
     }
 }

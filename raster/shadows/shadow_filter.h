@@ -1,6 +1,6 @@
 // Removes the noise of shadows that few taps a pixel estimate: the ratio of shadowed to unshadowed light is averaged
 // over neighbors on the same surface, while the unshadowed light stays sharp (Heitz, Hill and McGuire 2018, "Combining
-// Analytic DirectRadiance Illumination and Stochastic Shadows").
+// Analytic Direct Illumination and Stochastic Shadows").
 #pragma once
 
 #include "raster/lighting/direct_light.h"

@@ -1,6 +1,6 @@
 #include "raster/shadows/shadows.h"
 
-#include "raster/gbuffer/screen_gbuffer.h"
+#include "raster/gbuffer/screen_projection.h"
 
 #include <algorithm>
 #include <cmath>
@@ -85,13 +85,16 @@ std::vector<VisiblePoint> visible_points(const RasterSceneData& data, int thread
     settings.threads = threads;
     Control control;
     const RasterScene all = caster_scene(data, std::vector<bool>(scene.objects.size(), true));
-    const ScreenGBuffer gbuffer(CameraModel(view).pinhole(), {}, render(all, view, settings, control).reversed_depth);
+    const ScreenProjection projection(CameraModel(view).pinhole(), {});
+    const ImageFloat reversed_depth = render(all, view, settings, control).reversed_depth;
     std::vector<VisiblePoint> result;
     for (int y = 0; y < view.height; ++y)
         for (int x = 0; x < view.width; ++x)
-            if (const std::optional<Vec3> p = gbuffer.visible_point(x, y))
-                result.push_back({Vec3d(gbuffer.to_world_position(*p)),
-                                  static_cast<double>(gbuffer.pixel_size(gbuffer.depth(x, y)))});
+            if (const float reversed = reversed_depth(x, y); reversed > 0) {
+                const Vec3 p = projection.point(static_cast<float>(x), static_cast<float>(y), reversed);
+                result.push_back({projection.absolute(p),
+                                  static_cast<double>(projection.pixel_size(projection.near() / reversed))});
+            }
     return result;
 }
 
@@ -242,9 +245,7 @@ void Shadows::draw(const RasterSceneData& data, const RasterSettings& settings, 
         // Other objects may lie in the light's plane, so the camera is slightly in front of it.
         const double before = flat && !surface.two_sided ? 1e-3 * std::sqrt(length(cross(cell.u, cell.v))) : 0;
         maps.cells.emplace_back(draw_cube(casters, cell.center + cell.normal * before, flat ? &cell : nullptr,
-                                          surface.two_sided, moment, cube_side_ / 2, settings.threads),
-                                cell);
-        memory_bytes_ += maps.cells.back().memory_bytes();
+                                          surface.two_sided, moment, cube_side_ / 2, settings.threads));
     }
 }
 
@@ -271,57 +272,6 @@ std::size_t Shadows::moment_at(float time) const {
     const double open = scene_.camera.shutter_open, close = scene_.camera.shutter_close;
     return static_cast<std::size_t>(
         std::clamp((static_cast<double>(time) - open) / (close - open) * kMoments, 0.0, kMoments - 1.0));
-}
-
-float Shadows::visibility(std::size_t light, const ShadingPoint& point, TapRange taps) const {
-    if (source_of_[light] == sources_.size()) return 1;
-    const Source& source = sources_[source_of_[light]];
-    const SurfacePoint& surface = point.surface;
-    // On a smooth mesh the receiver is on the smooth surface that the facets approximate, where a path tracer's
-    // shadow rays start (`terminator_offset` and `terminator_normal` of the shading-terminator fix). Light above its
-    // horizon also reaches facets that are turned away; they would otherwise be lit regardless of blockers.
-    const double error = static_cast<double>(dot(abs(point.terminator_normal), surface.p_error));
-    Receiver receiver{Vec3d(surface.p) + Vec3d(surface.terminator_offset), Vec3d(point.terminator_normal), error};
-    std::size_t moment = 0;
-    if (moments_.size() > 1) {
-        const double open = scene_.camera.shutter_open, close = scene_.camera.shutter_close;
-        const double part = (static_cast<double>(surface.time) - open) / (close - open) * kMoments;
-        moment = static_cast<std::size_t>(std::clamp(part, 0.0, kMoments - 1.0));
-        const Object& object = scene_.objects[surface.object];
-        if (object.moving) {
-            const ObjectTransform now = object_transform(object, surface.time),
-                                  then = object_transform(object, static_cast<float>(moments_[moment]));
-            const Mat4d to_moment = Mat4d(then.to_world) * Mat4d(now.to_object);
-            receiver.p = transform_point(to_moment, receiver.p);
-            receiver.n = normalize(transform_normal(inverse_affine(to_moment), receiver.n));
-            receiver.error *= 4; // includes the rounding of the maps
-        }
-    }
-    return visibility(source, source.moments[moment], receiver, taps);
-}
-
-float Shadows::visibility(const Source& source, const Maps& maps, const Receiver& receiver, TapRange taps) const {
-    if (!source.cells.empty()) {
-        // If the number of cells allows it, the samples of a pixel also divide the cells among themselves.
-        const std::size_t count = maps.cells.size();
-        const bool share = taps.count == TapRange::kBlock && count % TapRange::kBlocks == 0;
-        const std::size_t first = share ? static_cast<std::size_t>(taps.first / TapRange::kBlock) : 0, step = share
-            ? TapRange::kBlocks : 1;
-        float sum = 0;
-        for (std::size_t i = first; i < count; i += step)
-            sum += maps.cells[i].visibility(receiver, share ? TapRange{} : taps);
-        return sum * static_cast<float>(step) / static_cast<float>(count);
-    }
-    for (const CubeMap& cube : maps.cubes) {
-        const Vec3 direction(cube.frame.to_local(receiver.p - cube.center));
-        const ShadowMap& face = *cube.faces[cube_face(direction)];
-        const std::optional<Vec3d> projected = face.project(receiver.p, ShadowMap::kMargin);
-        return projected ? face.lit_fraction(receiver, *projected) : 1;
-    }
-    for (const ShadowMap& view : maps.views)
-        if (const std::optional<Vec3d> projected = view.project(receiver.p, ShadowMap::kMargin))
-            return view.lit_fraction(receiver, *projected);
-    return 1;
 }
 
 } // namespace duet::raster

@@ -1,10 +1,10 @@
 // This header declares the shadow maps of all lights and their lookup.
 #pragma once
 
-#include "raster/lighting/direct_lighting.h"
 #include "raster/raster_scene.h"
+#include "raster/shadows/cube_map.h"
+#include "raster/shadows/emitter.h"
 #include "raster/shadows/light_views.h"
-#include "raster/shadows/soft_shadow.h"
 
 #include <memory>
 #include <span>
@@ -13,18 +13,12 @@
 namespace duet::raster {
 
 /// Holds all shadow maps of a scene; they do not depend on the view.
-/// A scene with motion has maps for several moments of the shutter interval. A moving receiver is looked up at its
-/// position at the map's moment, so that an object does not shade itself by its own motion.
+/// A scene with motion has maps for several moments of the shutter interval.
 class Shadows {
 public:
     /// `data` is the prepared scene except for its shadows. More than one sample per pixel causes several moments to
     /// be rendered if the scene moves.
     Shadows(const RasterSceneData& data, const RasterSettings& settings);
-
-    /// Returns the unshadowed fraction of the light Scene::lights[light] at the point, in [0, 1]. It is the same for
-    /// any number of threads, and 1 for lights without maps. `taps` is the range of taps for each cell of an area
-    /// light.
-    float visibility(std::size_t light, const ShadingPoint& point, TapRange taps) const;
 
     /// Returns the number of lights without maps; the weakest lights have none.
     std::size_t unshadowed() const { return unshadowed_; }
@@ -38,7 +32,7 @@ public:
     struct Maps {
         std::vector<ShadowMap> views;
         std::vector<CubeMap> cubes;
-        std::vector<AreaLightShadow> cells; ///< of surface lights: parallel to Source::cells
+        std::vector<CubeMap> cells; ///< of surface lights: parallel to Source::cells
     };
     /// A source shares maps. It is one point, spot or sun light, or the coplanar surface lights of one object, or all
     /// surface lights of an object that only emits.
@@ -70,7 +64,6 @@ private:
     /// `plane` is a planar emitter, or null; `back` says whether it also emits on its back side.
     CubeMap draw_cube(const RasterScene& casters, Vec3d center, const Emitter* plane, bool back, double moment,
                       int side, int threads);
-    float visibility(const Source& source, const Maps& maps, const Receiver& receiver, TapRange taps) const;
 
     const Scene& scene_;
     double scene_size_;

@@ -12,9 +12,11 @@ using Mask = Floats::batch_bool_type;
 constexpr float kSteepest = 0.5f, kOfElevation = 0.9f;
 constexpr float kRounding = 0x1p-20f; ///< relative error of a depth, and of a point relative to the light
 
+constexpr int kTaps = 5; ///< along each side of the filter
+
 /// Weights of the quadratic B-spline, which is a box of one texel convolved twice with itself, at four texels. The
 /// second texel is at the distance f, in [0, 1), before the point.
-std::array<Floats, 4> spline(const Floats& f) {
+std::array<Floats, kTaps> spline(const Floats& f) {
     const Floats g = Floats(1.0f) - f, half(0.5f);
     const auto outer = [&](const Floats& x) { // of distance x in [1, 2)
         const Floats d = max(Floats(1.5f) - x, Floats(0.0f));
@@ -23,7 +25,14 @@ std::array<Floats, 4> spline(const Floats& f) {
     const auto inner = [&](const Floats& x) { // of distance x in [0, 1)
         return xsimd::select(x < half, Floats(0.75f) - x * x, outer(x));
     };
-    return {outer(Floats(1.0f) + f), inner(f), inner(g), outer(Floats(1.0f) + g)};
+    return {outer(Floats(1.0f) + f), inner(f), inner(g), outer(Floats(1.0f) + g), Floats(0.0f)};
+}
+
+/// Weights of a box of four texels at five texels. It begins at the fraction f, in [0, 1), of the first texel. Each
+/// direction weights all ranks of a dither matrix of 4 × 4 texels equally at any position, so its pattern cancels.
+std::array<Floats, kTaps> box(const Floats& f) {
+    const Floats quarter(0.25f);
+    return {quarter - f * quarter, quarter, quarter, quarter, f * quarter};
 }
 
 Floats dot_constant(const Vec3T<Floats>& a, Vec3 b) { return a.x * Floats(b.x) + a.y * Floats(b.y) + a.z * Floats(b.z); }
@@ -73,18 +82,23 @@ Floats SharpShadowMap::visibility(const Vec3T<Floats>& p, const Vec3T<Floats>& n
     inside = (depth > Floats(near_)) & (x >= low) & (y >= low) & (x <= high) & (y <= high);
     if (!xsimd::any(inside)) return Floats(1.0f);
     const Plane plane = this->plane(x, y, max(depth, Floats(near_)), n);
-    const Floats x0 = xsimd::floor(x - half), y0 = xsimd::floor(y - half); // the texel whose center lies before
-    const std::array<Floats, 4> across = spline(x - half - x0), down = spline(y - half - y0);
+    const bool dithered = map_.dithered();
+    const auto weights = dithered ? box : spline;
+    // From the first texel's beginning (the box) or center (the spline's second texel is at distance f) to the point.
+    const Floats before(dithered ? 2.0f : 1.5f);
+    const Floats x0 = xsimd::floor(x - before), y0 = xsimd::floor(y - before);
+    const std::array<Floats, kTaps> across = weights(x - before - x0), down = weights(y - before - y0);
+    const int taps = dithered ? kTaps : kTaps - 1; // the spline's last weight is 0
     const Ints side(map_.side());
-    const Ints first = truncated(xsimd::select(inside, y0 - Floats(1.0f), zero)) * side +
-                       truncated(xsimd::select(inside, x0 - Floats(1.0f), zero));
+    const Ints first = truncated(xsimd::select(inside, y0, zero)) * side +
+                       truncated(xsimd::select(inside, x0, zero));
     const float* texels = map_.reversed_depth().pixels().data();
     Floats lit(0.0f);
-    for (int j = 0; j < 4; ++j) {
-        const Floats off_y = y0 + Floats(static_cast<float>(j) - 0.5f) - y;
+    for (int j = 0; j < taps; ++j) {
+        const Floats off_y = y0 + Floats(static_cast<float>(j) + 0.5f) - y;
         Floats row_lit(0.0f);
-        for (int i = 0; i < 4; ++i) {
-            const Floats off_x = x0 + Floats(static_cast<float>(i) - 0.5f) - x;
+        for (int i = 0; i < taps; ++i) {
+            const Floats off_x = x0 + Floats(static_cast<float>(i) + 0.5f) - x;
             const Floats stored = gather(texels + j * map_.side() + i, first);
             const Floats seen = map_.orthographic() ? Floats(-near_) / max(stored, Floats(1e-25f)) : stored;
             const Floats distance = xsimd::sqrt(off_x * off_x + off_y * off_y);

@@ -3,7 +3,9 @@
 #pragma once
 
 #include "raster/gbuffer/screen_projection.h"
-#include "raster/shadows/soft_shadow.h"
+#include "raster/geometry/packet.h"
+#include "raster/shadows/cube_map.h"
+#include "raster/shadows/emitter.h"
 
 #include <vector>
 

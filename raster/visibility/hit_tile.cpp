@@ -199,8 +199,7 @@ void HitTile::allocate() {
 }
 
 HitTile::HitTile(const DepthTile& tile, const Geometry& geometry, const PassView& view)
-    : rect_(tile.rect()), pinhole_(view.pinhole), gbuffer_(view.gbuffer),
-      quadrant_((tile.offset().x < kSubpixels / 2 ? 0 : 1) + (tile.offset().y < kSubpixels / 2 ? 0 : 2)) {
+    : rect_(tile.rect()), pinhole_(view.pinhole) {
     allocate();
     Filler filler(*this, geometry, view);
     for (int y = rect_.y0; y < rect_.y1; y += DepthTile::kPacketRows)
@@ -209,7 +208,7 @@ HitTile::HitTile(const DepthTile& tile, const Geometry& geometry, const PassView
 }
 
 HitTile::HitTile(const LayeredTile& tile, std::size_t layer, const Geometry& geometry, const PassView& view)
-    : rect_(tile.rect()), pinhole_(view.pinhole), gbuffer_(view.gbuffer) {
+    : rect_(tile.rect()), pinhole_(view.pinhole) {
     allocate();
     Filler filler(*this, geometry, view);
     LayeredTile::LayerPacket layer_packet;

@@ -43,7 +43,6 @@ public:
     HitTile(const LayeredTile& tile, std::size_t layer, const Geometry& geometry, const PassView& view);
 
     const PixelRect& rect() const { return rect_; }
-    const ScreenGBuffer* gbuffer() const { return gbuffer_; }
     const Hit& hit(int x, int y) const { return hits_[index(x, y)]; }
     const Ray& ray(int x, int y) const { return rays_[index(x, y)]; }
     double distance_per_depth(int x, int y) const { return distance_per_depth_[index(x, y)]; }
@@ -55,8 +54,6 @@ public:
     RayFootprint footprint(int x, int y, int samples_per_pixel) const {
         return PixelFootprint(pinhole_, samples_per_pixel).at(ray(x, y), hit(x, y).t);
     }
-    /// Returns the quadrant of the pixel in which each sample lies, 0 to 3; 0 for a layer of a multisampled tile.
-    int quadrant() const { return quadrant_; }
     /// Returns the reversed depth, near / depth; 0 on a miss.
     float reversed_depth(int x, int y) const { return reversed_depth_[index(x, y)]; }
 
@@ -70,8 +67,6 @@ private:
 
     PixelRect rect_;
     Pinhole pinhole_;
-    const ScreenGBuffer* gbuffer_;
-    int quadrant_ = 0;
     std::vector<Ray> rays_;
     std::vector<double> distance_per_depth_;
     std::vector<float> reversed_depth_;

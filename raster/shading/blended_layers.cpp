@@ -1,0 +1,95 @@
+#include "raster/shading/blended_layers.h"
+
+#include "raster/gbuffer/gbuffer_pass.h"
+#include "raster/visibility/hit_lists.h"
+
+#include "common/scene/alpha_mask.h"
+#include "common/system/control.h"
+#include "common/system/parallel.h"
+
+namespace duet::raster {
+namespace {
+
+void store_hit(const SampleView& sample, int x, int y, const Hit& hit, float reversed_depth, GBuffer& gbuffer,
+               Planes3& emission) {
+    const Scene& scene = sample.data.scene;
+    const Ray ray = rounded(sample.view.pinhole.ray(sample.offset.position(x, y)), sample.view.time);
+    const int samples_per_pixel = static_cast<int>(sample.view.samples.size());
+    const RayFootprint footprint = scene.needs.footprints
+        ? PixelFootprint(sample.view.pinhole, samples_per_pixel).at(ray, hit.t)
+        : RayFootprint{};
+    const SurfacePoint point = surface_point(scene, ray, hit, &footprint);
+    const Bsdf bsdf = bsdf_at(scene.materials[point.material], scene.textures, point);
+    store_surface(scene, {point, bsdf, -ray.direction, reversed_depth}, sample.settings.components.emission, x, y,
+                  gbuffer, emission);
+}
+
+} // namespace
+
+BlendedLayers::BlendedLayers(const SampleView& sample, GBuffer& gbuffer, Planes3& emission) {
+    struct TileLayers {
+        std::vector<std::vector<Surface>> layers;
+        std::vector<Attenuation> attenuations;
+    };
+    std::vector<TileLayers> tiles(sample.grid.size());
+    parallel_for(tiles.size(), sample.settings.threads, [&](std::size_t i) {
+        if (sample.control.stopped() || !overlaps_tile(*sample.layers, i)) return;
+        DepthTile depths;
+        rasterize_tile(sample.geometry, sample.view, sample.offset, sample.grid.tile(i), i, depths);
+        HitTile tile(depths, sample.geometry, sample.view);
+        const PixelRect& rect = tile.rect();
+        struct Pixel {
+            float transmittance = 1;
+            std::uint32_t count = 0;
+        };
+        Image<Pixel> pixels(rect.width(), rect.height());
+        TileLayers& found = tiles[i];
+        HitLists(*sample.layers, sample.view, sample.offset, i, tile).for_each([&](int x, int y, const Hit& hit) {
+            const float alpha = opacity(sample.data.scene, tile.ray(x, y), hit);
+            if (alpha == 0) return false;
+            const Hit behind = tile.exchange(x, y, hit);
+            const float reversed_depth = tile.reversed_depth(x, y);
+            if (alpha == 1) {
+                store_hit(sample, x, y, hit, reversed_depth, gbuffer, emission);
+                return true;
+            }
+            tile.exchange(x, y, behind);
+            Pixel& pixel = pixels(x - rect.x0, y - rect.y0);
+            if (found.layers.size() <= pixel.count) found.layers.emplace_back();
+            found.layers[pixel.count++].push_back({x, y, hit, reversed_depth, pixel.transmittance * alpha});
+            pixel.transmittance *= 1 - alpha;
+            return pixel.transmittance < kLeastTransmittance;
+        });
+        for (int y = rect.y0; y < rect.y1; ++y)
+            for (int x = rect.x0; x < rect.x1; ++x)
+                if (const Pixel& pixel = pixels(x - rect.x0, y - rect.y0); pixel.count > 0)
+                    found.attenuations.push_back({x, y, pixel.transmittance});
+    });
+    for (const TileLayers& tile : tiles) {
+        if (layers_.size() < tile.layers.size()) layers_.resize(tile.layers.size());
+        for (std::size_t k = 0; k < tile.layers.size(); ++k)
+            layers_[k].insert(layers_[k].end(), tile.layers[k].begin(), tile.layers[k].end());
+        attenuations_.insert(attenuations_.end(), tile.attenuations.begin(), tile.attenuations.end());
+    }
+}
+
+void BlendedLayers::fill(const SampleView& sample, std::size_t k, GBuffer& gbuffer, Planes3& emission) const {
+    clear(gbuffer, emission);
+    const std::vector<Surface>& surfaces = layers_[k];
+    parallel_for(surfaces.size(), sample.settings.threads, [&](std::size_t i) {
+        const Surface& s = surfaces[i];
+        store_hit(sample, s.x, s.y, s.hit, s.reversed_depth, gbuffer, emission);
+    });
+}
+
+void BlendedLayers::add(std::size_t k, const Planes3& layer, Planes3& radiance) const {
+    for (const Surface& s : layers_[k])
+        radiance.set_at(s.x, s.y, radiance.color_at(s.x, s.y) + layer.color_at(s.x, s.y) * s.weight);
+}
+
+void BlendedLayers::attenuate(Planes3& radiance) const {
+    for (const Attenuation& a : attenuations_)
+        radiance.set_at(a.x, a.y, radiance.color_at(a.x, a.y) * a.transmittance);
+}
+
+} // namespace duet::raster
