@@ -263,6 +263,7 @@ void for_each_lit_sample(const FrameContext& frame, const CameraModel& camera, c
         if (is_multisampled(frame)) break; // one shading of all samples
     }
     frame.collector.tiles += watch.seconds();
+    if (frame.control.stopped()) return; // the pass is incomplete
     for (std::size_t i = 0; i < frame.grid.size(); ++i) frame.collector.tiles_done += 1, frame.progress.step();
 }
 
@@ -293,7 +294,7 @@ void render_lit(const FrameContext& frame, const CameraModel& camera, const View
             shade_multisampled(sample, *images, add);
         } else {
             shade_deferred(sample, *images);
-            add((*images).radiance, [](int, int) { return 1; });
+            if (!frame.control.stopped()) add((*images).radiance, [](int, int) { return 1; });
         }
         frame.collector.add(*images);
     });
@@ -349,6 +350,7 @@ void render_direct_output(const FrameContext& frame, const CameraModel& camera, 
         for_each_lit_sample(frame, camera, view, pass, [&](const SampleView& sample) {
             shade_deferred(sample, *images);
             frame.collector.add(*images);
+            if (frame.control.stopped()) return;
             for_each_pixel(view, frame.settings.threads, [&](int x, int y) {
                 const Rgb c = (*images).radiance.color_at(x, y);
                 result.srgb(x, y) = {encoder(c.r), encoder(c.g), encoder(c.b), 255};

@@ -132,9 +132,23 @@ private:
                   xsimd::select(lanes_from<float>(samples_.visible >> i),
                                 Floats::load_aligned(packet.reversed_depth + i), Floats(0.0f)));
         store_packet(depth, packet.x, packet.y, gbuffer_.reversed_depth);
+        replace_zero_normals(packet);
         store_packet(shaded_.normal.x, packet.x, packet.y, gbuffer_.normal.x);
         store_packet(shaded_.normal.y, packet.x, packet.y, gbuffer_.normal.y);
         store_packet(shaded_.normal.z, packet.x, packet.y, gbuffer_.normal.z);
+    }
+
+    /// Turns normals that interpolate to zero, between opposite ones, to the viewer.
+    void replace_zero_normals(const SamplePacket& packet) {
+        Vec3T<PacketOf<float>>& n = shaded_.normal;
+        for (std::size_t i = 0; i < kPacketSize; i += Floats::size) {
+            const Vec3T<Floats> normal{load(n.x, i), load(n.y, i), load(n.z, i)};
+            const auto valid = dot(normal, normal) > Floats(0.5f);
+            if (xsimd::all(valid)) continue;
+            const Vec3T<Floats> v = to_viewer(packet, i);
+            store(n.x, i, xsimd::select(valid, normal.x, v.x)), store(n.y, i, xsimd::select(valid, normal.y, v.y));
+            store(n.z, i, xsimd::select(valid, normal.z, v.z));
+        }
     }
 
     /// Fills the lobes of a packet of one material, in lanes.
@@ -160,14 +174,18 @@ private:
         constant.fill(lobes.coat_alpha), store_packet(constant, packet.x, packet.y, gbuffer_.coat_alpha);
     }
 
-    /// Returns the cosines between shading normal and viewer.
-    Floats cosines(const SamplePacket& packet, std::size_t i) const {
+    /// Returns the directions to the viewer, which do not depend on the depth.
+    Vec3T<Floats> to_viewer(const SamplePacket& packet, std::size_t i) const {
         const auto at = [&](const PacketOf<float>& offsets, int start) {
             return load(offsets, i) + Floats(static_cast<float>(start));
         };
-        const Vec3T<Floats> p = gbuffer_.projection.point(at(kColumns<float>, packet.x), at(kRows<float>, packet.y),
-                                                          Floats(gbuffer_.projection.near()));
-        return dot(Vec3T<Floats>{load(shaded_.normal.x, i), load(shaded_.normal.y, i), load(shaded_.normal.z, i)}, gbuffer_.projection.to_viewer(p));
+        return gbuffer_.projection.to_viewer(gbuffer_.projection.point(
+            at(kColumns<float>, packet.x), at(kRows<float>, packet.y), Floats(gbuffer_.projection.near())));
+    }
+    /// Returns the cosines between shading normal and viewer.
+    Floats cosines(const SamplePacket& packet, std::size_t i) const {
+        const Vec3T<PacketOf<float>>& n = shaded_.normal;
+        return dot(Vec3T<Floats>{load(n.x, i), load(n.y, i), load(n.z, i)}, to_viewer(packet, i));
     }
 
     void add_emission(int x, int y, std::size_t i, const SamplePacket& packet) {

@@ -35,9 +35,11 @@ public:
 
 private:
     struct Sum {
-        RgbT<Floats> unshadowed{Floats(0.0f)}, shadowed{Floats(0.0f)};
+        RgbT<Floats> exact{Floats(0.0f)}, unshadowed{Floats(0.0f)}, shadowed{Floats(0.0f)}; ///< as in DirectLight
 
-        void add(const RgbT<Floats>& light) { unshadowed += light, shadowed += light; }
+        void add(const Sum& other) {
+            exact += other.exact, unshadowed += other.unshadowed, shadowed += other.shadowed;
+        }
     };
 
     /// Clusters of 16 rows are divided into those of 4, and these into single rows; and up to twice by normals.
@@ -81,9 +83,7 @@ private:
         for_each_batch_of(gbuffer_, cluster, [&](int x, int y) {
             const xsimd::batch_bool<float> lanes = cluster.lanes(gbuffer_, x, y);
             if (lane_bits(lanes) == 0) return;
-            const Sum sum = light_batch(x, y, lanes, near);
-            Sum& total = sum_at(x, y); // the batch may be in several clusters
-            total.unshadowed += sum.unshadowed, total.shadowed += sum.shadowed;
+            sum_at(x, y).add(light_batch(x, y, lanes, near)); // the batch may be in several clusters
         });
     }
 
@@ -92,7 +92,7 @@ private:
         Sum sum;
         for (const std::uint32_t i : near) add(batch, lights_[i], LitBatch::Lobes::kAll, x, y, sum);
         for (const LightField& field : std::span(fields_).first(field_count_))
-            sum.add(batch.diffuse(field.irradiance(batch.p(), batch.n())));
+            sum.exact += batch.diffuse(field.irradiance(batch.p(), batch.n()));
         if (batch.specular())
             for (const std::uint32_t i : distant_) add(batch, lights_[i], LitBatch::Lobes::kSpecular, x, y, sum);
         return sum;
@@ -100,19 +100,27 @@ private:
 
     void add(const LitBatch& batch, const FrameLight& light, LitBatch::Lobes lobes, int x, int y, Sum& sum) const {
         const RgbT<Floats> reflected = batch.reflected(light, lobes);
-        if (shadows_ == nullptr || !shadows_->shadows(light.index)) return sum.add(reflected);
+        if (shadows_ == nullptr || !shadows_->shadows(light.index)) {
+            sum.exact += reflected;
+            return;
+        }
         const xsimd::batch_bool<float> lit = max_component(reflected) > Floats(0.0f);
         if (lane_bits(lit) == 0) return;
         const Floats visible = shadows_->visibility(light.index, batch.p(), batch.n(), x, y, lit);
-        sum.unshadowed += reflected, sum.shadowed += reflected * xsimd::select(lit, visible, Floats(0.0f));
+        const RgbT<Floats> seen = reflected * xsimd::select(lit, visible, Floats(0.0f));
+        if (shadows_->noisy(light.index))
+            sum.unshadowed += reflected, sum.shadowed += seen;
+        else
+            sum.exact += seen;
     }
 
     Sum& sum_at(int x, int y) {
         return sums_[static_cast<std::size_t>((y % kTileSide * kTileSide + x % kTileSide) / kBatch)];
     }
     void store(int x, int y, const Sum& sum) {
-        result_.unshadowed.set(x, y, sum.unshadowed);
-        if (shadows_ != nullptr) result_.shadowed.set(x, y, sum.shadowed);
+        result_.exact.set(x, y, sum.exact);
+        if (result_.shadowed.empty()) return;
+        result_.unshadowed.set(x, y, sum.unshadowed), result_.shadowed.set(x, y, sum.shadowed);
     }
 
     const GBuffer& gbuffer_;
@@ -139,11 +147,15 @@ DirectLight direct_light(const RasterSceneData& data, const RasterSettings& sett
                          const ShadowLookup* shadows) {
     const int width = gbuffer.width(), height = gbuffer.height();
     DirectLight result;
-    result.unshadowed = Planes3(width, height);
-    if (shadows != nullptr) result.shadowed = Planes3(width, height);
+    result.exact = Planes3(width, height);
     if (!settings.components.direct) return result;
     const std::vector<FrameLight> lights = frame_lights(data.scene.lights, gbuffer.projection);
     if (lights.empty()) return result;
+    const auto noisy = [&](const FrameLight& light) {
+        return shadows != nullptr && shadows->shadows(light.index) && shadows->noisy(light.index);
+    };
+    if (std::ranges::any_of(lights, noisy))
+        result.unshadowed = Planes3(width, height), result.shadowed = Planes3(width, height);
     const LightSet light_set(lights, shadows);
     const bool few = lights.size() <= LightSet::kFewLights; // which lists would not make fewer
     parallel_for(static_cast<std::size_t>((height + kTileSide - 1) / kTileSide), settings.threads, [&](std::size_t i) {
@@ -155,12 +167,6 @@ DirectLight direct_light(const RasterSceneData& data, const RasterSettings& sett
             for (int x = 0; x < width; x += kTileSide) lighter.light_tile(x, first);
     });
     return result;
-}
-
-void add(const DirectLight& light, int threads, Planes3& radiance) {
-    for_each_batch(radiance.x.width(), radiance.x.height(), threads, [&](int x, int y) {
-        radiance.set(x, y, radiance.color(x, y) + light.arriving().color(x, y));
-    });
 }
 
 } // namespace duet::raster

@@ -9,22 +9,18 @@
 
 namespace duet::raster {
 
-/// Holds radiance towards the viewer, for each pixel. Its quotient is the visible fraction of all lights together,
-/// which may be filtered without blurring the surfaces (Heitz, Hill and McGuire 2018, "Combining Analytic
-/// Direct Illumination and Stochastic Shadows").
+/// Holds radiance towards the viewer, for each pixel.
 struct DirectLight {
-    Planes3 unshadowed;
-    Planes3 shadowed; ///< empty without a shadow lookup
-
-    const Planes3& arriving() const { return shadowed.empty() ? unshadowed : shadowed; }
+    Planes3 exact; ///< from lights without shadows, and lights whose shadows are not noisy
+    /// From lights with noisy shadows; empty if there are none. The quotient is the visible fraction of these lights
+    /// together, which may be filtered without blurring the surfaces (Heitz, Hill and McGuire 2018, "Combining Analytic
+    /// Direct Illumination and Stochastic Shadows").
+    Planes3 unshadowed, shadowed;
 };
 
 /// Computes the direct light of all pixels; it is 0 for the background. Lobes whose alpha is below
 /// MetalBsdf::kSmoothAlpha are mirrors, which the reflections show. `shadows` may be null.
 DirectLight direct_light(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
                          const ShadowLookup* shadows);
-
-/// Adds the direct light that arrives to the radiance.
-void add(const DirectLight& light, int threads, Planes3& radiance);
 
 } // namespace duet::raster

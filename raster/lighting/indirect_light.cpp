@@ -1,5 +1,7 @@
 #include "raster/lighting/indirect_light.h"
 
+#include "raster/lighting/lane_math.h"
+
 namespace duet::raster {
 namespace {
 
@@ -19,8 +21,8 @@ void add_reflected(const RasterSettings& settings, const GBuffer& gbuffer, Plane
         const RgbT<Floats> albedo = gbuffer.diffuse.color(x, y);
         const auto lit = gbuffer.visible(x, y) & (albedo.r + albedo.g + albedo.b > Floats(0.0f));
         if (!xsimd::any(lit)) return;
-        const RgbT<Floats> light = albedo * irradiance(x, y, albedo, lit);
-        radiance.set(x, y, radiance.color(x, y) + light * xsimd::select(lit, Floats(kInvPi), Floats(0.0f)));
+        const RgbT<Floats> light = albedo * irradiance(x, y, albedo, lit) * Floats(kInvPi), before = radiance.color(x, y);
+        radiance.set(x, y, blend(lit, before + light, before)); // other lanes may hold any number
     });
 }
 
@@ -38,8 +40,13 @@ void add_indirect_light(const RasterSettings& settings, const GBuffer& gbuffer, 
     half.add_irradiance(settings.threads, [&](const Vec3T<Floats>& p, const Vec3T<Floats>& n, const auto& lanes) {
         return probes.irradiance(gbuffer.projection.eye(), p, n, lanes);
     });
-    add_reflected(settings, gbuffer, radiance, [&](int x, int y, const RgbT<Floats>& albedo, const auto&) {
-        const auto [visible, irradiance] = half.lit_at(x, y);
+    add_reflected(settings, gbuffer, radiance, [&](int x, int y, const RgbT<Floats>& albedo, const auto& lit) {
+        auto [visible, irradiance, found] = half.lit_at(x, y);
+        if (const auto alone = lit & !found; xsimd::any(alone)) // surfaces thinner than the pixels of half resolution
+            irradiance = blend(alone,
+                               probes.irradiance(gbuffer.projection.eye(), gbuffer.points(x, y),
+                                                 gbuffer.normal.vector(x, y), alone),
+                               irradiance);
         return irradiance * RgbT<Floats>{with_bounces(visible, albedo.r), with_bounces(visible, albedo.g),
                                          with_bounces(visible, albedo.b)};
     });

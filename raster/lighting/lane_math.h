@@ -1,6 +1,7 @@
 // Math for templates whose number type is a single float or a batch of lanes.
 #pragma once
 
+#include "common/image/rgb.h"
 #include "raster/geometry/packet.h"
 
 namespace duet::raster {
@@ -10,6 +11,11 @@ template <typename T> using MaskOf = decltype(std::declval<T>() < std::declval<T
 
 inline bool any_lane(bool lane) { return lane; }
 inline bool any_lane(const xsimd::batch_bool<float>& lanes) { return lane_bits(lanes) != 0; }
+
+/// Returns `a` in the lanes of `where` and `b` elsewhere.
+inline RgbT<Floats> blend(const xsimd::batch_bool<float>& where, const RgbT<Floats>& a, const RgbT<Floats>& b) {
+    return {xsimd::select(where, a.r, b.r), xsimd::select(where, a.g, b.g), xsimd::select(where, a.b, b.b)};
+}
 
 /// Returns Σ c[i] xⁱ.
 template <typename T, std::size_t N> T polynomial(const std::array<float, N>& c, T x) {

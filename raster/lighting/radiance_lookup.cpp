@@ -13,6 +13,8 @@ using Rgbs = RgbT<Floats>;
 
 /// Lobes narrower than this GGX width show the image's own pixels; wider ones would need them blurred.
 constexpr float kSharpest = 0.02f;
+/// Specular reflectance at normal incidence below which the diffuse light is most of what a pixel shows.
+constexpr float kMostlyDiffuse = 0.2f;
 /// A pixel shows a point if their depths differ by less than this fraction.
 constexpr float kDepthTolerance = 0.02f;
 
@@ -85,7 +87,13 @@ Rgbs RadianceLookup::on_screen(const Vec3s& q, const Mask& lanes, const Rgbs& ot
                        truncated(xsimd::select(inside, x + Floats(0.5f), none));
     const Floats seen = Floats(gbuffer_.projection.near()) /
                         max(gather(gbuffer_.reversed_depth.row(0), index), Floats(1e-30f));
-    const Mask shows = inside & (abs(seen - depth) < Floats(kDepthTolerance) * depth);
+    // The image does not hold reflections yet. Surfaces that mostly reflect are in the probe's map, with the
+    // environment's reflection.
+    const auto reflectance = [&](const PlaneFloat& plane) { return gather(plane.row(0), index); };
+    const Planes3& specular = gbuffer_.specular;
+    const Mask diffuse = max(reflectance(specular.x), max(reflectance(specular.y), reflectance(specular.z))) <
+                         Floats(kMostlyDiffuse);
+    const Mask shows = inside & diffuse & (abs(seen - depth) < Floats(kDepthTolerance) * depth);
     return blend(shows, {gather(image_.x.row(0), index), gather(image_.y.row(0), index),
                          gather(image_.z.row(0), index)}, otherwise);
 }

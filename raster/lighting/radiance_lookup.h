@@ -2,16 +2,12 @@
 // else from probes, else from the environment.
 #pragma once
 
+#include "raster/lighting/lane_math.h"
 #include "raster/gbuffer/gbuffer.h"
 #include "raster/probes/reflection_probes.h"
 #include "raster/raster_scene.h"
 
 namespace duet::raster {
-
-/// Returns `a` in the lanes of `where` and `b` elsewhere.
-inline RgbT<Floats> blend(const xsimd::batch_bool<float>& where, const RgbT<Floats>& a, const RgbT<Floats>& b) {
-    return {xsimd::select(where, a.r, b.r), xsimd::select(where, a.g, b.g), xsimd::select(where, a.b, b.b)};
-}
 
 /// Serves one batch of pixels, whose objects select the probes.
 class RadianceLookup {

@@ -14,23 +14,6 @@ using Mask = Floats::batch_bool_type;
 using Vec3s = Vec3T<Floats>;
 using Rgbs = RgbT<Floats>;
 
-/// Returns the fraction of uniform light that a lobe reflects to the viewer, all scattering included. A mirror's is
-/// Schlick's term.
-Rgbs albedo(const LobeTables& tables, const Rgbs& normal, const Floats& alpha, const Floats& cosine) {
-    const Floats one(1.0f), grazing = one - cosine, square = grazing * grazing;
-    const Mask mirror = alpha < Floats(MetalBsdf::kSmoothAlpha);
-    const Floats energy = xsimd::select(mirror, one, tables.energy),
-                 share = xsimd::select(mirror, square * square * grazing, tables.share);
-    const auto channel = [&](const Floats& f0) {
-        const Floats once = energy * (f0 + (one - f0) * share);
-        // Light scattered more than once (ggx_multiple_scattering in common/material/ggx_albedo.h, times the lost
-        // fractions).
-        const Floats mean = f0 + (one - f0) * Floats(1.0f / 21);
-        return once + mean * mean * (one - tables.mean_lost) / (one - mean * tables.mean_lost) * (one - energy);
-    };
-    return {channel(normal.r), channel(normal.g), channel(normal.b)};
-}
-
 } // namespace
 
 void add_reflections(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
@@ -59,11 +42,11 @@ void add_reflections(const RasterSceneData& data, const RasterSettings& settings
                 Rgbs sum(zero);
                 if (xsimd::any(lanes))
                     sum = lookup(p, n, mirrored, alpha, lanes) *
-                          albedo(lobe(alpha, cosine, lanes), f0, alpha, cosine);
+                          specular_albedo(lobe(alpha, cosine, lanes), f0, alpha, cosine);
                 sum = blend(lanes, sum, Rgbs(zero));
                 if (xsimd::any(coated)) {
                     const Floats width = load(gbuffer.coat_alpha, x, y);
-                    const Floats reflected = coat * albedo(coat_lobe(width, cosine, coated), Rgbs(Floats(0.04f)), width,
+                    const Floats reflected = coat * specular_albedo(coat_lobe(width, cosine, coated), Rgbs(Floats(0.04f)), width,
                                                            cosine).r;
                     const Rgbs above = lookup(p, n, mirrored, width, coated) * reflected;
                     sum = blend(coated, sum * (one - reflected) + above, sum);

@@ -1,6 +1,7 @@
 #include "raster/lighting/refraction.h"
 
 #include "raster/lighting/radiance_lookup.h"
+#include "raster/lighting/specular_lobe.h"
 #include "raster/probes/glass_shapes.h"
 #include "raster/visibility/shader.h"
 
@@ -37,31 +38,51 @@ class GlassBatch {
 public:
     GlassBatch(const RasterSceneData& data, const GBuffer& gbuffer, const RadianceLookup& lookup, int x, int y)
         : data_(data), gbuffer_(gbuffer), lookup_(lookup), p_(gbuffer.points(x, y)), n_(gbuffer.normal.vector(x, y)),
-          w_(gbuffer.projection.to_viewer(p_) * Floats(-1.0f)), alpha_(load(gbuffer.alpha, x, y)) {}
+          w_(gbuffer.projection.to_viewer(p_) * Floats(-1.0f)), alpha_(load(gbuffer.alpha, x, y)),
+          f0_(gbuffer.specular.color(x, y)) {}
 
     Rgbs through(std::int32_t object, const Dielectric& glass, const Mask& lanes) const {
         const Rgbs tint = broadcast<Floats>(glass.tint.value);
-        const Floats eta(glass.ior), alpha = glass.thin ? Floats(0.0f) : alpha_;
+        const Floats eta(glass.ior);
         const Refracted in = refract(w_, n_, eta);
-        const auto exit = glass.thin ? std::nullopt : data_.glass_shapes->exit(object, gbuffer_.projection.eye(), p_, in.w);
-        if (!exit) { // a sheet, in which the light leaves in the direction it came from
-            const Floats reflected = Floats(1.0f) - in.through;
-            return lookup_(p_, n_, w_, alpha, lanes) * (in.through / (Floats(1.0f) + reflected)) *
-                   (glass.thin ? tint : tint * tint);
-        }
+        if (glass.thin) return sheet(glass, Floats(1.0f) - in.through, lanes);
+        // What add_reflections() does not reflect enters.
+        const Floats cosine = max(-dot(w_, n_), Floats(1e-4f));
+        const Floats entering = Floats(1.0f) - specular_albedo(LobeLookup()(alpha_, cosine, lanes), f0_, alpha_, cosine).g;
+        const auto exit = data_.glass_shapes->exit(object, gbuffer_.projection.eye(), p_, in.w);
+        if (!exit) // light leaves in the direction it came from
+            return lookup_(p_, n_, w_, alpha_, lanes) * entering * (tint * tint);
         // All light that does not leave at once leaves later; most of it in about the same direction.
         const Refracted out = refract(in.w, exit->n * Floats(-1.0f), Floats(1 / glass.ior));
         const auto absorbed = [&](float per_meter) { return xsimd::exp(exit->length * Floats(-per_meter)); };
         const Rgbs inside{absorbed(glass.absorption.r), absorbed(glass.absorption.g), absorbed(glass.absorption.b)};
-        return lookup_(exit->p, exit->n, out.w, alpha, lanes) * in.through * (tint * tint) * inside;
+        return lookup_(exit->p, exit->n, out.w, alpha_, lanes) * entering * (tint * tint) * inside;
     }
 
 private:
+    /// Shows what arrives through a sheet, and what it mirrors: ThinDielectricBsdf::fractions() for the mean tint of
+    /// slanted passes.
+    Rgbs sheet(const Dielectric& glass, const Floats& reflected, const Mask& lanes) const {
+        const Floats one(1.0f), cosine = clamp(-dot(w_, n_), Floats(0.0f), one);
+        const Floats inner = xsimd::sqrt(max(cos2_refracted(cosine, Floats(glass.ior)), Floats(1e-6f)));
+        const Rgbs behind = lookup_(p_, n_, w_, Floats(0.0f), lanes),
+                   before = lookup_(p_, n_, w_ + n_ * (Floats(2.0f) * cosine), Floats(0.0f), lanes);
+        const auto channel = [&](float tint, const Floats& b, const Floats& f) {
+            const Floats t = xsimd::pow(Floats(max(tint, 1e-6f)), one / inner), once = one - reflected;
+            const Floats all = once * once * t / (one - reflected * reflected * t * t);
+            return b * all + f * (reflected + all * reflected * t);
+        };
+        const Rgb tint = glass.tint.value;
+        return {channel(tint.r, behind.r, before.r), channel(tint.g, behind.g, before.g),
+                channel(tint.b, behind.b, before.b)};
+    }
+
     const RasterSceneData& data_;
     const GBuffer& gbuffer_;
     const RadianceLookup& lookup_;
     Vec3s p_, n_, w_; ///< w_ is the direction of the camera's rays
     Floats alpha_;
+    Rgbs f0_; ///< reflectance at normal incidence
 };
 
 } // namespace

@@ -1,5 +1,6 @@
 #include "raster/lighting/sky_light.h"
 
+#include "raster/lighting/lane_math.h"
 #include "raster/visibility/shader.h"
 
 #include <array>
@@ -32,9 +33,10 @@ void add_sky_light(const RasterSceneData& data, const RasterSettings& settings, 
         for (std::size_t i = 1; i < 4; ++i)
             sum += broadcast<Floats>(coefficients[i]) * (towards[i] - Floats(1.5f) * blocked[i]);
         for (std::size_t i = 4; i < 9; ++i) sum += broadcast<Floats>(coefficients[i]) * (towards[i] * sky.visible);
-        const Floats none(0.0f), scale = xsimd::select(lit, Floats(kInvPi), none);
+        const Floats none(0.0f);
         const RgbT<Floats> irradiance{max(sum.r, none), max(sum.g, none), max(sum.b, none)};
-        radiance.set(x, y, radiance.color(x, y) + albedo * irradiance * scale);
+        const RgbT<Floats> before = radiance.color(x, y);
+        radiance.set(x, y, blend(lit, before + albedo * irradiance * Floats(kInvPi), before));
     });
 }
 

@@ -1,5 +1,7 @@
 #include "raster/lighting/specular_lobe.h"
 
+#include "common/material/metal.h"
+
 #include "common/material/ggx_albedo_table.h"
 #include "raster/lighting/ggx_fit.h"
 
@@ -115,6 +117,21 @@ Floats LobeLookup::lost(const Floats& alpha, const Floats& cosine, const xsimd::
         result = xsimd::select(equal, by_steepness(lost_), result);
     });
     return result;
+}
+
+RgbT<Floats> specular_albedo(const LobeTables& tables, const RgbT<Floats>& normal, const Floats& alpha, const Floats& cosine) {
+    const Floats one(1.0f), grazing = one - cosine, square = grazing * grazing;
+    const auto mirror = alpha < Floats(MetalBsdf::kSmoothAlpha);
+    const Floats energy = xsimd::select(mirror, one, tables.energy),
+                 share = xsimd::select(mirror, square * square * grazing, tables.share);
+    const auto channel = [&](const Floats& f0) {
+        const Floats once = energy * (f0 + (one - f0) * share);
+        // Light scattered more than once (ggx_multiple_scattering in common/material/ggx_albedo.h, times the lost
+        // fractions).
+        const Floats mean = f0 + (one - f0) * Floats(1.0f / 21);
+        return once + mean * mean * (one - tables.mean_lost) / (one - mean * tables.mean_lost) * (one - energy);
+    };
+    return {channel(normal.r), channel(normal.g), channel(normal.b)};
 }
 
 } // namespace raster

@@ -33,6 +33,11 @@ struct LobeTables {
     Floats mean_lost;      ///< GgxAverageAlbedo::lost
 };
 
+/// Returns the fraction of uniform light that a lobe reflects to the viewer, all scattering included. A mirror's is
+/// Schlick's term.
+RgbT<Floats> specular_albedo(const LobeTables& tables, const RgbT<Floats>& normal, const Floats& alpha,
+                             const Floats& cosine);
+
 /// Looks the tables up. The rows of a roughness are interpolated once and reused while the roughness stays the same, so
 /// that what remains is looked up in registers, by the angle. (Gathers would take 28 of 16 lanes each.)
 class LobeLookup {

@@ -40,12 +40,11 @@ ProbeCapture::Face capture(const RasterSceneData& data, const RasterSettings& se
     if (!selection.excluded) return face;
     draw_background(data, settings, face.gbuffer, face.direct);
     if (data.scene.lights.empty()) return face;
-    if (settings.shadows && data.soft_shadows) {
-        const MapShadows shadows(*data.shadows, *data.soft_shadows, face.gbuffer.projection.eye(), pass.time);
-        add_filtered(face.gbuffer, direct_light(data, settings, face.gbuffer, &shadows), 1, face.direct);
-    } else {
-        add(direct_light(data, settings, face.gbuffer, nullptr), 1, face.direct);
-    }
+    std::optional<MapShadows> shadows;
+    if (settings.shadows && data.soft_shadows)
+        shadows.emplace(*data.shadows, *data.soft_shadows, face.gbuffer, pass.time);
+    add_direct_light(face.gbuffer, direct_light(data, settings, face.gbuffer, shadows ? &*shadows : nullptr), 1,
+                     face.direct);
     return face;
 }
 

@@ -10,6 +10,9 @@
 namespace duet::raster {
 namespace {
 
+/// Pixels of half resolution that are less alike in total lie on other surfaces.
+constexpr float kLeastLikeness = 0.02f;
+
 using Mask = Floats::batch_bool_type;
 using Vec3s = Vec3T<Floats>;
 
@@ -200,9 +203,12 @@ void GtaoImage::search_row(int y, float radius) {
         if (radius > 0 && xsimd::any(seen)) {
             found = search_line(*gbuffer_, point(x, y, depth), normal_.vector(x, y), radius, pattern_of(x, y));
         }
-        store(lost_, x, y, found.lost);
-        store(all_, x, y, found.all);
-        lost_directions_.set(x, y, found.directions);
+        // Lanes without a surface may hold any number, and neighbors read them with weight 0.
+        const auto valid = [&](const Floats& value) { return xsimd::select(seen, value, Floats(0.0f)); };
+        store(lost_, x, y, valid(found.lost));
+        store(all_, x, y, valid(found.all));
+        const Vec3s& w = found.directions;
+        lost_directions_.set(x, y, Vec3s{valid(w.x), valid(w.y), valid(w.z)});
     }
 }
 
@@ -233,7 +239,7 @@ void GtaoImage::filter_row(int y) {
     }
 }
 
-SkyVisibilityT<Floats> GtaoImage::at(int x, int y) const {
+GtaoImage::Upsampled GtaoImage::upsampled(int x, int y) const {
     // Pixel 2k has a value of its own at half resolution; pixel 2k + 1 lies between two.
     const Vec3s p = gbuffer_->points(x, y), n = gbuffer_->normal.vector(x, y);
     const ScreenProjection& projection = gbuffer_->projection;
@@ -258,9 +264,9 @@ SkyVisibilityT<Floats> GtaoImage::at(int x, int y) const {
             visible += weight * read(smooth_.visible);
             hidden += Vec3s{read(smooth_.hidden.x), read(smooth_.hidden.y), read(smooth_.hidden.z)} * weight;
         }
-    const Mask found = sum > Floats(0.0f);
-    const Floats over = xsimd::select(found, Floats(1.0f) / sum, Floats(0.0f));
-    return {xsimd::select(found, visible * over, Floats(1.0f)), hidden * over};
+    const Mask any = sum > Floats(0.0f);
+    const Floats over = xsimd::select(any, Floats(1.0f) / sum, Floats(0.0f));
+    return {{xsimd::select(any, visible * over, Floats(1.0f)), hidden * over}, sum > Floats(kLeastLikeness)};
 }
 
 } // namespace duet::raster

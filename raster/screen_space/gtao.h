@@ -4,6 +4,7 @@
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"
+#include "raster/lighting/lane_math.h"
 #include "raster/lighting/sky_visibility.h"
 
 namespace duet::raster {
@@ -20,15 +21,17 @@ public:
     template <typename Irradiance> void add_irradiance(int threads, const Irradiance& irradiance);
 
     /// Returns the visibility of a batch of the G-buffer's pixels, upsampled along depths and normals.
-    SkyVisibilityT<Floats> at(int x, int y) const;
-    /// Returns the visible fraction and the irradiance of a batch, after add_irradiance().
+    SkyVisibilityT<Floats> at(int x, int y) const { return upsampled(x, y).sky; }
+    /// Returns the visible fraction and the irradiance of a batch, after add_irradiance(). `found` marks the lanes whose
+    /// surface has a pixel at half resolution nearby; the others have no irradiance.
     struct Lit {
         Floats visible;
         RgbT<Floats> irradiance;
+        xsimd::batch_bool<float> found;
     };
     Lit lit_at(int x, int y) const {
-        const SkyVisibilityT<Floats> s = at(x, y);
-        return {s.visible, {s.hidden.x, s.hidden.y, s.hidden.z}};
+        const auto [s, found] = upsampled(x, y);
+        return {s.visible, {s.hidden.x, s.hidden.y, s.hidden.z}, found};
     }
 
     static constexpr int kSteps = 10; ///< depths read on each side of a pixel
@@ -38,6 +41,11 @@ private:
         PlaneFloat visible;
         Planes3 hidden;
     };
+    struct Upsampled {
+        SkyVisibilityT<Floats> sky;
+        xsimd::batch_bool<float> found;
+    };
+    Upsampled upsampled(int x, int y) const;
     void search_row(int y, float radius);
     void filter_row(int y);
     void reset(int width, int height);
@@ -59,7 +67,7 @@ template <typename Irradiance> void GtaoImage::add_irradiance(int threads, const
         const auto seen = depth > Floats(0.0f);
         if (!xsimd::any(seen)) return;
         const RgbT<Floats> e = irradiance(point(x, y, depth), normal_.vector(x, y), seen);
-        smooth_.hidden.set(x, y, e);
+        smooth_.hidden.set(x, y, blend(seen, e, RgbT<Floats>(Floats(0.0f))));
     });
 }
 

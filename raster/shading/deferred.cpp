@@ -42,12 +42,11 @@ public:
             before_.set(x, y, now);
         });
     }
-    /// Records the direct light that shadows remove, after the direct light itself.
-    void record_shadowed(const DirectLight& light) {
-        if (components_ == nullptr) return;
-        components_->shadowed = light.unshadowed;
+    /// Records the direct light that shadows remove, from that without shadows, after the direct light itself.
+    void record_shadowed(const DirectLight& unshadowed) {
+        components_->shadowed = Planes3(radiance_.x.width(), radiance_.x.height());
         for_each_batch(radiance_.x.width(), radiance_.x.height(), threads_, [&](int x, int y) {
-            components_->shadowed.set(x, y, light.unshadowed.color(x, y) - components_->direct.color(x, y));
+            components_->shadowed.set(x, y, unshadowed.exact.color(x, y) - components_->direct.color(x, y));
         });
     }
 
@@ -70,30 +69,29 @@ void DeferredFrame::start(const Scene& scene, const ScreenProjection& projection
     }
 }
 
-void shade_gbuffer(const RasterSceneData& data, const RasterSettings& settings, float time, bool background,
-                   DeferredFrame& frame, LightComponentImages* components) {
+void shade_gbuffer(const RasterSceneData& data, const RasterSettings& settings, const ShadeOptions& options,
+                   DeferredFrame& frame) {
     const GBuffer& gbuffer = *frame.gbuffer;
     Planes3& radiance = frame.radiance;
     const int threads = settings.threads;
-    ComponentRecorder recorder(radiance, threads, components);
+    ComponentRecorder recorder(radiance, threads, options.components);
     Stopwatch watch;
     const auto done = [&](const char* stage) { frame.seconds.emplace_back(stage, watch.lap()); };
 
-    if (background) draw_background(data, settings, gbuffer, radiance);
+    if (options.background) draw_background(data, settings, gbuffer, radiance);
     recorder.record(&LightComponentImages::emission);
     done("background");
     const LightComponentSet& parts = settings.components;
     if (parts.direct && !data.scene.lights.empty()) {
-        const bool shadowed = settings.shadows && data.soft_shadows;
         std::optional<MapShadows> shadows;
-        if (shadowed) shadows.emplace(*data.shadows, *data.soft_shadows, gbuffer.projection.eye(), time);
-        const DirectLight light = direct_light(data, settings, gbuffer, shadowed ? &*shadows : nullptr);
+        if (settings.shadows && data.soft_shadows)
+            shadows.emplace(*data.shadows, *data.soft_shadows, gbuffer, options.time,
+                            options.sparse);
+        const DirectLight light = direct_light(data, settings, gbuffer, shadows ? &*shadows : nullptr);
         done("direct light and shadows");
-        if (shadowed)
-            add_filtered(gbuffer, light, threads, radiance);
-        else
-            add(light, threads, radiance);
-        recorder.record(&LightComponentImages::direct), recorder.record_shadowed(light);
+        add_direct_light(gbuffer, light, threads, radiance);
+        recorder.record(&LightComponentImages::direct);
+        if (options.components != nullptr) recorder.record_shadowed(direct_light(data, settings, gbuffer, nullptr));
         done("shadow filter");
     }
     const bool occluded = settings.ambient_occlusion;
@@ -133,7 +131,7 @@ void shade_deferred(const SampleView& sample, DeferredFrame& frame) {
     std::optional<BlendedLayers> layers;
     if (sample.layers != nullptr) layers.emplace(sample, *frame.gbuffer, frame.radiance);
     frame.seconds.emplace_back("surface attributes", watch.seconds());
-    shade_gbuffer(data, sample.settings, sample.view.time, true, frame);
+    shade_gbuffer(data, sample.settings, {.time = sample.view.time}, frame);
     if (!layers || layers->count() == 0) return;
     layers->attenuate(frame.radiance);
     const std::unique_ptr<DeferredFrame> blended = std::make_unique<DeferredFrame>();
@@ -141,7 +139,7 @@ void shade_deferred(const SampleView& sample, DeferredFrame& frame) {
     const Stopwatch blending;
     for (std::size_t k = 0; k < layers->count() && !sample.control.stopped(); ++k) {
         layers->fill(sample, k, *blended->gbuffer, blended->radiance);
-        shade_gbuffer(data, sample.settings, sample.view.time, false, *blended);
+        shade_gbuffer(data, sample.settings, {.time = sample.view.time, .background = false}, *blended);
         layers->add(k, blended->radiance, frame.radiance);
     }
     frame.seconds.emplace_back("blended surfaces", blending.seconds());
@@ -159,7 +157,7 @@ void shade_multisampled(const SampleView& sample, DeferredFrame& frame,
                                             sample.control, *frame.gbuffer, frame.radiance, counts);
         frame.seconds.emplace_back("surface attributes", watch.seconds());
         if (!any) break;
-        shade_gbuffer(sample.data, sample.settings, sample.view.time, true, frame);
+        shade_gbuffer(sample.data, sample.settings, {.time = sample.view.time, .sparse = k > 0}, frame);
         use(frame.radiance, counts);
     }
 }

@@ -39,10 +39,15 @@ struct DeferredFrame {
 };
 
 /// Shades the surfaces in frame.gbuffer. frame.radiance holds what they emit, and receives the radiance towards the
-/// viewer. `time` is that of the shadows. Without `background`, pixels without a surface stay black. `components` may be
-/// null; else it receives the parts of the radiance.
-void shade_gbuffer(const RasterSceneData& data, const RasterSettings& settings, float time, bool background,
-                   DeferredFrame& frame, LightComponentImages* components = nullptr);
+/// viewer.
+struct ShadeOptions {
+    float time = 0;         ///< of the shadows
+    bool background = true; ///< else pixels without a surface stay black
+    bool sparse = false;    ///< surfaces have too few neighbors to average shadows over
+    LightComponentImages* components = nullptr; ///< receives the parts of the radiance, if any
+};
+void shade_gbuffer(const RasterSceneData& data, const RasterSettings& settings, const ShadeOptions& options,
+                   DeferredFrame& frame);
 
 /// Computes the radiance of one sample per pixel: fills the G-buffer, shades it, and composites the blended surfaces
 /// in front of it.

@@ -37,14 +37,14 @@ void HitShader::set(int x, int y, const Ray& ray, const Hit& hit, const RayFootp
 LightComponentImages HitShader::shade() {
     frame_.seconds.clear();
     LightComponentImages result;
-    shade_gbuffer(data_, settings_, time_, true, frame_, &result);
+    shade_gbuffer(data_, settings_, {.time = time_, .components = &result}, frame_);
     if (!settings_.indirect_light) return result;
     RasterSettings sky = settings_;
     sky.indirect_light = false;
     sky.components = {.emission = false, .direct = false, .environment = settings_.components.environment,
                       .reflection = false};
     for (PlaneFloat* plane : {&frame_.radiance.x, &frame_.radiance.y, &frame_.radiance.z}) plane->fill(0);
-    shade_gbuffer(data_, sky, time_, false, frame_);
+    shade_gbuffer(data_, sky, {.time = time_, .background = false}, frame_);
     result.indirect = Planes3(frame_.radiance.x.width(), frame_.radiance.x.height());
     for_each_batch(result.indirect.x.width(), result.indirect.x.height(), settings_.threads, [&](int x, int y) {
         result.indirect.set(x, y, result.environment.color(x, y) - frame_.radiance.color(x, y));

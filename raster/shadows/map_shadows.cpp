@@ -27,8 +27,11 @@ SoftShadowMaps::SoftShadowMaps(const Shadows& shadows) {
     }
 }
 
-MapShadows::MapShadows(const Shadows& shadows, const SoftShadowMaps& soft, const Vec3d& eye, float time)
-    : shadows_(shadows), soft_(soft), eye_(eye), moment_(shadows.moment_at(time)) {
+MapShadows::MapShadows(const Shadows& shadows, const SoftShadowMaps& soft, const GBuffer& gbuffer, float time,
+                       bool all_taps)
+    : shadows_(shadows), soft_(soft), gbuffer_(gbuffer), eye_(gbuffer.projection.eye()),
+      to_moment_(shadows.motions(time)), moment_(shadows.moment_at(time)), all_taps_(all_taps) {
+    const Vec3d eye = eye_;
     for (const Shadows::Source& from : shadows.sources()) {
         Source& source = sources_.emplace_back();
         const Shadows::Maps& maps = from.moments[moment_];
@@ -59,12 +62,41 @@ Floats MapShadows::sharp_visibility(const Source& source, const Vec3T<Floats>& p
     return result;
 }
 
-Floats MapShadows::visibility(std::size_t light, const Vec3T<Floats>& p, const Vec3T<Floats>& n, int x, int y,
+Floats MapShadows::mean_visibility(std::span<const SoftShadowMap> cells, const Vec3T<Floats>& p,
+                                   const Vec3T<Floats>& n) const {
+    constexpr int kPatterns = static_cast<int>(kDither.size());
+    Floats sum(0.0f);
+    for (const SoftShadowMap& cell : cells)
+        for (int pattern = 0; pattern < kPatterns; ++pattern) sum += cell.visibility(eye_, p, n, Ints(pattern));
+    return sum * Floats(1 / static_cast<float>(cells.size() * kPatterns));
+}
+
+MapShadows::Receivers MapShadows::at_moment(const Receivers& receivers, int x, int y) const {
+    PacketOf<float> px, py, pz, nx, ny, nz;
+    const auto [p, n] = receivers;
+    store(px, 0, p.x), store(py, 0, p.y), store(pz, 0, p.z);
+    store(nx, 0, n.x), store(ny, 0, n.y), store(nz, 0, n.z);
+    for (std::size_t i = 0; i < Floats::size; ++i) {
+        const std::int32_t object = x + static_cast<int>(i) < gbuffer_.width() ? gbuffer_.object(x + static_cast<int>(i), y)
+                                                                               : -1;
+        if (object < 0 || !to_moment_[static_cast<std::size_t>(object)]) continue;
+        const Mat4d& m = *to_moment_[static_cast<std::size_t>(object)];
+        const Vec3 moved(transform_point(m, Vec3d(Vec3(px[i], py[i], pz[i])) + eye_) - eye_);
+        const Vec3 turned(normalize(transform_normal(inverse_affine(m), Vec3d(Vec3(nx[i], ny[i], nz[i])))));
+        px[i] = moved.x, py[i] = moved.y, pz[i] = moved.z, nx[i] = turned.x, ny[i] = turned.y, nz[i] = turned.z;
+    }
+    return {{load(px, 0), load(py, 0), load(pz, 0)}, {load(nx, 0), load(ny, 0), load(nz, 0)}};
+}
+
+Floats MapShadows::visibility(std::size_t light, const Vec3T<Floats>& point, const Vec3T<Floats>& normal, int x, int y,
                               const Mask&) const {
     const std::size_t source = shadows_.source_of(light);
     if (source == shadows_.sources().size()) return Floats(1.0f);
+    const Receivers receivers{point, normal};
+    const auto [p, n] = to_moment_.empty() ? receivers : at_moment(receivers, x, y);
     const std::span<const SoftShadowMap> cells = soft_.of(source, moment_);
     if (cells.empty()) return sharp_visibility(sources_[source], p, n);
+    if (all_taps_) return mean_visibility(cells, p, n);
     const Ints pattern = patterns(x, y);
     // Four cells share the rows of a block, so a batch looks at one cell only.
     if (cells.size() <= 4) return cells[static_cast<std::size_t>(y) % cells.size()].visibility(eye_, p, n, pattern);

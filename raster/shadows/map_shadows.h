@@ -1,6 +1,7 @@
 // The shadows of all lights of a scene, looked up in lanes.
 #pragma once
 
+#include "raster/gbuffer/gbuffer.h"
 #include "raster/shadows/shadow_lookup.h"
 #include "raster/shadows/shadows.h"
 #include "raster/shadows/sharp_shadow_map.h"
@@ -22,10 +23,16 @@ private:
 /// Looks up the shadows for the points of one view at one time.
 class MapShadows final : public ShadowLookup {
 public:
-    /// Neither `shadows` nor `soft` is copied.
-    MapShadows(const Shadows& shadows, const SoftShadowMaps& soft, const Vec3d& eye, float time);
+    /// None of the references is copied. The points are those of the G-buffer's pixels at `time`. A point of a moving
+    /// object is looked up where it is at the map's moment, so that the object does not shade itself by its motion. With `all_taps`, each pixel takes the taps of all sixteen pixels of a
+    /// block, for surfaces whose neighbors are too few to average.
+    MapShadows(const Shadows& shadows, const SoftShadowMaps& soft, const GBuffer& gbuffer, float time,
+               bool all_taps = false);
 
     bool shadows(std::size_t light) const override { return shadows_.source_of(light) < shadows_.sources().size(); }
+    bool noisy(std::size_t light) const override {
+        return !all_taps_ && shadows(light) && !soft_.of(shadows_.source_of(light), moment_).empty();
+    }
     /// Each pixel of a block of 4 × 4 looks at one cell of an area light, with taps of its own. The mean over a block is
     /// the shadow; blur_shadows() computes it.
     Floats visibility(std::size_t light, const Vec3T<Floats>& p, const Vec3T<Floats>& n, int x, int y,
@@ -37,12 +44,20 @@ private:
         std::vector<std::vector<SharpShadowMap>> cubes; ///< six faces each; a missing face shadows nothing
         std::vector<const CubeMap*> cube_maps;
     };
+    Floats mean_visibility(std::span<const SoftShadowMap> cells, const Vec3T<Floats>& p, const Vec3T<Floats>& n) const;
+    struct Receivers {
+        Vec3T<Floats> p, n;
+    };
+    Receivers at_moment(const Receivers& receivers, int x, int y) const;
     Floats sharp_visibility(const Source& source, const Vec3T<Floats>& p, const Vec3T<Floats>& n) const;
 
     const Shadows& shadows_;
     const SoftShadowMaps& soft_;
+    const GBuffer& gbuffer_;
     Vec3d eye_;
+    std::vector<std::optional<Mat4d>> to_moment_; ///< for each object: from its position now; empty if nothing moves
     std::size_t moment_;
+    bool all_taps_;
     std::vector<Source> sources_;
 };
 

@@ -48,8 +48,14 @@ struct BlockSums {
 
 } // namespace
 
-void add_filtered(const GBuffer& gbuffer, const DirectLight& light, int threads, Planes3& radiance) {
+void add_direct_light(const GBuffer& gbuffer, const DirectLight& light, int threads, Planes3& radiance) {
     const int width = gbuffer.width(), height = gbuffer.height(), batches = (width + kWidth - 1) / kWidth;
+    if (light.shadowed.empty()) {
+        for_each_batch(width, height, threads, [&](int x, int y) {
+            radiance.set(x, y, radiance.color(x, y) + light.exact.color(x, y));
+        });
+        return;
+    }
     Image<Shade> shades(batches, height);
     for_each_batch(width, height, threads, [&](int x, int y) {
         shades(x / kWidth, y) = shade_of(light.unshadowed.color(x, y), light.shadowed.color(x, y));
@@ -74,7 +80,7 @@ void add_filtered(const GBuffer& gbuffer, const DirectLight& light, int threads,
                         channel(sums.unshadowed.g, sums.shadowed.g, exact.g),
                         channel(sums.unshadowed.b, sums.shadowed.b, exact.b)};
         }
-        radiance.set(x, y, radiance.color(x, y) + arriving);
+        radiance.set(x, y, radiance.color(x, y) + light.exact.color(x, y) + arriving);
     });
 }
 

@@ -7,7 +7,7 @@
 
 namespace duet::raster {
 
-/// Adds the direct light to the radiance, its shadows averaged over the 4 × 4 pixels whose taps differ (MapShadows).
-void add_filtered(const GBuffer& gbuffer, const DirectLight& light, int threads, Planes3& radiance);
+/// Adds the direct light to the radiance, noisy shadows averaged over the 4 × 4 pixels whose taps differ (MapShadows).
+void add_direct_light(const GBuffer& gbuffer, const DirectLight& light, int threads, Planes3& radiance);
 
 } // namespace duet::raster

@@ -267,6 +267,19 @@ CubeMap Shadows::draw_cube(const RasterScene& casters, Vec3d center, const Emitt
     return cube;
 }
 
+std::vector<std::optional<Mat4d>> Shadows::motions(float time) const {
+    if (moments_.size() == 1) return {};
+    std::vector<std::optional<Mat4d>> result(scene_.objects.size());
+    const auto moment = static_cast<float>(moments_[moment_at(time)]);
+    for (std::size_t i = 0; i < result.size(); ++i) {
+        if (!scene_.objects[i].moving) continue;
+        const ObjectTransform now = object_transform(scene_.objects[i], time),
+                              then = object_transform(scene_.objects[i], moment);
+        result[i] = Mat4d(then.to_world) * Mat4d(now.to_object);
+    }
+    return result;
+}
+
 std::size_t Shadows::moment_at(float time) const {
     if (moments_.size() == 1) return 0;
     const double open = scene_.camera.shutter_open, close = scene_.camera.shutter_close;

@@ -45,6 +45,9 @@ public:
     const std::vector<Source>& sources() const { return sources_; }
     /// Returns the index of a light's source; sources().size() if it has no maps.
     std::size_t source_of(std::size_t light) const { return source_of_[light]; }
+    /// Returns, for each object, the transform from where it is at a time to where the maps of that time show it;
+    /// nothing for objects that do not move. The result is empty if there is only one moment.
+    std::vector<std::optional<Mat4d>> motions(float time) const;
     /// Returns the index of the moment whose maps serve a time.
     std::size_t moment_at(float time) const;
 

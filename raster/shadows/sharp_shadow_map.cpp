@@ -10,6 +10,10 @@ using Mask = Floats::batch_bool_type;
 /// Facets of one surface meet at up to 27 degrees (tangent), or at the fraction kOfElevation of the light's elevation
 /// above the surface, and do not shade each other.
 constexpr float kSteepest = 0.5f, kOfElevation = 0.9f;
+/// A texel on the light's side whose surface falls from the receiver's plane by a greater fraction of the elevation lies
+/// beyond the end of the receiver's surface, and says nothing about its light.
+constexpr float kFalling = 0.23f;
+constexpr float kLeastKnown = 0.25f; ///< filter weight of the texels that count, at least
 constexpr float kRounding = 0x1p-20f; ///< relative error of a depth, and of a point relative to the light
 
 constexpr int kTaps = 5; ///< along each side of the filter
@@ -60,14 +64,19 @@ SharpShadowMap::Plane SharpShadowMap::plane(const Floats& x, const Floats& y, co
     const Floats towards = max(-dot(n, ray), Floats(1e-6f));
     const Floats over_ray = inverse_sqrt(dot(ray, ray)), cosine = towards * over_ray, one(1.0f);
     const Floats sine = xsimd::sqrt(max(one - cosine * cosine, Floats(0.0f)));
-    const Floats t = min(Floats(kSteepest), Floats(kOfElevation) * cosine / max(sine, Floats(1e-6f)));
+    const auto tangent = [&](float of_elevation) {
+        return min(Floats(kSteepest), Floats(of_elevation) * cosine / max(sine, Floats(1e-6f)));
+    };
+    const Floats t = tangent(kOfElevation), falling = tangent(kFalling);
     const Floats width = flat ? Floats(length(origin_dx_)) : Floats(length(direction_dx_)) * depth;
     const Floats at = flat ? -depth : Floats(near_) / depth, per_depth = flat ? one : at / depth;
+    const Floats unit = width * over_ray * per_depth;
     const Floats slope = (flat ? one : at) / -towards;
     return {at, dot_constant(n, flat ? origin_dx_ : direction_dx_) * slope,
             dot_constant(n, flat ? origin_dy_ : direction_dy_) * slope,
             Floats(kRounding) * depth * per_depth / towards,
-            t / (cosine - t * sine) * width * over_ray * per_depth};
+            t / (cosine - t * sine) * unit, falling / (cosine - falling * sine) * unit,
+            Floats(kSteepest) / (cosine + Floats(kSteepest) * sine) * unit};
 }
 
 Floats SharpShadowMap::visibility(const Vec3T<Floats>& p, const Vec3T<Floats>& n, Mask& inside) const {
@@ -93,22 +102,26 @@ Floats SharpShadowMap::visibility(const Vec3T<Floats>& p, const Vec3T<Floats>& n
     const Ints first = truncated(xsimd::select(inside, y0, zero)) * side +
                        truncated(xsimd::select(inside, x0, zero));
     const float* texels = map_.reversed_depth().pixels().data();
-    Floats lit(0.0f);
+    Floats dark(0.0f), known(0.0f);
     for (int j = 0; j < taps; ++j) {
         const Floats off_y = y0 + Floats(static_cast<float>(j) + 0.5f) - y;
-        Floats row_lit(0.0f);
+        Floats row_dark(0.0f), row_known(0.0f);
         for (int i = 0; i < taps; ++i) {
             const Floats off_x = x0 + Floats(static_cast<float>(i) + 0.5f) - x;
             const Floats stored = gather(texels + j * map_.side() + i, first);
             const Floats seen = map_.orthographic() ? Floats(-near_) / max(stored, Floats(1e-25f)) : stored;
             const Floats distance = xsimd::sqrt(off_x * off_x + off_y * off_y);
-            const Floats limit = plane.at + plane.dx * off_x + plane.dy * off_y + plane.rounding +
-                                 plane.rising * distance;
-            row_lit += xsimd::select(seen > limit, zero, across[static_cast<std::size_t>(i)]);
+            const Floats change = plane.dx * off_x + plane.dy * off_y, at = plane.at + change;
+            const Mask away = change < zero; // on the side that is farther from the light
+            const Floats limit = at + plane.rounding + plane.rising * distance;
+            const Floats weight = across[static_cast<std::size_t>(i)];
+            row_dark += xsimd::select(seen > limit, weight, zero);
+            const Floats lowest = at - plane.rounding - xsimd::select(away, plane.steepest, plane.falling) * distance;
+            row_known += xsimd::select(seen < lowest, zero, weight);
         }
-        lit += row_lit * down[static_cast<std::size_t>(j)];
+        dark += row_dark * down[static_cast<std::size_t>(j)], known += row_known * down[static_cast<std::size_t>(j)];
     }
-    return min(lit, Floats(1.0f));
+    return max(Floats(1.0f) - dark / max(known, Floats(kLeastKnown)), zero);
 }
 
 } // namespace duet::raster

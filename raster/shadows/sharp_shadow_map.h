@@ -20,7 +20,8 @@ public:
 private:
     /// Receiver's plane as a linear function of texels, in the units of what the map stores.
     struct Plane {
-        Floats at, dx, dy, rounding, rising;
+        Floats at, dx, dy, rounding;
+        Floats rising, falling, steepest; ///< tolerances per texel of distance
     };
     Plane plane(const Floats& x, const Floats& y, const Floats& depth, const Vec3T<Floats>& n) const;
 

@@ -54,7 +54,7 @@ DepthCube::DepthCube(const CubeMap& cube)
         }
 }
 
-Vec3s DepthCube::surface(const Vec3s& w) const {
+Vec3s DepthCube::surface(const Vec3s& w, Floats& texel) const {
     const Floats zero(0.0f), one(1.0f), half(0.5f);
     const Floats ax = abs(w.x), ay = abs(w.y), az = abs(w.z);
     const Mask x_first = (ax >= ay) & (ax >= az), y_first = (!x_first) & (ay >= az);
@@ -71,6 +71,7 @@ Vec3s DepthCube::surface(const Vec3s& w) const {
     const Ints index = (face * Ints(side_) + truncated(y)) * Ints(side_) + truncated(x);
     const Floats depth = Floats(near_) / max(gather(depths_.data(), index), Floats(1e-25f));
     const Floats per_texel = depth * Floats(1 / scale_);
+    texel = per_texel;
     const Floats right = (x + half - middle) * per_texel * sign, up = (middle - y - half) * per_texel,
                  out = depth * sign;
     return {pick(out, right, up), pick(up, out, right), pick(right, up, out)};
@@ -78,7 +79,8 @@ Vec3s DepthCube::surface(const Vec3s& w) const {
 
 struct SoftShadowMap::Outline {
     Vec3s corner, u, v, dual_u, dual_v;
-    bool disk;
+    Floats per_u, per_v; ///< lengths of dual_u and dual_v
+    Emitter::Kind shape; ///< kSphere: a disk
     Vec3s axis; ///< unit, from the receiver's side to the light's plane
 };
 
@@ -92,19 +94,32 @@ struct SoftShadowMap::Receiver {
     /// Returns the fraction of the way from p to the light's plane at which the surface seen in direction q blocks the
     /// light; 0 in lanes where it does not.
     Floats blocker(const Vec3s& q) const {
-        const Vec3s to = cube.surface(q) - p;
+        Floats texel;
+        const Vec3s to = cube.surface(q, texel) - p;
         const Floats f = dot(to, light.axis) / height;
         const Floats rise = dot(to, n), distance2 = dot(to, to);
-        const Vec3s hit = p + to / max(f, Floats(1e-6f)) - light.corner; // where the line meets the light's plane
-        const Floats a = dot(hit, light.dual_u), b = dot(hit, light.dual_v), low(-kMargin), high(1 + kMargin);
-        const Mask meets = light.disk ? a * a + b * b <= high * high
-                                      : (a > low) & (b > low) & (a < high) & (b < high);
+        const Floats scale = Floats(1.0f) / max(f, Floats(1e-6f));
+        const Vec3s hit = p + to * scale - light.corner; // where the line meets the light's plane
+        const Floats a = dot(hit, light.dual_u), b = dot(hit, light.dual_v);
+        // The center of the texel that q meets is up to this far from q, as seen on the light.
+        const Floats reach = texel * scale * Floats(0.7f);
+        const Floats margin_a = multiply_add(reach, light.per_u, Floats(kMargin)),
+                     margin_b = multiply_add(reach, light.per_v, Floats(kMargin)), one(1.0f);
+        const Mask inside = (a > -margin_a) & (b > -margin_b) & (a < one + margin_a) & (b < one + margin_b);
+        const Mask meets = light.shape == Emitter::Kind::kSphere ? a * a + b * b <= (one + margin_a) * (one + margin_a)
+            : light.shape == Emitter::Kind::kTriangle            ? inside & (a + b < one + margin_a + margin_b)
+                                                                 : inside;
         const Mask blocks = (f > Floats(1e-5f)) & (f < Floats(0.9999f)) & (rise > slack) &
                             (rise * rise > Floats(kLeastRise * kLeastRise) * distance2) & meets;
         return xsimd::select(blocks, f, Floats(0.0f));
     }
     Vec3s on_light(const Floats& a, const Floats& b) const {
-        if (!light.disk) return light.corner + light.u * a + light.v * b;
+        if (light.shape == Emitter::Kind::kTriangle) { // the other half of the parallelogram is folded onto it
+            const Mask beyond = a + b > Floats(1.0f);
+            return light.corner + light.u * xsimd::select(beyond, Floats(1.0f) - a, a) +
+                   light.v * xsimd::select(beyond, Floats(1.0f) - b, b);
+        }
+        if (light.shape == Emitter::Kind::kParallelogram) return light.corner + light.u * a + light.v * b;
         const Floats r = xsimd::sqrt(a);
         const auto [sine, cosine] = xsimd::sincos(b * Floats(2 * kPi));
         return light.u * (r * cosine) + light.v * (r * sine);
@@ -125,7 +140,8 @@ SoftShadowMap::Outline SoftShadowMap::outline_from(const Vec3s& p) const {
     const auto all = [](Vec3 w) { return Vec3s{Floats(w.x), Floats(w.y), Floats(w.z)}; };
     if (kind_ != Emitter::Kind::kSphere) {
         const Floats towards = xsimd::select(p.z < Floats(0.0f), Floats(1.0f), Floats(-1.0f));
-        return {all(corner_), all(u_), all(v_), all(dual_u_), all(dual_v_), false,
+        return {all(corner_), all(u_), all(v_), all(dual_u_), all(dual_v_), Floats(length(dual_u_)),
+                Floats(length(dual_v_)), kind_,
                 {Floats(0.0f), Floats(0.0f), towards}};
     }
     // A sphere is replaced by the disk through its center that fills the cone tangent to it.
@@ -135,7 +151,7 @@ SoftShadowMap::Outline SoftShadowMap::outline_from(const Vec3s& p) const {
     const Floats sine = min(Floats(radius_) / distance, Floats(0.999f));
     const Floats radius = Floats(radius_) / xsimd::sqrt(Floats(1.0f) - sine * sine), over = Floats(1.0f) / radius;
     const Vec3s none{Floats(0.0f), Floats(0.0f), Floats(0.0f)};
-    return {none, frame.s * radius, frame.t * radius, frame.s * over, frame.t * over, true, axis};
+    return {none, frame.s * radius, frame.t * radius, frame.s * over, frame.t * over, over, over, kind_, axis};
 }
 
 Floats SoftShadowMap::visibility(const Vec3d& eye, const Vec3s& p, const Vec3s& n, const Ints& pattern) const {

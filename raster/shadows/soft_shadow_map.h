@@ -17,8 +17,9 @@ public:
     explicit DepthCube(const CubeMap& cube);
 
     /// Returns the surface point seen at the center of the texel in direction w, in the cube's frame about its center.
-    /// It is exact, so points of a flat surface lie in its plane. It is very far away if nothing is seen.
-    Vec3T<Floats> surface(const Vec3T<Floats>& w) const;
+    /// It is exact, so points of a flat surface lie in its plane. It is very far away if nothing is seen. `texel`
+    /// receives the texel's width there.
+    Vec3T<Floats> surface(const Vec3T<Floats>& w, Floats& texel) const;
     FrameT<double> frame;
     Vec3d center;
 

@@ -57,8 +57,7 @@ LadderImages ladder_scene(const Scene& scene, int spp = 64, int threads = 0, boo
     PreparedPair pair = prepare_pair(scene, settings);
     pair.raster_settings.shadows = effects; // one approximation at a time
     if (!effects) {
-        pair.raster_settings.ambient_occlusion = raster::AmbientOcclusion::kNone;
-        pair.raster_settings.screen_reflections = false;
+        pair.raster_settings.ambient_occlusion = pair.raster_settings.indirect_light = false;
     }
     Control control;
     const View view{scene.camera, kSize, kSize};

@@ -1,6 +1,6 @@
 // Lesson raster-09 and the library: the same depths in the map, and the same shadows away from their edges.
 #include "raster/lessons/09-shadow-maps/shadow.h"
-#include "raster/shadows/shadow_map.h"
+#include "raster/shadows/sharp_shadow_map.h"
 #include "tests/raster/shadow_floor.h"
 
 #include <doctest/doctest.h>
@@ -81,6 +81,7 @@ TEST_SUITE("lesson") {
             // Points of the floor: where all texels within three of the point agree, so do both shadows and the ray.
             std::mt19937 random(9);
             std::uniform_real_distribution<double> place(-1.2, 1.2);
+            const raster::SharpShadowMap lookup(library, {});
             int dark = 0, lit = 0;
             for (int i = 0; i < 3000; ++i) {
                 const double px = place(random);
@@ -88,9 +89,11 @@ TEST_SUITE("lesson") {
                 const float fraction =
                     lesson::lit_fraction(map, Vec3(p), lesson::slope_bias(map, to_sun, {0, 1, 0}, 3), 3);
                 if (fraction > 0 && fraction < 1) continue;
-                const auto found = library.project(p, raster::ShadowMap::kMargin);
-                REQUIRE(found);
-                REQUIRE(library.lit_fraction({p, {0, 1, 0}, 0}, *found) == fraction);
+                const auto lanes = [](Vec3 v) { return broadcast<raster::Floats>(v); };
+                xsimd::batch_bool<float> inside;
+                const auto found = lookup.visibility(lanes(Vec3(p)), lanes({0, 1, 0}), inside);
+                REQUIRE(xsimd::all(inside));
+                REQUIRE(found.get(0) == doctest::Approx(fraction));
                 REQUIRE(is_blocked(scene.world, p, Vec3d(to_sun)) == (fraction == 0));
                 (fraction == 0 ? dark : lit)++;
             }

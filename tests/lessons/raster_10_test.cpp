@@ -30,14 +30,14 @@ lesson::GBuffer draw_lesson(bool wall) {
 }
 
 /// The same by the library: what a white floor shows under a sky of radiance 1.
-ImageRgb draw_library(raster::AmbientOcclusion kind, float radius) {
+ImageRgb draw_library(float radius) {
     Scene scene;
     test::add(scene, QuadList{{{Vec3(-20, 0, 20), Vec3(40, 0, 0), Vec3(0, 0, -40)}}}, Mat4(), Diffuse{{Rgb(1.0f)}});
     test::add(scene, QuadList{{{Vec3(-20, 0, 0), Vec3(40, 0, 0), Vec3(0, 1, 0)}}}, Mat4(), Diffuse{{Rgb(0.0f)}});
     scene.environment = ConstantEnvironment{Rgb(1.0f)};
     finish_scene(scene);
     raster::RasterSettings settings;
-    settings.ambient_occlusion = kind, settings.occlusion_radius = radius, settings.samples_per_pixel = 16;
+    settings.indirect_light = false, settings.occlusion_radius = static_cast<double>(radius), settings.samples_per_pixel = 16;
     return test::render(scene, View{test::look({0, 3, 4}, {0, 0.3, 0.7}, kFov), kWidth, kHeight}, settings).radiance;
 }
 
@@ -94,7 +94,7 @@ TEST_SUITE("lesson") {
         // horizons farther than half the radius count less, so it gets a large one.
         const lesson::GBuffer seen = draw_lesson(true);
         const ImageRgb mine = lesson::sky_light(seen, {.directions = 32, .radius = 0.6f, .bias = 0.02f, .range = 0.6f});
-        const ImageRgb library = draw_library(raster::AmbientOcclusion::kGtao, 10);
+        const ImageRgb library = draw_library(10);
         int rows = 0;
         for (int y = 0; y < kHeight; ++y) {
             const double z = static_cast<double>(seen.p(kWidth / 2, y).z);

@@ -1,4 +1,4 @@
-// These tests compare deferred shading with closed forms, with shading sample by sample and with the path tracer.
+// These tests compare deferred shading with closed forms and with the path tracer.
 #include "tests/raster/varied_scene.h"
 
 #include "common/system/file.h"
@@ -10,20 +10,6 @@ using namespace duet;
 using namespace duet::test;
 
 namespace {
-
-raster::RasterSettings realtime() {
-    raster::RasterSettings settings;
-    settings.quality = raster::Quality::kRealtime;
-    return settings;
-}
-/// Returns settings of which only the direct light is left, without shadows.
-raster::RasterSettings only_direct(raster::Quality quality) {
-    raster::RasterSettings settings;
-    settings.quality = quality;
-    settings.shadows = settings.indirect_light = false;
-    settings.components.environment = settings.components.reflection = false;
-    return settings;
-}
 
 Scene load_model(const char* name) { return load_scene(std::filesystem::path(DUET_SOURCE_DIR) / "models" / name); }
 
@@ -49,18 +35,6 @@ ImageRgb path_traced(const Scene& scene, const View& view, int spp) {
 
 TEST_SUITE("unit") {
 
-    // The closed forms are evaluated in float and in lanes here, in double and point by point there.
-    TEST_CASE("direct light without shadows is that of shading sample by sample") {
-        for (const char* name : {"cornell.json", "veach.json"}) {
-            const Scene scene = load_model(name);
-            const View view{scene.camera, 80, 60};
-            const ImageRgb fast = render(scene, view, only_direct(raster::Quality::kRealtime)).radiance,
-                           slow = render(scene, view, only_direct(raster::Quality::kHigh)).radiance;
-            CAPTURE(name);
-            CHECK(relmse(fast, slow) < 1e-4);
-        }
-    }
-
     TEST_CASE("in a white furnace every surface is as bright as the environment") {
         for (const Material& material :
              {Material{Diffuse{{Rgb(1.0f)}}}, Material{Metal{{Rgb(1.0f)}, {0}}}, Material{Metal{{Rgb(1.0f)}, {0.6f}}},
@@ -69,34 +43,23 @@ TEST_SUITE("unit") {
             add(scene, Sphere{Vec3(0, 0, 0), 1}, Mat4(), material);
             scene.environment = ConstantEnvironment{Rgb(1.0f)};
             finish_scene(scene);
-            for (const Rgb c : render(scene, {look({0, 0, 5}, {0, 0, 0}), 40, 40}, realtime()).radiance)
+            for (const Rgb c : render(scene, {look({0, 0, 5}, {0, 0, 0}), 40, 40}, {}).radiance)
                 CHECK(c.g == doctest::Approx(1).epsilon(0.03));
         }
     }
 
     TEST_CASE("the image is the same for any number of threads") {
         const Scene scene = varied_scene(24);
-        raster::RasterSettings settings = realtime();
+        raster::RasterSettings settings;
         settings.threads = 1;
         const Rendering one = render(scene, perspective(), settings);
         settings.threads = 3;
         CHECK(one.radiance.pixels() == render(scene, perspective(), settings).radiance.pixels());
     }
 
-    TEST_CASE("perspective and orthographic views of a varied scene agree with shading sample by sample") {
-        const Scene scene = varied_scene(24);
-        for (const View& view : {perspective(), orthographic()}) {
-            raster::RasterSettings fast = realtime(), slow;
-            fast.indirect_light = false;
-            fast.ambient_occlusion = slow.ambient_occlusion = raster::AmbientOcclusion::kNone;
-            // Shadow edges differ: 4 × 4 texels are weighted alike, but the rules at facets are simpler here.
-            CHECK(relmse(render(scene, view, fast).radiance, render(scene, view, slow).radiance) < 0.007); // measured: 0.0054
-        }
-    }
-
     TEST_CASE("several samples per pixel average images of one sample") {
         const Scene scene = varied_scene(16);
-        raster::RasterSettings settings = realtime();
+        raster::RasterSettings settings;
         settings.samples_per_pixel = 4;
         const Rendering smooth = render(scene, {perspective().camera, 60, 40}, settings);
         CHECK(smooth.statistics.samples_per_pixel == 4);
@@ -112,11 +75,11 @@ TEST_SUITE("image") {
     TEST_CASE("the Cornell box is that of the path tracer") {
         const Scene scene = load_model("cornell.json");
         const View view{scene.camera, 96, 96};
-        CHECK(relmse(render(scene, view, realtime()).radiance, path_traced(scene, view, 256)) < 0.006);
+        CHECK(relmse(render(scene, view, {}).radiance, path_traced(scene, view, 256)) < 0.006);
     }
     TEST_CASE("a glass sphere in a box is that of the path tracer, but for its caustic") {
         const Scene scene = load_model("glass.json");
         const View view{scene.camera, 96, 96};
-        CHECK(relmse(render(scene, view, realtime()).radiance, path_traced(scene, view, 256)) < 0.04);
+        CHECK(relmse(render(scene, view, {}).radiance, path_traced(scene, view, 256)) < 0.04);
     }
 }

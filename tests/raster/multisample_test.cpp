@@ -18,7 +18,7 @@ raster::RasterSettings plain(raster::Shading shading) {
     raster::RasterSettings settings;
     settings.shading = shading;
     settings.shadows = false;
-    settings.ambient_occlusion = raster::AmbientOcclusion::kNone;
+    settings.ambient_occlusion = settings.indirect_light = false;
     return settings;
 }
 

@@ -186,11 +186,11 @@ TEST_SUITE("unit") {
 
         std::atomic<bool> stop{false};
         control.stop = &stop;
-        control.progress = [&](double f) { stop = f > 0.6; }; // in the third of four passes
+        control.progress = [&](double f) { stop = f > 0.6; }; // after the third of four passes
         const Rendering part = raster::render(prepared, view, settings, control);
         CHECK(part.statistics.interrupted);
-        CHECK(part.statistics.passes == 2);
-        CHECK(part.statistics.samples_per_pixel == 2);
+        CHECK(part.statistics.passes == 3);
+        CHECK(part.statistics.samples_per_pixel == 3);
         const int black = static_cast<int>(std::count(part.radiance.begin(), part.radiance.end(), Rgb()));
         CHECK(black == 0); // each pixel has the mean of its finished samples
 

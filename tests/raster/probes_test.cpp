@@ -99,7 +99,6 @@ TEST_SUITE("unit") {
         scene.camera = look({0, 0, 3}, {0, 0, 0});
         finish_scene(scene);
         raster::RasterSettings settings;
-        settings.quality = raster::Quality::kRealtime;
         const raster::RasterScene prepared = raster::prepare(scene, settings);
         const raster::IrradianceProbes& probes = *prepared.data().irradiance_probes;
         for (const Vec3 n : directions()) {

@@ -75,10 +75,16 @@ inline Rendering render(const Scene& scene, const View& view, const raster::Rast
     return raster::render(raster::prepare(scene, settings), view, settings, control);
 }
 
-/// Returns settings without occlusion of the environment.
+/// Returns settings without light between surfaces and without occlusion of the environment.
 inline raster::RasterSettings plain() {
     raster::RasterSettings settings;
-    settings.ambient_occlusion = raster::AmbientOcclusion::kNone;
+    settings.ambient_occlusion = settings.indirect_light = false;
+    return settings;
+}
+
+/// Returns the given settings without all light but the direct light of lights.
+inline raster::RasterSettings direct_light_only(raster::RasterSettings settings = {}) {
+    settings.indirect_light = settings.components.environment = settings.components.reflection = false;
     return settings;
 }
 

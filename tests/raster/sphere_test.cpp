@@ -159,7 +159,6 @@ TEST_SUITE("unit") {
             // The sphere is around the line of sight or around the eye.
             const Vec3d about = i % 5 == 0 ? c.eye : c.eye - normalize(c.eye - c.look_at) * random(0, 5 * size);
             sphere.sphere = {Vec3(about + random.vector(0.5 * size)), static_cast<float>(size)};
-            sphere.far_side = i % 7 == 0;
             if (i % 11 == 0) {
                 sphere.identity = false;
                 sphere.to_world = Mat4(random.stretch());
