@@ -62,12 +62,14 @@ struct FrameContext {
     Control& control;
 };
 
-PassView pass_view_of(const CameraModel& camera, const View& view, const Pass& pass) {
+PassView pass_view_of(const CameraModel& camera, const View& view, const RasterSettings& settings, const Pass& pass) {
     const Pinhole pinhole = camera.pinhole(pass.lens);
     return {.pinhole = pinhole,
             .time = static_cast<float>(camera.time(pass.time)),
             .viewport = viewport_of(view, pinhole),
-            .samples = pass.samples};
+            .samples = pass.samples,
+            .samples_per_pixel = std::max(settings.samples_per_pixel,
+                                          settings.sample_shading ? settings.multisamples : 1)};
 }
 
 /// Processes the geometry of a pass.
@@ -83,7 +85,7 @@ void process_pass(const FrameContext& frame, const PassView& pass_view) {
 template <typename RenderTile>
 void render_pass(const FrameContext& frame, const CameraModel& camera, const View& view, const Pass& pass,
                  const RenderTile& render_tile) {
-    const PassView pass_view = pass_view_of(camera, view, pass);
+    const PassView pass_view = pass_view_of(camera, view, frame.settings, pass);
     process_pass(frame, pass_view);
     const Stopwatch tiles_watch;
     parallel_for(frame.grid.size(), frame.settings.threads, [&](std::size_t i) {
@@ -223,7 +225,7 @@ void add_edges(const FrameContext& frame, const CameraModel& camera, const View&
                Overlay& overlay) {
     EdgeBuffer edge_buffer(view.width, view.height);
     const std::unique_ptr<ShaderProgram> normals = smooth_normal_program(); // bumps are not edges
-    const PassView pass_view = pass_view_of(camera, view, pass);
+    const PassView pass_view = pass_view_of(camera, view, frame.settings, pass);
     const SampleOffset offset = pass_view.samples.front(); // the only one
     parallel_for(frame.grid.size(), frame.settings.threads, [&](std::size_t i) {
         DepthTile depths;
@@ -253,7 +255,7 @@ bool is_multisampled(const FrameContext& frame) {
 template <typename Use>
 void for_each_lit_sample(const FrameContext& frame, const CameraModel& camera, const View& view, const Pass& pass,
                          const Use& use) {
-    const PassView pass_view = pass_view_of(camera, view, pass);
+    const PassView pass_view = pass_view_of(camera, view, frame.settings, pass);
     process_pass(frame, pass_view);
     const Stopwatch watch;
     for (const SampleOffset offset : pass.samples) {
@@ -309,7 +311,7 @@ Rendering render_image(const FrameContext& frame, const CameraModel& camera, con
     if (lines || edges) overlay.emplace(frame.data, frame.settings, view);
     for (const Pass& pass : passes) {
         if (frame.control.stopped()) break;
-        if (lines) overlay->add_lines(pass_view_of(camera, view, pass));
+        if (lines) overlay->add_lines(pass_view_of(camera, view, frame.settings, pass));
         if (frame.program == nullptr)
             render_lit(frame, camera, view, pass, framebuffer);
         else

@@ -17,6 +17,7 @@ struct PassView {
     float time = 0;
     Viewport viewport;
     const std::vector<SampleOffset>& samples;
+    int samples_per_pixel = 1; ///< shaded samples of all passes together, which determine a sample's footprint
 };
 
 /// Stores the primitives of a pass, ready to be rasterized tile by tile. They are rebuilt for each pass in the same

@@ -14,7 +14,7 @@ void store_hit(const SampleView& sample, int x, int y, const Hit& hit, float rev
                Planes3& emission) {
     const Scene& scene = sample.data.scene;
     const Ray ray = rounded(sample.view.pinhole.ray(sample.offset.position(x, y)), sample.view.time);
-    const int samples_per_pixel = static_cast<int>(sample.view.samples.size());
+    const int samples_per_pixel = sample.view.samples_per_pixel;
     const RayFootprint footprint = scene.needs.footprints
         ? PixelFootprint(sample.view.pinhole, samples_per_pixel).at(ray, hit.t)
         : RayFootprint{};

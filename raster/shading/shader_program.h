@@ -278,7 +278,7 @@ public:
         return std::make_unique<TileShader<S>>(data, geometry, view, tile, shader_);
     }
     Rgb shade_hit(const RasterSceneData& data, const PassView& view, const Hit& hit, Vec2d pixel) const override {
-        return shade_single_hit(data, view, shader_, hit, pixel, static_cast<int>(view.samples.size()));
+        return shade_single_hit(data, view, shader_, hit, pixel, view.samples_per_pixel);
     }
 
 private:

@@ -29,7 +29,7 @@ struct SamplePacket {
 
 /// Returns the number of shaded samples per pixel, which determines each sample's footprint.
 inline int samples_per_pixel(const SamplePacket& place, const PassView& view) {
-    return place.whole_pixels ? 1 : static_cast<int>(view.samples.size());
+    return place.whole_pixels ? 1 : view.samples_per_pixel;
 }
 
 } // namespace duet::raster

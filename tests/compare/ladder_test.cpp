@@ -171,17 +171,16 @@ TEST_SUITE("unit") {
         CHECK(hidden == doctest::Approx(expected).epsilon(0.08));
     }
 
-    TEST_CASE("where a mirror alone is wrong, for it shows the sky and no surface, reflections' share is 1") {
+    TEST_CASE("where a mirror alone is wrong, at the edges of what it shows, reflections have most of the difference") {
         SceneBuilder builder = floor_scene(Metal{{Rgb(0.9f)}, 0}, true);
         builder.scene.environment = ConstantEnvironment{Rgb(1.5f)};
         const Scene scene = builder.finish();
         const LadderImages pictures = ladder_scene(scene, 16);
         const Shares s = shares(pictures);
         CHECK(std::abs(s.sum - 1) < 1e-12);
-        CHECK(share_of(s, "reflections") > 0.999);
-        CHECK(others(s, "reflections") < 1e-3);
-        // The mirror shows the square as black with a side of 12 pixels.
-        CHECK(map_causes(pictures).visible == doctest::Approx(144.0 / (kSize * kSize)).epsilon(1e-6));
+        CHECK(share_of(s, "reflections") > 0.85);
+        // The mirror shows the square as black with a side of 12 pixels; only its edges are wrong.
+        CHECK(map_causes(pictures).visible < 60.0 / (kSize * kSize));
         CHECK(pictures.image(7)(kSize / 2, kSize / 2).g == 0);
     }
 

@@ -111,7 +111,7 @@ TEST_SUITE("statistical") {
         const View view{scene.camera, 96, 96};
         Control control;
         raster::RasterSettings closed;
-        closed.environment = closed.shadows = false;
+        closed.environment = closed.shadows = closed.indirect_light = false;
         closed.aovs.hit = true;
         raytrace::PathTracerSettings sampled;
         sampled.integrator = raytrace::Integrator::kUnshadowed;
