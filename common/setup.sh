@@ -1,5 +1,6 @@
 #!/bin/sh
-# Installs what Duet needs and is missing, from the system's packages (Debian 12, Ubuntu 24.04), then configures a preset:
+# Installs what Duet needs and is missing, from the system's packages (Debian 12, Ubuntu 24.04), then configures a
+# preset:
 # build/PRESET is ready for `cmake --build`. It builds nothing: a lesson or a program builds what it needs.
 # Called by compare/demo.sh and tests/run.sh.
 # usage: common/setup.sh [PRESET [PACKAGE…]]        (default: release; PACKAGE: a package that the caller needs besides)

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Installs what is missing, builds the three programs, renders a mesh scene with both pipelines and says where the report is.
+# Installs what is missing, builds the three programs, renders a mesh scene with both pipelines and says where the
+# report is.
 # usage: sh compare/demo.sh [SCENE [ARGUMENTS OF compare run…]]
 set -eu
 here=$PWD

@@ -74,7 +74,7 @@ ComparedImage read_compared_image(const fs::path& path, bool decode) {
 void check_comparable(const ImagesOptions& options, const ComparedImage& a, const ComparedImage& b) {
     const auto size = [](const ComparedImage& p) { return message(p.values.width(), "x", p.values.height()); };
     if (size(a) != size(b))
-        throw Error(message("the pictures differ in size: ", options.a.string(), " has ", size(a), " pixels, ",
+        throw Error(message("the images differ in size: ", options.a.string(), " has ", size(a), " pixels, ",
                             options.reference.string(), " ", size(b)));
     if (a.encoding != b.encoding) {
         const bool a_is_8bit = a.encoding == Encoding::kEncoded;
@@ -125,7 +125,7 @@ void print_z_test(std::ostream& out, const ZTest& z, bool a_exact, bool b_exact)
     }
     print_channels(out, "mean difference in standard deviations", z.mean_z);
     print_channels(out, "a mean difference that would be found in 99 of 100 such pairs", z.detectable);
-    out << "  " << (z.p < 0.01 ? "the pictures differ by more than noise" : "no difference but noise was found")
+    out << "  " << (z.p < 0.01 ? "the images differ by more than noise" : "no difference but noise was found")
         << ": p = " << text_of(z.p) << " after correction for " << z.tests << " tests, the most unlikely being the "
         << "mean of channel "
         << "rgb"[z.channel] << " over " << z.width << "x" << z.height << " pixels at (" << z.x << ", " << z.y << ")\n";

@@ -22,7 +22,7 @@ Subcommand add_run(CLI::App& app) {
     run->add_option("-o,--output", options.folder,
                     "The folder for index.html, raster.png, raytrace.png, difference.png and report.json")
         ->required();
-    run->add_option("--size", *size, "Picture size WIDTHxHEIGHT (default: the scene's)");
+    run->add_option("--size", *size, "Image size WIDTHxHEIGHT (default: the scene's)");
     run->add_option("--spp", settings.raytrace_spp, "The path tracer's samples a pixel (default 64)")
         ->check(CLI::Range(1, 1 << 24));
     run->add_option("--raster-spp", settings.raster_spp, "The rasterizer's samples a pixel (default 16)")

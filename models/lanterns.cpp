@@ -98,7 +98,7 @@ void write_lanterns(const std::filesystem::path& folder) {
         objects.sphere({x, y, z}, radius, emitter_name(color, strength));
     }
     write_file(folder / "lanterns.json",
-               "{\n  \"description\": \"1,000 lamps of 15 kinds over a market: which is worth a shadow ray?\",\n"
+               "{\n  \"description\": \"1,000 lights of 15 kinds over a market: which is worth a shadow ray?\",\n"
                "  \"camera\": {\"eye\": [9, 3.2, 13], \"look_at\": [0, 0.7, 0], \"fov_degrees\": 38},\n"
                "  \"image\": {\"width\": 960, \"height\": 540},\n  \"materials\": {\n" +
                    materials() + "\n  },\n  \"objects\": [\n" + objects.text() +

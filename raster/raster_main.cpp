@@ -32,7 +32,8 @@ int main(int argc, char** argv) {
         app.add_flag("--shadows,!--no-shadows", shadows,
                      "Shadow maps: sharp ones for point, spot and sun lights, soft ones for area lights (default: on)");
         app.add_option("--shadow-map", shadow_map_side,
-                       "Texels along a shadow map's side, 64 to 8192; a face of a cube map has half as many, of an area "
+                       "Texels along a shadow map's side, 64 to 8192; a face of a cube map has half as many, of an "
+                       "area "
                        "light's a quarter (default 2048); fewer where there would be too many for memory");
         app.add_option("--shadow-cells", shadow_cells,
                        "Pieces along each side of a rectangular light, 1 to 8, each with a map of its own (default 2)");

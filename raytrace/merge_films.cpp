@@ -68,7 +68,7 @@ int merge(const Options& options) {
     const StoredFilm all = merge_films(std::move(films));
     if (!options.film.empty() && !contiguous)
         throw Error("--film: the films leave out samples, or some pixels have more than others: the whole could not be "
-                    "continued (the picture alone can be written)");
+                    "continued (the image alone can be written)");
     if (!options.film.empty()) write_film(options.film, all);
     write_image(options.output, all.film.image());
     if (options.quiet) return kExitOk;
@@ -100,7 +100,7 @@ StoredFilm merge_films(std::vector<NamedFilm> films) {
 
 int run_merge(int argc, char** argv) {
     return run_program("raytrace merge", [&] {
-        CLI::App app("Joins films of the same picture, of different samples, into one picture.", "raytrace merge");
+        CLI::App app("Joins films of the same image, of different samples, into one image.", "raytrace merge");
         app.footer("Example, two machines a half each:\n"
                    "  raytrace models/cornell.json -o a.png --samples 0:128 --film a.exr\n"
                    "  raytrace models/cornell.json -o b.png --samples 128:256 --film b.exr\n"
@@ -108,7 +108,7 @@ int run_merge(int argc, char** argv) {
                    "Exit codes: 0 done, 1 failed, 2 unusable arguments or input.");
         Options options;
         app.add_option("FILM", options.films, "Films that raytrace --film has written")->required();
-        app.add_option("-o,--output", options.output, "The picture: .png, .jpg, .tga, .ppm, .pfm, .hdr or .exr")
+        app.add_option("-o,--output", options.output, "The image: .png, .jpg, .tga, .ppm, .pfm, .hdr or .exr")
             ->required();
         app.add_option("--film", options.film, "Write the joint film, too: it can be continued, or joined with others");
         app.add_flag("--quiet", options.quiet, "No summary");

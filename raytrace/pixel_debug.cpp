@@ -48,7 +48,7 @@ std::string debug_pixel(const PathTracerScene& prepared, const View& view, const
                         const SampleId& id) {
     const auto [x, y, index] = id;
     if (x >= view.width || y >= view.height)
-        throw Error(message("--pixel: found ", x, ',', y, ", expected a pixel of the picture of ", view.width, " x ",
+        throw Error(message("--pixel: found ", x, ',', y, ", expected a pixel of the image of ", view.width, " x ",
                             view.height));
     const RenderPlan plan(prepared.data(), view, settings);
     Sampler sampler = settings.make_sampler();
@@ -74,7 +74,7 @@ std::string debug_pixel(const PathTracerScene& prepared, const View& view, const
     }
     out << "\n" << integrator_name(settings.integrator) << ": " << std::setprecision(9) << radiance.r << ' '
         << radiance.g << ' ' << radiance.b << "\n";
-    if (!Film::valid(radiance)) out << "invalid: the picture leaves this sample out\n";
+    if (!Film::valid(radiance)) out << "invalid: the image leaves this sample out\n";
     return out.str();
 }
 

@@ -42,9 +42,9 @@ int main(int argc, char** argv) {
     program.check = [&](const OutputOptions& output) {
         if (!pixel.empty()) raytrace::parse_sample_id(pixel);
         if (film.empty()) return;
-        if (output.frames > 0) throw Error("--film: keeps one picture, cannot go with --orbit");
+        if (output.frames > 0) throw Error("--film: keeps one image, cannot go with --orbit");
         if (lower_case_extension(film) != ".exr") throw Error(message("--film: found ", film, ", expected an .exr"));
-        if (film == output.path) throw Error("--film: is the picture's own file, expected another");
+        if (film == output.path) throw Error("--film: is the image's own file, expected another");
         const auto folder = std::filesystem::absolute(film).parent_path();
         if (!std::filesystem::is_directory(folder)) throw Error(message("--film: no folder ", folder.string()));
     };
@@ -64,10 +64,10 @@ int main(int argc, char** argv) {
         app.add_option(
             "--sampler", sampler,
             "sobol (default: Owen-scrambled), blue-noise (the same, ordered so that what noise is left at few "
-            "samples is even over the picture), stratified, independent, or center (pixel and lens centre, "
+            "samples is even over the image), stratified, independent, or center (pixel and lens center, "
             "shutter open)");
         app.add_option("--filter", filter,
-                       "How a pixel weighs the light around its centre: box (default, the pixel itself) or "
+                       "How a pixel weighs the light around its center: box (default, the pixel itself) or "
                        "blackman-harris (a smooth bell over 3 x 3 pixels)");
         app.add_option("--time", settings.time_limit, "Stop after this many seconds, between passes")
             ->check(positive_number());
@@ -92,7 +92,7 @@ int main(int argc, char** argv) {
                        "needs no -o");
         app.add_option("--bvh", bvh,
                        "Quality of the hierarchies that rays search: default, or high (long to build; faster to search "
-                       "where triangles are long or overlap; the same picture)");
+                       "where triangles are long or overlap; the same image)");
         app.add_flag("--no-environment", no_environment, "Leave the environment's light and background out");
     };
     const auto apply_options = [&](const RenderSettings& common, std::optional<int> spp) {

@@ -15,12 +15,12 @@ namespace {
 
 void check(const View& view, const PathTracerSettings& settings) {
     if (view.width < 1 || view.height < 1)
-        throw Error(message("picture of ", view.width, " x ", view.height, " pixels: expected at least 1 x 1"));
+        throw Error(message("image of ", view.width, " x ", view.height, " pixels: expected at least 1 x 1"));
     if (settings.samples_per_pixel < 1)
         throw Error(message(settings.samples_per_pixel, " samples a pixel: expected at least 1"));
     if (!settings.film.empty() &&
         (settings.aovs.depth || settings.aovs.normal || settings.aovs.albedo || settings.aovs.hit))
-        throw Error("a film keeps no depth, normal, albedo or hit: expected none of these auxiliary pictures with it");
+        throw Error("a film keeps no depth, normal, albedo or hit: expected none of these auxiliary images with it");
     if (settings.first_sample > 0 && needs_sample_count(settings.sampler))
         throw Error(message("samples of the ", sampler_name(settings.sampler),
                             " sampler depend on how many there are, and are not taken in parts: expected another"));

@@ -84,11 +84,11 @@ std::vector<SkippedWork> skipped(const RenderPlan& plan, const PathTracerSetting
     if (!plan.scene.needs.alpha) skip("opacity tests", "no material has holes");
     if (!plan.scene.needs.normal_maps) skip("normal maps", "no material has one");
     if (!plan.needs_medium_stack) skip("insides", "no glass absorbs, or stands in other glass");
-    if (!plan.pixel_footprint) skip("texture footprints", "no material has a picture that is filtered");
+    if (!plan.pixel_footprint) skip("texture footprints", "no material has a image that is filtered");
     if (!plan.lens) skip("lens samples", "the camera has no aperture");
     if (!plan.motion) skip("time samples", "nothing moves");
     if (!plan.scene.needs.instances && !plan.motion) skip("instance transforms", "all objects stand in the world");
-    if (!settings.aovs.any()) skip("auxiliary pictures", "not asked for");
+    if (!settings.aovs.any()) skip("auxiliary images", "not requested");
     if (!computes_light(settings.integrator)) {
         skip("bounces", "the integrator shows surfaces, not light");
         return list;
@@ -97,7 +97,7 @@ std::vector<SkippedWork> skipped(const RenderPlan& plan, const PathTracerSetting
         skip("environment", settings.environment ? "it is black" : "left out by the settings");
     if (plan.lights == nullptr && samples_lights(settings.integrator)) {
         if (plan.max_depth == 0)
-            skip("light samples", "only emission is asked for");
+            skip("light samples", "only emission is requested");
         else if (!plan.prepared.scatters_diffusely)
             skip("light samples", "all materials are mirrors or glass, which they cannot reach");
         else

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Every header compiles alone: none relies on what another file included first. A header that its own .cpp includes first
+# Every header compiles alone: none relies on what another file included first. A header that its own .cpp includes
+# first
 # (x.cpp, x.h) was compiled alone by the build already; this test compiles the others.
 # usage: headers.sh COMPILER SOURCE_DIR
 set -eu

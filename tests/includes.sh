@@ -8,22 +8,26 @@ floors="vec image sampling geometry camera texture material light scene film pro
 grep -rnoE '#include "[^"]+"' common raster raytrace compare models tests --include='*.h' --include='*.cpp' |
     awk -F: -v floors="$floors" '
     BEGIN { n = split(floors, names, " "); for (i = 1; i <= n; ++i) floor[names[i]] = i }
-    # A lesson includes the small stable floor and the headers of its own folder and of earlier lessons of its room; its lab
+    # A lesson includes the small stable floor and the headers of its own folder and of earlier lessons of its room; its
+    # lab
     # has the contract that the grader calls, too. A lesson of compare/ comes after those of both other rooms. The
     # assignments, and what else stands in compare/lessons/, may include all.
     function lesson() {
         if (from[1] == "compare" && from[3] !~ /^[0-9][0-9]-/) return
         if (to[1] == "tests" && to[2] == "grading" && $1 ~ /\/lab(_test|_starter)?\.(h|cpp)$/) return
         if (to[1] == "common" && (to[2] == "vec" || to[2] == "image")) return
-        if ((to[1] != from[1] && from[1] != "compare") || to[2] != "lessons") fault("a lesson includes common/vec, common/image and earlier lessons alone")
+        if ((to[1] != from[1] && from[1] != "compare") || to[2] != "lessons") \
+            fault("a lesson includes common/vec, common/image and earlier lessons alone")
         else if (substr(to[3], 1, 2) > substr(from[3], 1, 2)) fault("a lesson includes no later lesson")
-        else if ($1 ~ /\/lab(_starter)?\.(h|cpp)$/ && to[3] == from[3] && to[4] != "lab.h") fault("this header holds the answer of the lab")
+        else if ($1 ~ /\/lab(_starter)?\.(h|cpp)$/ && to[3] == from[3] && to[4] != "lab.h") \
+            fault("this header holds the answer of the lab")
     }
     function fault(why) { print $1 ":" $2 ": " target ": " why; ++faults }
     {
         target = $3; sub(/^#include "/, "", target); sub(/"$/, "", target)
         split($1, from, "/"); split(target, to, "/")
-        if (!(to[1] ~ /^(common|raster|raytrace|compare|tests|models)$/)) { fault("name the file from the top of the repository"); next }
+        if (!(to[1] ~ /^(common|raster|raytrace|compare|tests|models)$/)) { \
+            fault("name the file from the top of the repository"); next }
         if (from[1] == "tests") next
         if (from[2] == "lessons") { lesson(); next }
         if (from[1] == "models" && to[1] != "common" && to[1] != "models") fault("models/ includes only common/")
@@ -34,7 +38,8 @@ grep -rnoE '#include "[^"]+"' common raster raytrace compare models tests --incl
             if (from[2] == "system") fault("system/ includes no floor")
             else if (!(from[2] in floor)) fault("common/" from[2] " is no floor: add it to tests/includes.sh")
             else if (!(to[2] in floor)) fault("common/" to[2] " is no floor: add it to tests/includes.sh")
-            else if (floor[to[2]] > floor[from[2]]) fault("goes up from " from[2] "/ to " to[2] "/: move the definition")
+            else if (floor[to[2]] > floor[from[2]]) fault("goes up from " from[2] "/ to " to[2] \
+                "/: move the definition")
         }
     }
     END { exit faults > 0 }'

@@ -110,7 +110,7 @@ StoredFilm read_film(const std::filesystem::path& path) {
 void check_same_image(const std::string& name, const StoredFilm& found, const StoredFilm& expected) {
     const auto check = [&](const std::string& what, const std::string& found_value, const std::string& expected_value) {
         if (found_value != expected_value)
-            throw Error(message(name, ": a film of another picture: ", what, ": found ", found_value, ", expected ",
+            throw Error(message(name, ": a film of another image: ", what, ": found ", found_value, ", expected ",
                                 expected_value));
     };
     const auto size = [](const Film& film) { return message(film.width(), " x ", film.height()); };

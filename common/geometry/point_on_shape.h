@@ -51,8 +51,8 @@ inline PointOnShapeT<T> point_on_smooth_triangle(const std::array<Vec3T<T>, 3>& 
 /// Returns the point of a sphere at the parameter t of a ray. Projecting onto the sphere removes the error of t along
 /// the normal.
 template <typename T>
-inline PointOnShapeT<T> point_on_sphere(const Vec3T<T>& center, T radius, const Vec3T<T>& origin, const Vec3T<T>& direction,
-                                 T t) {
+inline PointOnShapeT<T> point_on_sphere(const Vec3T<T>& center, T radius, const Vec3T<T>& origin,
+                                        const Vec3T<T>& direction, T t) {
     PointOnShapeT<T> point;
     point.ng = normalize(origin + direction * t - center);
     point.unit = true;

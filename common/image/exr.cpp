@@ -55,7 +55,7 @@ template <typename Read> auto convert_errors(const ImageBytes& file, Read read) 
     } catch (const Error&) {
         throw;
     } catch (const std::exception& error) {
-        throw Error(message(file.name, ": not a readable EXR picture: ", error.what()));
+        throw Error(message(file.name, ": not a readable EXR image: ", error.what()));
     }
 }
 

@@ -1,6 +1,6 @@
 // This file implements Radiance's HDR format. A pixel consists of three 8-bit fractions and a shared exponent; the
 // pixels are run-length encoded (Ward, "Real Pixels", Graphics Gems II, 1991; the file format is described in
-// radsite.lbl.gov/radiance/refer/filefmts.pdf, "Picture File Format").
+// radsite.lbl.gov/radiance/refer/filefmts.pdf, "Image File Format").
 //
 // The project does not use stb for this format: stb_image 2.27 never returns from a truncated run, and stb_image_write
 // truncates the fractions instead of rounding them, which darkens an image by 0.3 % on average.
@@ -130,8 +130,7 @@ private:
     void read_run_length_encoded(std::vector<Rgbe>& scanline) {
         at_ += 2;
         const unsigned high = byte(), low = byte();
-        if ((high << 8 | low) != scanline.size())
-            fail("corrupt: a scanline of another length than the picture's width");
+        if ((high << 8 | low) != scanline.size()) fail("corrupt: a scanline of another length than the image's width");
         for (std::size_t channel = 0; channel < 4; ++channel)
             for (std::size_t x = 0; x < scanline.size();) {
                 const std::uint8_t code = byte();

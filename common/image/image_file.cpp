@@ -74,7 +74,7 @@ private:
 void check_image_size(const std::string& name, long long width, long long height, int exit_code) {
     const bool sides_fit = width >= 1 && height >= 1 && width <= kMaxImageSide && height <= kMaxImageSide;
     if (sides_fit && width * height <= kMaxImagePixels) return;
-    throw Error(message(name, ": a picture of ", width, " x ", height, " pixels, expected 1 to ", kMaxImageSide,
+    throw Error(message(name, ": a image of ", width, " x ", height, " pixels, expected 1 to ", kMaxImageSide,
                         " a side and at most ", kMaxImagePixels, " in all"),
                 exit_code);
 }
@@ -86,12 +86,11 @@ void check_pixel_data_size(const ImageBytes& file, long long width, long long he
 }
 
 StoredImage decode_image(const ImageBytes& file, const std::string& extension) {
-    if (file.bytes.empty()) throw Error(message(file.name, ": empty file, expected a picture"));
+    if (file.bytes.empty()) throw Error(message(file.name, ": empty file, expected a image"));
     for (const Reader& reader : kReaders)
         if (file.bytes.starts_with(reader.signature)) return reader.decode(file);
     if (extension == ".tga") return decode_tga(file);
-    throw Error(
-        message(file.name, ": unknown format, expected a PNG, JPEG, TGA, PPM (P3, P6), PFM, HDR or EXR picture"));
+    throw Error(message(file.name, ": unknown format, expected a PNG, JPEG, TGA, PPM (P3, P6), PFM, HDR or EXR image"));
 }
 
 std::vector<ExrChannel> rgb_channels(const std::string& prefix, const ImageRgb& image) {

@@ -110,7 +110,7 @@ Layout layout_of(const std::string& name, const Plot& plot) {
     if (layout.right - layout.left < 100 || layout.bottom - layout.top < 60)
         throw Error(message(name, ": ", plot.width, " x ", plot.height,
                             " pixels leave too little room beside the labels, ",
-                            "expected a larger picture or shorter labels"));
+                            "expected a larger image or shorter labels"));
     return layout;
 }
 

@@ -85,7 +85,7 @@ private:
 
 [[noreturn]] void stb_failed(const ImageBytes& file, const char* format, const Source& source) {
     const char* reason = stbi_failure_reason();
-    throw Error(message(file.name, ": not a readable ", format, " picture: ",
+    throw Error(message(file.name, ": not a readable ", format, " image: ",
                         source.ended_early() ? "truncated"
                         : reason != nullptr  ? reason
                                              : "unknown reason"));
@@ -144,7 +144,7 @@ template <typename Write> std::string encode_with(Write write, const ImageRgb& i
     const std::vector<std::uint8_t> bytes = srgb_encode_8bit(image);
     std::string file;
     if (write(&append, &file, image.width(), image.height(), 3, bytes.data()) == 0)
-        throw Error("a picture cannot be encoded: out of memory", 1);
+        throw Error("a image cannot be encoded: out of memory", 1);
     return file;
 }
 
@@ -168,7 +168,7 @@ StoredImage decode_tga(const ImageBytes& file) {
     // A TGA has the color map type 0 or 1. Other files must be rejected here, because stb might read them as JPEG
     // without the checks of check_jpeg().
     if (file.bytes.size() < 18 || byte_at(file.bytes, 1) > 1)
-        throw Error(message(file.name, ": not a readable TGA picture: no TGA header"));
+        throw Error(message(file.name, ": not a readable TGA image: no TGA header"));
     const Size size = stb_size(file, "TGA");
     check_pixel_data_size(file, size.width, size.height, min_tga_bytes(file, size),
                           static_cast<double>(file.bytes.size() - 18));

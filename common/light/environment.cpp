@@ -138,12 +138,12 @@ void build_excess_distribution(ImageEnvironment& e) {
 } // namespace
 
 ImageEnvironment make_image_environment(ImageRgb image, float scale, float rotation) {
-    if (image.empty()) throw Error("the environment's picture is empty");
+    if (image.empty()) throw Error("the environment's image is empty");
     if (!(scale >= 0) || !std::isfinite(scale))
         throw Error(message("the environment's scale is ", scale, ": expected a finite number, not negative"));
     if (!std::isfinite(rotation)) throw Error("the environment's rotation is not a finite number");
     for (Rgb& c : image.pixels()) {
-        if (!is_finite(c)) throw Error("the environment's picture has a pixel that is infinite or not a number");
+        if (!is_finite(c)) throw Error("the environment's image has a pixel that is infinite or not a number");
         c = {max(c.r, 0.0f), max(c.g, 0.0f), max(c.b, 0.0f)};
     }
     ImageEnvironment e;

@@ -4,7 +4,8 @@
 
 namespace duet {
 
-template <typename T> MetalBsdfT<T>::MetalBsdfT(Rgb reflectance_, float alpha_) : reflectance(reflectance_), alpha(alpha_) {
+template <typename T>
+MetalBsdfT<T>::MetalBsdfT(Rgb reflectance_, float alpha_) : reflectance(reflectance_), alpha(alpha_) {
     if (!smooth())
         multiple_scattering =
             ggx_multiple_scattering(schlick_average(reflectance), ggx_average_albedo(alpha).energy_loss);

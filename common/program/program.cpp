@@ -23,7 +23,7 @@ int run_program(const std::string& name, const std::function<int()>& body) {
         std::cerr << name << ": " << error.what() << '\n';
         return error.exit_code();
     } catch (const std::bad_alloc&) {
-        std::cerr << name << ": not enough memory for this picture and scene\n";
+        std::cerr << name << ": not enough memory for this image and scene\n";
         return kExitFailed;
     } catch (const std::exception& error) {
         std::cerr << name << ": " << error.what() << '\n';

@@ -28,15 +28,15 @@ void add_common_options(CLI::App& app, Options& options, const std::string& spp_
     app.add_option("SCENE", options.scene,
                    "A scene file (.json) or a bare mesh (.obj: framed, on a ground under a sky)")
         ->required();
-    app.add_option("-o,--output", options.output, "The picture: .png, .jpg, .tga, .ppm, .pfm, .hdr or .exr");
-    app.add_option("--size", options.size, "Picture size WIDTHxHEIGHT (default: the scene's)");
+    app.add_option("-o,--output", options.output, "The image: .png, .jpg, .tga, .ppm, .pfm, .hdr or .exr");
+    app.add_option("--size", options.size, "Image size WIDTHxHEIGHT (default: the scene's)");
     app.add_option("--spp", options.spp, spp_help)->check(CLI::Range(1, 1 << 24));
     app.add_option("--threads", options.threads, "Threads (default: all)")->check(CLI::Range(1, 1024));
     app.add_option("--seed", options.seed, "Seed of all random numbers (default 0)")->check(unsigned_integer());
     app.add_option("--stats", options.stats, "Write statistics as JSON to this file (-: standard output)");
     app.add_option("--aov", options.aovs,
-                   "Auxiliary pictures, a list of depth,normal,albedo,hit,variance,samples: channels of an "
-                   ".exr, or EXR files beside the picture");
+                   "Auxiliary images, a list of depth,normal,albedo,hit,variance,samples: channels of an "
+                   ".exr, or EXR files beside the image");
     app.add_option("--orbit", options.orbit,
                    "Render this many frames around the camera's target; the output's name holds %04d")
         ->check(CLI::Range(1, 9999));
@@ -59,7 +59,7 @@ Camera orbited(Camera camera, int frame, int frames) {
 }
 
 void check_output(const Options& options) {
-    if (options.output.empty()) throw Error("no output: expected -o and the picture's file (--help explains)");
+    if (options.output.empty()) throw Error("no output: expected -o and the image's file (--help explains)");
     if (options.orbit > 0 && options.output.find("%04d") == std::string::npos)
         throw Error(
             message("--orbit: the output's name must hold %04d for the frame's number, found ", options.output));

@@ -51,7 +51,7 @@ void find_bounds(Scene& scene) {
         const Box3 box = motion_bounds(scene, object);
         const Vec3 extent = max(abs(box.low), abs(box.high));
         if (!is_finite(extent) || max_component(extent) > kMaxCoordinate)
-            throw Error(message(scene.path.string(), ": the object ", object.name, " reaches beyond 1e18 metres"));
+            throw Error(message(scene.path.string(), ": the object ", object.name, " reaches beyond 1e18 meters"));
         scene.bounds.extend(box);
     }
     if (scene.objects.empty()) scene.bounds = Box3{Vec3(scene.camera.look_at), Vec3(scene.camera.look_at)};

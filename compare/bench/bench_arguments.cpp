@@ -40,16 +40,15 @@ Subcommand add_bench(CLI::App& app) {
         ->add_option("--time-limit", options.measure.time_limit,
                      "Begin no further seed after measuring a scene this long, seconds (default 600); two are made")
         ->check(positive_number());
-    bench->add_option("--size", *size, "Picture size WIDTHxHEIGHT (default: the scene's shape with 65536 pixels)");
+    bench->add_option("--size", *size, "Image size WIDTHxHEIGHT (default: the scene's shape with 65536 pixels)");
     bench->add_option("--depth", options.choice.depth, "The path tracer's scattering events at most (default 64)")
         ->check(CLI::Range(0, 1 << 20));
     bench->add_option("--threads", options.choice.threads, "Threads (default: all)")->check(CLI::Range(1, 1024));
     bench->add_option("--seed", options.measure.seed, "Seeds count up from the one after this (default 0)")
         ->check(CLI::Range(0, 1 << 30));
-    bench->add_option(
-        "--exclude", *excluded,
-        "x0,y0,x1,y1: report the error without this rectangle, too: in pixels, or in parts of the picture "
-        "where none is above 1; may be given more than once");
+    bench->add_option("--exclude", *excluded,
+                      "x0,y0,x1,y1: report the error without this rectangle, too: in pixels, or in parts of the image "
+                      "where none is above 1; may be given more than once");
     bench->add_option(
         "--references", options.references,
         "The folder where references are kept (default: duet/references below $XDG_CACHE_HOME or ~/.cache)");
@@ -59,7 +58,8 @@ Subcommand add_bench(CLI::App& app) {
         ->check(CLI::Range(2, 1 << 24));
     bench
         ->add_option("--check-spp", options.check_spp,
-                     "Samples a pixel of naive's and the peer's references, which check ours (default: as many as it has)")
+                     "Samples a pixel of naive's and the peer's references, which check ours (default: as many as "
+                     "it has)")
         ->check(CLI::Range(2, 1 << 24));
     bench->add_option("--baseline", options.baseline,
                       "report.json of an earlier run: exit with 1 where a row is now slower or less accurate");

@@ -63,7 +63,7 @@ void print_check(std::ostream& out, const std::string& estimator, const Independ
     if (check.block_size > 0)
         out << "the block of " << check.block_size << " pixels from (" << check.block_x << ", " << check.block_y << ")";
     else
-        out << "the whole picture";
+        out << "the whole image";
     out << "; the whole differs by "
         << formatted("%.2g, %.2g, %.2g %%\n", 100 * check.relative_bias.r, 100 * check.relative_bias.g,
                      100 * check.relative_bias.b);

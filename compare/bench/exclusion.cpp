@@ -42,7 +42,7 @@ Image<std::uint8_t> counted_pixels(const std::vector<ExcludedRectangle>& rectang
     for (const ExcludedRectangle& r : rectangles) {
         const double sx = r.fractions ? width : 1, sy = r.fractions ? height : 1;
         if (r.x1 * sx > width || r.y1 * sy > height)
-            throw Error(message("--exclude: ", r.x0, ",", r.y0, ",", r.x1, ",", r.y1, " reaches beyond the picture of ",
+            throw Error(message("--exclude: ", r.x0, ",", r.y0, ",", r.x1, ",", r.y1, " reaches beyond the image of ",
                                 width, "x", height, " pixels"));
         for (int y = 0; y < height; ++y)
             for (int x = 0; x < width; ++x)
@@ -50,7 +50,7 @@ Image<std::uint8_t> counted_pixels(const std::vector<ExcludedRectangle>& rectang
                     counted(x, y) = 0;
     }
     if (std::find(counted.begin(), counted.end(), 1) == counted.end())
-        throw Error("--exclude: nothing of the picture is left");
+        throw Error("--exclude: nothing of the image is left");
     return counted;
 }
 

@@ -82,7 +82,7 @@ void print_table(std::ostream& out, const FramesOptions& options, const std::vec
         line(all, rest);
     };
     row_line("mesh", {"view", "work", "threads", "covered", "ours", "peer", "min", "median", "max", "scaling"},
-             "difference of the pictures");
+             "difference of the images");
     for (const MeshRows& mesh : meshes)
         for (const FrameRow& row : mesh.rows) {
             const bool peer = row.difference.has_value();
@@ -100,7 +100,7 @@ void print_table(std::ostream& out, const FramesOptions& options, const std::vec
                 out << "peer: " << row.peer_name << '\n';
                 return;
             }
-    out << (LlvmpipeRenderer::built() ? "no peer was asked for\n" : "no peer: this program was built without EGL\n");
+    out << (LlvmpipeRenderer::built() ? "no peer was requested\n" : "no peer: this program was built without EGL\n");
 }
 
 void write_images(const std::filesystem::path& folder, const MeshRows& mesh) {
@@ -170,7 +170,7 @@ int frames(const FramesOptions& options) {
             rows.push_back(row_json(mesh, row));
             if (!row.difference || row.difference->same()) continue;
             std::cerr << "compare: " << mesh.mesh << ", " << name(row.view) << ", " << name(row.work)
-                      << ": our picture and the peer's differ: " << difference_text(row) << '\n';
+                      << ": our image and the peer's differ: " << difference_text(row) << '\n';
             code = kExitFailed;
         }
     if (!options.stats.empty())

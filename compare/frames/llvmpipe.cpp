@@ -194,7 +194,7 @@ ImageRgb LlvmpipeRenderer::image() const {
     const View& view = state_->view;
     Image<std::array<std::uint8_t, 4>> bytes(view.width, view.height);
     state_->gl.ReadPixels(0, 0, view.width, view.height, GL_RGBA, GL_UNSIGNED_BYTE, &bytes[0]);
-    state_->gl.check("reading the picture");
+    state_->gl.check("reading the image");
     ImageRgb result(view.width, view.height);
     for (std::size_t i = 0; i < result.size(); ++i) {
         const auto value = [&](std::size_t channel) { return static_cast<float>(bytes[i][channel]) / 255; };

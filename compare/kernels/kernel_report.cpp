@@ -122,7 +122,8 @@ void print_differences(std::ostream& out, const KernelResults& table) {
         for (std::size_t i = 0; i < cells.size(); ++i) out << std::setw(kWidths[i]) << cells[i];
         out << "  " << name << '\n';
     };
-    out << "  where both differ: ties, outlines and ends within rounding; edge faults and wrong answers of each; rays lost "
+    out << "  where both differ: ties, outlines and ends within rounding; edge faults and wrong answers of each; rays "
+           "lost "
            "from the closed room\n";
     line("work", {"rays", "ties", "edges", "our e.f.", "its e.f.", "our wrong", "its wrong", "we lose", "it loses"},
          "the peer's setting with the most");

@@ -26,12 +26,14 @@ Subcommand add_kernels(CLI::App& app) {
         ->delimiter(',');
     kernels
         ->add_option("--work", options.works,
-                     "Of build (seconds, and bytes a triangle), camera (single rays), camera-bulk (packets and streams), "
+                     "Of build (seconds, and bytes a triangle), camera (single rays), camera-bulk (packets and "
+                     "streams), "
                      "bounce, shadow (default: all)")
         ->delimiter(',');
     kernels
         ->add_option("--peers", options.peers,
-                     "Embree's settings: medium, high (build quality), medium-robust, high-robust, where there is AVX-512 "
+                     "Embree's settings: medium, high (build quality), medium-robust, high-robust, where there is "
+                     "AVX-512 "
                      "medium-avx2 and high-avx2, or none (default: all)")
         ->delimiter(',');
     kernels->add_option("--bvh", options.bvh,
@@ -48,7 +50,8 @@ Subcommand add_kernels(CLI::App& app) {
         ->check(number_in_range(1e-4, 1e4, "seconds from 1e-4 to 1e4"));
     kernels
         ->add_option("--watertight", options.watertight,
-                     "Rays aimed at points, edges and vertices from within, each judged in double precision, where the mesh "
+                     "Rays aimed at points, edges and vertices from within, each judged in double precision, where the "
+                     "mesh "
                      "or room is closed; 0: none (default "
                      "1000000)")
         ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 40));

@@ -1,4 +1,5 @@
-# cmake -DTABLE=code.txt -DSOURCES=TOP -DOUT=code_lines.cpp -P count_code.cmake: counts the lines of the table's files that
+# cmake -DTABLE=code.txt -DSOURCES=TOP -DOUT=code_lines.cpp -P count_code.cmake: counts the lines of the table's files
+# that
 # are neither blank nor only comment, into a source of compare/ladder/code_lines.h.
 function(count_lines FILE RESULT)
     file(READ ${FILE} text)

@@ -20,7 +20,8 @@ struct LadderImages {
 };
 
 /// Renders the images of all ladder stages. Each camera sample is shaded in two ways. The rasterizer's shading
-/// yields the components of raster::LightComponentImages: emission e, direct d, environment v, indirect g, reflection r,
+/// yields the components of raster::LightComponentImages: emission e, direct d, environment v, indirect g, reflection
+/// r,
 /// and s, the light that shadows remove from d. The path tracer yields those of raytrace::LightComponents: emission E,
 /// direct D, unshadowed U, environment V, reflection R, indirect G. The stages are the means, over the path tracer's
 /// camera samples, of
@@ -30,7 +31,8 @@ struct LadderImages {
 ///   I₃ = E + U − s + v + g + r                     I₆ = E + D + V + g + R
 ///                                                  I₇ = E + D + V + G + R, the path tracer's image.
 ///
-/// The rasterizer shades the hits of one sample of all pixels together, since its effects look at other pixels. It takes
+/// The rasterizer shades the hits of one sample of all pixels together, since its effects look at other pixels. It
+/// takes
 /// the lens center as their viewer, at the time the shutter opens (raster::HitShader).
 ///
 /// `first` is I₀. If `control` is stopped, returns what is finished.

@@ -17,7 +17,7 @@ struct LadderOptions {
 };
 
 /// Writes index.html, report.json, cause.png, the images of each rung (RUNG-QUANTITY-raster.png and
-/// -raytrace.png) and of the ladder (picture-0.png to picture-7.png, change-1.png to change-7.png) to the
+/// -raytrace.png) and of the ladder (image-0.png to image-7.png, change-1.png to change-7.png) to the
 /// folder, which is created if it is missing. Each file is written completely or not at all. Returns the
 /// program's exit code: 0, or 130 after an interrupt signal, in which case nothing is written. Throws Error for
 /// a scene or folder that cannot be used.

@@ -11,15 +11,15 @@ namespace duet::compare {
 
 Subcommand add_ladder(CLI::App& app) {
     CLI::App* ladder = app.add_subcommand(
-        "ladder", "Both pipelines side by side, rung by rung, and where the difference of their pictures comes from");
+        "ladder", "Both pipelines side by side, rung by rung, and where the difference of their images comes from");
     const auto all = std::make_shared<LadderOptions>();
     const auto size = std::make_shared<std::string>();
     LadderOptions& options = *all;
     ComparisonSettings& settings = options.settings;
     ladder->add_option("SCENE", options.scene, "A scene file (.json) or a bare mesh (.obj)")->required();
-    ladder->add_option("-o,--output", options.folder, "The folder for index.html, report.json and the pictures")
+    ladder->add_option("-o,--output", options.folder, "The folder for index.html, report.json and the images")
         ->required();
-    ladder->add_option("--size", *size, "Picture size WIDTHxHEIGHT (default: the scene's)");
+    ladder->add_option("--size", *size, "Image size WIDTHxHEIGHT (default: the scene's)");
     ladder
         ->add_option("--spp", settings.raytrace_spp,
                      "The path tracer's samples a pixel, in two halves (default 64; odd numbers are rounded up)")

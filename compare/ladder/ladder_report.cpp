@@ -120,7 +120,7 @@ void print_rung(std::ostream& out, const LadderResult& result, std::size_t k) {
 void print_shares(std::ostream& out, const LadderResult& result) {
     out << "where the difference comes from, each rung's approximation replaced in this order:\n";
     if (result.shares.negligible) {
-        out << "  nowhere: the pictures are equal but for rounding\n";
+        out << "  nowhere: the images are equal but for rounding\n";
         return;
     }
     out << "  " << std::left << std::setw(40) << "cause" << std::right << std::setw(10) << "share" << std::setw(14)

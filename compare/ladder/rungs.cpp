@@ -87,13 +87,13 @@ std::array<RungPlan, kRungCount> plan_rungs(const Scene& scene, const PreparedPa
     const bool lights = !scene.lights.empty();
     const RungPlan visibility{{hit_renderers(pair)},
                               "Projects each primitive onto the pixels and keeps the nearest.",
-                              "Sends a ray through each pixel's centre into a bounding volume hierarchy.",
+                              "Sends a ray through each pixel's center into a bounding volume hierarchy.",
                               ""};
     const RungPlan normals{{surface_renderers("normals", pair, raster::Shading::kNormal, Integrator::kNormal),
                             surface_renderers("albedo", pair, raster::Shading::kAlbedo, Integrator::kAlbedo)},
                            "Surface point and texture of its hits.",
                            "Surface point and texture of its hits.",
-                           "Shared code: from a hit on, both are the same. Where these pictures differ, samples lie "
+                           "Shared code: from a hit on, both are the same. Where these images differ, samples lie "
                            "elsewhere in the pixel."};
     PreparedPair open = pair; // renders without shadows
     open.raster_settings.shadows = false;
@@ -117,7 +117,8 @@ std::array<RungPlan, kRungCount> plan_rungs(const Scene& scene, const PreparedPa
         ""};
     const RungPlan reflections{
         {light_renderers("reflections", pair, kReflection, Integrator::kReflection, true)},
-        "Looks up the mirrored and the refracted ray in the image, else in probes that see the scene from one point per "
+        "Looks up the mirrored and the refracted ray in the image, else in probes that see the scene from one "
+        "point per "
         "object, blurred where metal is rough.",
         "Follows the path on from metal and glass to whatever it meets.",
         ""};

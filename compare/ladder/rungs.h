@@ -52,7 +52,8 @@ struct RungPlan {
 };
 
 /// Returns what both pipelines render at each rung. A new approximation of the rasterizer must be added to the
-/// settings of its rung here and, if it contributes light, to raster::LightComponentImages. The rest of the ladder needs
+/// settings of its rung here and, if it contributes light, to raster::LightComponentImages. The rest of the ladder
+/// needs
 /// no change.
 std::array<RungPlan, kRungCount> plan_rungs(const Scene& scene, const PreparedPair& pair);
 

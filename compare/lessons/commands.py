@@ -9,7 +9,8 @@ import course
 import markdown
 
 # What a reader's system has.
-COMMON = {"apt-get", "cat", "cd", "chromium", "clang-format", "cp", "diff", "echo", "firefox", "g++", "gdb", "git", "head",
+COMMON = {"apt-get", "cat", "cd", "chromium", "clang-format", "cp", "diff", "echo", "firefox", "g++", "gdb", "git",
+          "head",
           "ls", "mkdir", "mv", "node", "open", "perf", "pip", "rm", "tail", "time", "unzip", "xdg-open", "zip"}
 PROGRAMS = ("raster", "raytrace", "compare")
 OURS = re.compile(r"(common|raster|raytrace|compare|models|tests)/")
@@ -22,10 +23,12 @@ OPTION = re.compile(r"(?<![\w-])(--[a-z][a-z0-9-]*|-[A-Za-z])(?![\w-])")
 def targets(source):
     """The names of the build's targets, as the CMake files say them, and those of each lesson."""
     names = {"all", "clean", "test"}
-    for file in [source / "CMakeLists.txt", *source.glob("[a-z]*/**/CMakeLists.txt"), *source.glob("[a-z]*/**/*.cmake")]:
+    for file in [source / "CMakeLists.txt", *source.glob("[a-z]*/**/CMakeLists.txt"),
+                 *source.glob("[a-z]*/**/*.cmake")]:
         if "build" not in file.relative_to(source).parts:
             text = file.read_text(encoding="utf-8")
-            names.update(re.findall(r"(?:add_custom_target|add_executable|add_library|duet_program|duet_room)\(([\w-]+)", text))
+            names.update(re.findall(
+                r"(?:add_custom_target|add_executable|add_library|duet_program|duet_room)\(([\w-]+)", text))
             names.update(re.findall(r"CONFIGURE OUTPUT \$\{CMAKE_RUNTIME_OUTPUT_DIRECTORY\}/([\w-]+)", text))  # scripts
     for lesson in course.lessons(source):
         names.add(f"lesson-{lesson.id}")

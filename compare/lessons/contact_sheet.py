@@ -11,7 +11,10 @@ import sys
 import course
 
 HEAD = "<!doctype html><html lang=en><meta charset=utf-8><meta name=viewport content='width=device-width'>"
-STYLE = """body{font:16px/1.5 system-ui,sans-serif;max-width:75rem;margin:2rem auto;padding:0 1rem;color:#222;background:#fff}
+
+
+STYLE = """body{font:16px/1.5 system-ui,sans-serif;max-width:75rem;margin:2rem auto;padding:0 1rem;color:#222;
+background:#fff}
 main{display:grid;grid-template-columns:repeat(auto-fill,minmax(20rem,1fr));gap:1.5rem}
 a{color:inherit;text-decoration:none}a:hover b{text-decoration:underline}
 img{width:100%;aspect-ratio:16/9;object-fit:contain;background:#eef0f2;border-radius:4px}small{color:#666}"""
@@ -40,7 +43,8 @@ def main():
         parts.append(f"<h2>{name}</h2><main>{''.join(text for text, _ in cards)}</main>")
     head = f"{HEAD}<title>Lessons</title><style>{STYLE}</style><h1>Lessons</h1>"
     partial = out / f"index.html.{os.getpid()}"
-    partial.write_text(f"{head}<p>All programs together ran for {total:.0f} s.</p>{''.join(parts)}</html>\n", encoding="utf-8")
+    partial.write_text(f"{head}<p>All programs together ran for {total:.0f} s.</p>{''.join(parts)}</html>\n",
+                       encoding="utf-8")
     partial.replace(out / "index.html")
 
 

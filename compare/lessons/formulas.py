@@ -54,7 +54,8 @@ def faults_on_github(text):
     for begin, end in spans:
         line = rest[:begin].count("\n") + 1
         for escape in sorted(set(re.findall(rf"\\[{PUNCTUATION}]", rest[begin:end]))):
-            faults.append((line, f"GitHub shows {escape} as {escape[1]} in {rest[begin:end].strip()[:60]}: leave it out, or {advice}"))
+            faults.append((line, f"GitHub shows {escape} as {escape[1]} in {rest[begin:end].strip()[:60]}: leave it "
+                                 f"out, or {advice}"))
     for start, paragraph in paragraphs(rest):
         inside = [(begin - start, end - start) for begin, end in spans]
         clash = emphasis(paragraph, inside)

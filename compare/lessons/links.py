@@ -26,7 +26,8 @@ def faults(page, text, source):
         if re.match(r"https?://|mailto:", target):
             continue
         if picture and len(words.split()) < 3:
-            found.append((line, f"the picture {target} has the alternative text '{words}', expected what one sees there"))
+            found.append((line,
+                          f"the picture {target} has the alternative text '{words}', expected what one sees there"))
         place, _, fragment = target.partition("#")
         path = (page.parent / urllib.parse.unquote(place)).resolve() if place else page.resolve()
         if place.startswith("/") or not path.is_relative_to(source):

@@ -18,7 +18,8 @@ import markdown
 import quotes
 import spelling
 
-SECTIONS = ["The mathematics", "The program", "What to look at", "What goes wrong", "Exercises", "In the library", "Sources"]
+SECTIONS = ["The mathematics", "The program", "What to look at", "What goes wrong", "Exercises", "In the library",
+            "Sources"]
 MAX_LINES, MAX_COLUMNS, MAX_FIGURES = 150, 120, 400_000
 
 
@@ -28,7 +29,8 @@ def program_faults(lesson, text):
     quoted = quotes.fill(lesson.page, text)[1]
     if lesson.program_lines() > MAX_LINES:
         sizes = ", ".join(f"{path.name} {len(path.read_text().splitlines())}" for path in lesson.program_files())
-        faults.append((lesson.folder, 0, f"the program has {lesson.program_lines()} lines ({sizes}), at most {MAX_LINES}"))
+        faults.append((lesson.folder, 0,
+                       f"the program has {lesson.program_lines()} lines ({sizes}), at most {MAX_LINES}"))
     for path in lesson.program_files():
         for i, line in enumerate(path.read_text(encoding="utf-8").split("\n")):
             if len(line) > MAX_COLUMNS:
@@ -37,7 +39,8 @@ def program_faults(lesson, text):
         if missing:
             numbers = ", ".join(str(i + 1) for i, _ in missing[:12]) + (" …" if len(missing) > 12 else "")
             faults.append((path, missing[0][0] + 1, f"the page quotes no line {numbers}: '{missing[0][1].strip()}'"))
-    faults += [(lesson.page, line, "this C++ in 'The program' is not quoted by a marker") for line in quotes.handmade(text)]
+    faults += [(lesson.page, line, "this C++ in 'The program' is not quoted by a marker")
+               for line in quotes.handmade(text)]
     return faults
 
 
@@ -55,7 +58,8 @@ def outline_faults(lesson, text):
         if not at:
             faults.append((1, f"the page has no section '## {section}'"))
         elif at[0] < place:
-            faults.append((titles[at[0]][0], f"the section '{section}' comes too early; expected {', '.join(SECTIONS)}"))
+            faults.append((titles[at[0]][0],
+                           f"the section '{section}' comes too early; expected {', '.join(SECTIONS)}"))
         else:
             place = at[0]
     return faults
@@ -104,7 +108,8 @@ def lesson_faults(lesson, write):
         lesson.page.write_text(filled, encoding="utf-8")
     elif filled != text:
         line = next((i for i, (a, b) in enumerate(zip(filled.split("\n"), text.split("\n"))) if a != b), 0)
-        faults.append((lesson.page, line + 1, "a quote differs from its source: run python3 compare/lessons/pages.py --write"))
+        faults.append((lesson.page, line + 1,
+                       "a quote differs from its source: run python3 compare/lessons/pages.py --write"))
     faults += program_faults(lesson, filled)
     for check in (outline_faults, figure_faults, end_faults):
         faults += [(lesson.page, *fault) for fault in check(lesson, filled)]
@@ -140,13 +145,16 @@ def table(lessons):
 
 
 def main():
-    parser = argparse.ArgumentParser(description="Checks the pages of the repository: those of lessons, and all others.")
-    parser.add_argument("ids", nargs="*", metavar="ID", help="lessons such as raytrace-02 (default: all, and the other pages)")
+    parser = argparse.ArgumentParser(description="Checks the pages of the repository: those of lessons, and all "
+                                                 "others.")
+    parser.add_argument("ids", nargs="*", metavar="ID",
+                        help="lessons such as raytrace-02 (default: all, and the other pages)")
     parser.add_argument("--write", action="store_true", help="fill in the quotes first")
     parser.add_argument("--strict", action="store_true", default=os.environ.get("CI") == "1",
                         help="fail where a check cannot be made, rather than say so (default: if CI=1 is set)")
     parser.add_argument("--programs", type=pathlib.Path, default=course.SOURCE / "build" / "release" / "bin",
-                        metavar="FOLDER", help="where the built programs are, to check options (default: build/release/bin)")
+                        metavar="FOLDER",
+                        help="where the built programs are, to check options (default: build/release/bin)")
     parser.add_argument("--source", type=pathlib.Path, default=course.SOURCE, metavar="FOLDER",
                         help="the repository whose pages are checked (default: that of this script)")
     options = parser.parse_args()

@@ -12,7 +12,8 @@ import textwrap
 MARKER = re.compile(r"^<!-- quote (?P<file>\S+): (?P<text>.+?) -->\s*$")
 LANGUAGES = {".h": "cpp", ".cpp": "cpp", ".py": "python", ".sh": "sh", ".txt": "text", ".cmake": "cmake"}
 # Lines that need no explanation: they are the same in all programs.
-TRIVIAL = re.compile(r"^\s*$|^#include |^#pragma once|^(inline )?namespace [\w:]* ?\{$|^\} // namespace|^using namespace ")
+TRIVIAL = re.compile(r"^\s*$|^#include |^#pragma once|^(inline )?namespace [\w:]* ?\{$|^\} // namespace|^using "
+                     r"namespace ")
 
 
 class Fault(Exception):
@@ -55,7 +56,8 @@ def quoted_range(lines, text, name):
         raise Fault(f"no line of {name} from {hits[0] + 1} on contains '{end}'")
     found = [(first, last) for first, last in paragraphs(lines) if any(first <= i <= last for i in hits)]
     if len(found) != 1:
-        raise Fault(f"{len(found)} paragraphs of {name} contain '{begin}' (lines {', '.join(str(i + 1) for i in hits)}), "
+        raise Fault(f"{len(found)} paragraphs of {name} contain '{begin}' (lines "
+                    f"{', '.join(str(i + 1) for i in hits)}), "
                     "expected one: add what tells it from the others")
     return found[0]
 

@@ -40,7 +40,7 @@ void add_errors(std::vector<MetricValue>& list, const ErrorMetrics& m) {
 }
 
 void add_flip(std::vector<MetricValue>& list, const HdrFlip& f) {
-    list.insert(list.end(), {{"flip", f.mean, "mean of the FLIP map (HDR-FLIP of linear pictures), 0 to 1"},
+    list.insert(list.end(), {{"flip", f.mean, "mean of the FLIP map (HDR-FLIP of linear images), 0 to 1"},
                              {"flip_weighted_median", f.weighted_median, "half of all FLIP error lies below it"},
                              {"flip_first_quartile", f.first_quartile, "a quarter"},
                              {"flip_third_quartile", f.third_quartile, "three quarters"},
@@ -85,7 +85,7 @@ ImageMetrics image_metrics(const ImageRgb& a, const ImageRgb& reference, Encodin
 std::vector<MetricValue> metric_values(const ImageMetrics& metrics) {
     std::vector<MetricValue> list;
     add_errors(list, metrics.errors);
-    list.push_back({"ssim", metrics.ssim, "structural similarity, 1 for equal pictures; less is worse", true});
+    list.push_back({"ssim", metrics.ssim, "structural similarity, 1 for equal images; less is worse", true});
     add_flip(list, metrics.flip);
     add_z_test(list, metrics.z);
     return list;

@@ -9,7 +9,7 @@ namespace duet::compare {
 template <typename PixelA, typename PixelB> void check_same_size(const Image<PixelA>& a, const Image<PixelB>& b) {
     if (a.width() != b.width() || a.height() != b.height())
         throw Error(
-            message("the pictures differ in size: ", a.width(), "x", a.height(), " and ", b.width(), "x", b.height()));
+            message("the images differ in size: ", a.width(), "x", a.height(), " and ", b.width(), "x", b.height()));
 }
 
 } // namespace duet::compare

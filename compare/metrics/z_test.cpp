@@ -60,7 +60,7 @@ void check_sizes(const NoisyImage& a, const NoisyImage& b) {
     check_same_size(a.values, b.values);
     for (const ImageRgb* const variance : {&a.variance, &b.variance})
         if (!variance->empty()) check_same_size(a.values, *variance);
-    if (a.variance.empty() && b.variance.empty()) throw Error("neither picture has variances");
+    if (a.variance.empty() && b.variance.empty()) throw Error("neither image has variances");
 }
 
 double variance_at(const NoisyImage& image, std::size_t i, std::size_t c) {

@@ -99,14 +99,17 @@ def load_image(name):
 def texture(nodes, t):
     uv = nodes.add("ShaderNodeUVMap", 0, {"uv_map": "uv"})
     if t["type"] == "image":
-        scaled = nodes.add("ShaderNodeVectorMath", 0, {"operation": "MULTIPLY"}, _0=uv, _1=(t["scale"][0], t["scale"][1], 1.0))
+        scaled = nodes.add("ShaderNodeVectorMath", 0, {"operation": "MULTIPLY"}, _0=uv,
+                           _1=(t["scale"][0], t["scale"][1], 1.0))
         settings = {"image": load_image(t["file"]), "interpolation": "Linear" if t["bilinear"] else "Closest"}
         return nodes.add("ShaderNodeTexImage", "Color", settings, Vector=scaled)
     place = nodes.add("ShaderNodeAttribute", "Vector", {"attribute_name": "p_object"}) if t["solid"] else uv
     # Cycles' checker is three-dimensional. It uses Color2 where the sum of the cell indices is even.
     shift = 1.0 / 4096 if t["solid"] else 0.0
-    moved = nodes.add("ShaderNodeVectorMath", 0, {"operation": "MULTIPLY_ADD"}, _0=place, _1=(t["scale"],) * 3, _2=(shift,) * 3)
-    return nodes.add("ShaderNodeTexChecker", "Color", {}, Vector=moved, Scale=1.0, Color1=rgba(t["odd"]), Color2=rgba(t["even"]))
+    moved = nodes.add("ShaderNodeVectorMath", 0, {"operation": "MULTIPLY_ADD"}, _0=place, _1=(t["scale"],) * 3,
+                      _2=(shift,) * 3)
+    return nodes.add("ShaderNodeTexChecker", "Color", {}, Vector=moved, Scale=1.0, Color1=rgba(t["odd"]),
+                     Color2=rgba(t["even"]))
 
 
 def slot(nodes, s):
@@ -136,11 +139,14 @@ def dielectric(nodes, m):
     # tints reflections, so it is used for clear glass only.
     rough = m["roughness"]
     if rough > 0 and clear_glass(m):
-        return nodes.add("ShaderNodeBsdfGlass", 0, {"distribution": "MULTI_GGX"}, Color=WHITE, IOR=m["ior"], Roughness=rough)
+        return nodes.add("ShaderNodeBsdfGlass", 0, {"distribution": "MULTI_GGX"}, Color=WHITE, IOR=m["ior"],
+                         Roughness=rough)
     lobe = {"distribution": "GGX" if rough > 0 else SHARP}
-    through = nodes.add("ShaderNodeBsdfRefraction", 0, lobe, Color=slot(nodes, m["slot"]), IOR=m["ior"], Roughness=rough)
+    through = nodes.add("ShaderNodeBsdfRefraction", 0, lobe, Color=slot(nodes, m["slot"]), IOR=m["ior"],
+                        Roughness=rough)
     back = nodes.add(GLOSSY, 0, lobe, Color=WHITE, Roughness=rough)
-    return nodes.add("ShaderNodeMixShader", 0, {}, Fac=nodes.add("ShaderNodeFresnel", 0, {}, IOR=m["ior"]), _1=through, _2=back)
+    return nodes.add("ShaderNodeMixShader", 0, {}, Fac=nodes.add("ShaderNodeFresnel", 0, {}, IOR=m["ior"]), _1=through,
+                     _2=back)
 
 
 def absorption(nodes, m):
@@ -149,7 +155,8 @@ def absorption(nodes, m):
     density = max(sigma)
     if density == 0.0:
         return None
-    return nodes.add("ShaderNodeVolumeAbsorption", 0, {}, Color=rgba([1.0 - s / density for s in sigma]), Density=density)
+    return nodes.add("ShaderNodeVolumeAbsorption", 0, {}, Color=rgba([1.0 - s / density for s in sigma]),
+                     Density=density)
 
 
 def principled(nodes, m):
@@ -210,7 +217,8 @@ def make_mesh(name, part):
     if part["uvs"]:
         mesh.uv_layers.new(name="uv").data.foreach_set("uv", read_array("f", part["uvs"]))
     if part["p_object"]:
-        mesh.attributes.new("p_object", "FLOAT_VECTOR", "CORNER").data.foreach_set("vector", read_array("f", part["p_object"]))
+        mesh.attributes.new("p_object", "FLOAT_VECTOR", "CORNER").data.foreach_set("vector",
+                                                                                   read_array("f", part["p_object"]))
     mesh.update(calc_edges=True)
     if part["normals"]:
         normals = read_array("f", part["normals"])
@@ -280,8 +288,10 @@ def make_environment(e):
             height = nodes.math("MULTIPLY_ADD", nodes.dot(direction, (0.0, 1.0, 0.0)), 0.5, 0.5)
             color = nodes.mix(height, rgba(e["down"]), rgba(e["up"]))
         else:
-            turned = nodes.add("ShaderNodeCombineXYZ", 0, {}, **{axis: nodes.dot(direction, row) for axis, row in zip("XYZ", e["rows"])})
-            color = nodes.add("ShaderNodeTexEnvironment", 0, {"image": load_image(e["file"]), "interpolation": "Linear"}, Vector=turned)
+            turned = nodes.add("ShaderNodeCombineXYZ", 0, {},
+                               **{axis: nodes.dot(direction, row) for axis, row in zip("XYZ", e["rows"])})
+            color = nodes.add("ShaderNodeTexEnvironment", 0,
+                              {"image": load_image(e["file"]), "interpolation": "Linear"}, Vector=turned)
     background = nodes.add("ShaderNodeBackground", 0, {}, Color=color, Strength=e.get("scale", 1.0))
     output = nodes.tree.nodes.new("ShaderNodeOutputWorld")
     nodes.tree.links.new(background, output.inputs["Surface"])

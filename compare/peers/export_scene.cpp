@@ -102,7 +102,8 @@ private:
         if (glass.smooth()) return;
         const bool clear = glass.tint.texture < 0 && glass.tint.value == Rgb(1.0f);
         notes_.insert(clear ? "what meets further microfacets of frosted glass goes ways of its own"
-                            : "frosted glass takes Fresnel's term at the shading normal, and loses what meets further microfacets");
+                            : "frosted glass takes Fresnel's term at the shading normal, and loses what meets further "
+                              "microfacets");
     }
 
     json material(const Material& m) {

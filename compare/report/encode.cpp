@@ -45,7 +45,7 @@ std::string deflate(const std::string& bytes) {
     std::string packed(size, '\0');
     const int status = compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
                                  reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size()), 6);
-    if (status != Z_OK) throw Error(message("the report's pictures cannot be compressed: zlib error ", status), 1);
+    if (status != Z_OK) throw Error(message("the report's images cannot be compressed: zlib error ", status), 1);
     packed.resize(size);
     return packed;
 }

@@ -64,7 +64,7 @@ std::string percent(double share) {
 /// Returns what was proved, or why nothing was.
 std::string verdict(const SkipMeasurement& m, double wanted) {
     if (m.pixels_differ == 0) return "same bits";
-    if (!m.bias) return message("NOT THE SAME: ", m.pixels_differ, " pixels of ", m.image_pairs, " pictures differ");
+    if (!m.bias) return message("NOT THE SAME: ", m.pixels_differ, " pixels of ", m.image_pairs, " images differ");
     const BiasTest& test = *m.bias;
     const std::string found =
         message(percent(largest_bias(test)), " in ", test.pairs(), " pairs, p = ", std::setprecision(2), test.p());
@@ -136,7 +136,7 @@ void print_table(std::ostream& out, const SkipOptions& options, const View& view
     const auto saved = [](double with, double without) {
         return message(std::lround(100 * (1 - with / without)), " %");
     };
-    out << "medians of " << options.measure.repeats << " pictures each way of " << view.width << "x" << view.height
+    out << "medians of " << options.measure.repeats << " images each way of " << view.width << "x" << view.height
         << " pixels, in turns, and what is saved by medians and by minima\n";
     line("skip", {"with ms", "without", "saved", "by min"}, "proof; what is left out (why)");
     for (const Row& row : rows) {

@@ -12,21 +12,21 @@ namespace duet::compare {
 Subcommand add_skip(CLI::App& app) {
     CLI::App* skip = app.add_subcommand(
         "skip",
-        "Switch each skip of both pipelines off in turn: the time it saves, and proof that the picture is the same");
+        "Switch each skip of both pipelines off in turn: the time it saves, and proof that the image is the same");
     const auto all = std::make_shared<SkipOptions>();
     const auto size = std::make_shared<std::string>();
     SkipOptions& options = *all;
     skip->add_option("SCENE", options.scene, "A scene file (.json) or a bare mesh (.obj)")->required();
     skip->add_option("--size", *size,
-                     "Picture size WIDTHxHEIGHT (default: the scene's shape, its longer side 128 pixels)");
+                     "Image size WIDTHxHEIGHT (default: the scene's shape, its longer side 128 pixels)");
     skip->add_option("--spp", options.settings.raytrace_spp, "The path tracer's samples a pixel (default 4)")
         ->check(CLI::Range(1, 1 << 20));
     skip->add_option("--raster-spp", options.settings.raster_spp, "The rasterizer's samples a pixel (default 4)")
         ->check(CLI::Range(1, 1 << 20));
-    skip->add_option("--repeats", options.measure.repeats, "Pictures each way, in turns (default 5)")
+    skip->add_option("--repeats", options.measure.repeats, "Images each way, in turns (default 5)")
         ->check(CLI::Range(1, 10000));
     skip->add_option("--budget", options.measure.budget,
-                     "Seconds at most for each skip whose pictures differ in bits: they are rendered in pairs until a "
+                     "Seconds at most for each skip whose images differ in bits: they are rendered in pairs until a "
                      "bias of 0.1 % would be found with 99 % power (default 120)")
         ->check(number_in_range(0, 1e7, "a number from 0 to 1e7"));
     skip->add_option("--only", options.only,
@@ -39,7 +39,7 @@ Subcommand add_skip(CLI::App& app) {
     skip->add_option("--stats", options.stats, "Write the rows as JSON to this file (-: standard output)");
     skip->add_flag("--quiet", options.quiet, "No table, no progress bar");
     skip->footer(std::string("Example:\n  compare skip models/cornell.json --only russian_roulette\n\n"
-                             "A skip is proved where all pictures have the same bits with and without it, or where no "
+                             "A skip is proved where all images have the same bits with and without it, or where no "
                              "bias is found by a test that would find one of 0.1 %; else the exit code is 1.") +
                  kExitCodes);
     return {skip, [all, size] {

@@ -70,7 +70,7 @@ void add_cases(std::vector<SkipCase>& cases, const char* pipeline, const SkipSwi
     for (const SkipSwitch& s : switches)
         cases.push_back(make_case(pipeline, s, prepared, settings,
                                   [member = s.member](Settings& one, bool with) { one.skips.*member = with; }));
-    constexpr SkipSwitch kAuxiliary{"auxiliary", nullptr, "auxiliary pictures that are not asked for"};
+    constexpr SkipSwitch kAuxiliary{"auxiliary", nullptr, "auxiliary images that are not requested"};
     cases.push_back(make_case(pipeline, kAuxiliary, prepared, settings,
                               [](Settings& one, bool with) { one.aovs = with ? AovSet{} : kAllAovs; }));
 }

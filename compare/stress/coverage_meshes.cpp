@@ -9,9 +9,9 @@ using raster::FixedPoint, raster::kSubpixels;
 
 namespace {
 
-constexpr int kPictureSide = 16384; // the largest side that the rasterizer accepts
+constexpr int kImageSide = 16384; // the largest side that the rasterizer accepts
 /// This is the greatest coordinate that the guard band allows for the largest image.
-constexpr std::int64_t kFarthest = (static_cast<std::int64_t>(raster::kGuardBand) + kPictureSide) * kSubpixels;
+constexpr std::int64_t kFarthest = (static_cast<std::int64_t>(raster::kGuardBand) + kImageSide) * kSubpixels;
 
 std::int32_t within_guard(std::int64_t x) {
     return static_cast<std::int32_t>(
@@ -76,7 +76,7 @@ Border around(TrialRandom& random, const Window& window) {
 
 Window random_window(TrialRandom& random, int side) {
     const auto start = [&] {
-        return static_cast<int>(random.below(static_cast<std::uint32_t>(kPictureSide - side + 1)));
+        return static_cast<int>(random.below(static_cast<std::uint32_t>(kImageSide - side + 1)));
     };
     const int x = start(), y = start();
     Window window{.rect = {x, y, x + side, y + side}, .offset = {}};

@@ -91,7 +91,7 @@ constexpr std::string_view kOnce = "the mesh's border runs around every sample o
 
 constexpr StressTest kTests[] = {
     {.name = "coverage/exact-integers",
-     .what = "a triangle covers the samples it should: of any size, slivers, edges and corners on samples, in pictures "
+     .what = "a triangle covers the samples it should: of any size, slivers, edges and corners on samples, in images "
              "of up to 16384 pixels a side and vertices as far as the guard band lets them be",
      .bound = 0,
      .unit = "wrong samples",

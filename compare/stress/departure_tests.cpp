@@ -331,6 +331,6 @@ constexpr StressTest kTests[] = {
 
 } // namespace
 
-std::span<const StressTest> departure_tests() { return kTests; }
+std::span<const StressTest> ray_origin_tests() { return kTests; }
 
 } // namespace duet::compare

@@ -182,7 +182,7 @@ constexpr StressTest kTests[] = {
      "wrong", "Woop, Benthin and Wald 2013, §3; a ball's near side faces the eye", kMollerTrumbore, 100'000,
      leak_from_outside},
     {"leak/boxes", "rays from inside a box of any size and place hit it at its edges and corners", 0, "wrong",
-     "neighbouring quads have the very same corners", "", 20'000, leak_boxes},
+     "neighboring quads have the very same corners", "", 20'000, leak_boxes},
     {"leak/instances", "rays from inside a turned, stretched and mirrored instance hit it, not the larger one around",
      0, "wrong", kWatertight, "", 3'000, leak_instances},
 };

@@ -331,7 +331,8 @@ constexpr StressTest kTests[] = {
      "tangential parts and squared cosine; judged by double", "Ray Tracing in One Weekend, §11.2", 500'000, refraction},
     {"material/glass-energy", "reflection and refraction take all the light between them, each sample all of its share",
      1, "2^-24", "R + (1 - R) is rounded once", "sines from cosines", 500'000, glass_energy},
-    {"material/furnace", "samples of lossless materials send on what they received; no weight of any other is beyond 10", 8,
+    {"material/furnace", "samples of lossless materials send on what they received; no weight of any other is "
+                         "beyond 10", 8,
      "2^-24", "8 roundings: F·G₂/G₁ at most 1 (Heitz 2014); radiance crosses a boundary as L/n² (Veach 1997)", "",
      1'000'000, furnace},
     {"material/weights", "a sample's weight is f·|cos|/pdf, its density that of pdf()", 9.01, "2^-24",

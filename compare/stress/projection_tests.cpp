@@ -218,13 +218,13 @@ constexpr StressTest kTests[] = {
      .bound = 1.01,
      .unit = "2^-24 of itself",
      .source = "one rounding to float; the volumes in extended precision; 0.01 for double's share",
-     .naive = "a float z-buffer, z/w in [-1, 1] between 0.1 and 1e5 metres",
+     .naive = "a float z-buffer, z/w in [-1, 1] between 0.1 and 1e5 meters",
      .trials = 30'000,
      .run = depths<random_visible>,
      .required_fraction = 0.35},
     {.name = "projection/depth-order",
      .what =
-         "between 1e-3 and 1e5 metres, of two parallel surfaces a few floats apart the nearer is seen, whichever is "
+         "between 1e-3 and 1e5 meters, of two parallel surfaces a few floats apart the nearer is seen, whichever is "
          "drawn first",
      .bound = 0,
      .unit = "wrong",

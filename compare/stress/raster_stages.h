@@ -47,7 +47,7 @@ private:
     std::uint32_t count_ = 0;
 };
 
-/// Holds set-up triangles and the whole triangles that they were made from, numbered from 0.
+/// Holds setup triangles and the whole triangles that they were made from, numbered from 0.
 struct SetupTriangles : raster::UnclippedTriangles {
     std::vector<raster::UnclippedTriangle> source_triangles;
     std::vector<raster::DrawTriangle> triangles;
@@ -61,7 +61,7 @@ struct SetupTriangles : raster::UnclippedTriangles {
 /// up, including back faces.
 SetupTriangles set_up_triangles(const Mesh& mesh, const View& view, raster::SampleOffset offset);
 
-/// Renders set-up triangles of a setup into the window, in the given order.
+/// Renders setup triangles of a setup into the window, in the given order.
 std::unique_ptr<raster::DepthTile> draw(const SetupTriangles& setup, const std::vector<raster::DrawTriangle>& triangles,
                                         const View& view, const Window& window);
 inline std::unique_ptr<raster::DepthTile> draw(const SetupTriangles& setup, const View& view, const Window& window) {

@@ -65,7 +65,7 @@ struct StressTest {
 std::span<const StressTest> arithmetic_tests();   ///< robust arithmetic, frames, film sums
 std::span<const StressTest> leak_tests(); ///< closed surfaces are watertight
 std::span<const StressTest> intersection_tests(); ///< spheres, slivers, degenerate triangles and rays, ties
-std::span<const StressTest> departure_tests();    ///< leaving a surface: self-hits, parallel surfaces, instances
+std::span<const StressTest> ray_origin_tests();   ///< leaving a surface: self-hits, parallel surfaces, instances
 std::span<const StressTest> material_tests();     ///< refraction, furnaces, chi-squared, reciprocity
 std::span<const StressTest> light_tests();        ///< solid angles, samples and densities of lights
 std::span<const StressTest> coverage_tests();     ///< edges covered once, exact integers, guard band

@@ -201,7 +201,8 @@ private:
         const Ray ray = rounded(view_.pinhole.ray(pixel), view_.time);
         const Hit hit = find_hit(geometry_, view_, samples_.id(i), pixel);
         const RayFootprint footprint =
-            scene_.needs.footprints ? PixelFootprint(view_.pinhole, samples_per_pixel(packet, view_)).at(ray, hit.t) : RayFootprint{};
+            scene_.needs.footprints ? PixelFootprint(view_.pinhole, samples_per_pixel(packet, view_)).at(ray, hit.t)
+                                    : RayFootprint{};
         const SurfacePoint point = surface_point(scene_, ray, hit, &footprint);
         const float cosine = clamp(-dot(gbuffer_.normal.vector_at(x, y), ray.direction), 1e-4f, 1.0f);
         const SurfaceLobes lobes =

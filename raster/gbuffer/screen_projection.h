@@ -60,7 +60,8 @@ public:
 
 private:
     Vec3d eye_;
-    Vec3 origin_, origin_dx_, origin_dy_, direction_, direction_dx_, direction_dy_; ///< as in Pinhole, from pixel (0, 0)
+    Vec3 origin_, origin_dx_, origin_dy_, direction_, direction_dx_, direction_dy_; ///< as in Pinhole, from pixel (0,
+                                                                                    ///< 0)
     std::array<Vec4, 4> to_pixel_;
     float near_;
     bool perspective_;

@@ -1,4 +1,4 @@
-// Defines the output of assembly for a run of triangles: set-up triangles, coverage masks and fragments, sorted by
+// Defines the output of assembly for a run of triangles: setup triangles, coverage masks and fragments, sorted by
 // tile.
 #pragma once
 

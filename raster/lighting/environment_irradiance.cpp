@@ -47,10 +47,10 @@ std::array<Rgbd, 9> project_row(const Environment& environment, int row, int wid
 } // namespace
 
 Irradiance::Irradiance(const Environment& environment, int threads) {
-    const auto* picture = std::get_if<ImageEnvironment>(&environment);
-    if (picture == nullptr || picture->image.empty()) return;
+    const auto* shown_image = std::get_if<ImageEnvironment>(&environment);
+    if (shown_image == nullptr || shown_image->image.empty()) return;
     closed_form_ = false;
-    const int width = picture->image.width(), height = picture->image.height();
+    const int width = shown_image->image.width(), height = shown_image->image.height();
     std::vector<std::array<Rgbd, 9>> rows(static_cast<std::size_t>(height));
     parallel_for(rows.size(), threads,
                  [&](std::size_t row) { rows[row] = project_row(environment, static_cast<int>(row), width, height); });

@@ -25,7 +25,8 @@ public:
     /// 0 and 1 of its harmonics; order 2 is scaled by the visible fraction.
     Rgb at(const Environment& environment, Vec3 n, const SkyVisibility& seen) const;
     /// Returns the nine coefficients of the irradiance, each with the constant factor of its harmonic: the irradiance
-    /// is c0 + c1 y + c2 z + c3 x + c4 xy + c5 yz + c6 (3z² − 1) + c7 xz + c8 (x² − y²). Constant environments and skies
+    /// is c0 + c1 y + c2 z + c3 x + c4 xy + c5 yz + c6 (3z² − 1) + c7 xz + c8 (x² − y²). Constant environments and
+    /// skies
     /// are exact.
     std::array<Rgb, 9> scaled_coefficients(const Environment& environment) const;
     bool is_closed_form() const { return closed_form_; }

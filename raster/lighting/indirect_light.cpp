@@ -21,7 +21,8 @@ void add_reflected(const RasterSettings& settings, const GBuffer& gbuffer, Plane
         const RgbT<Floats> albedo = gbuffer.diffuse.color(x, y);
         const auto lit = gbuffer.visible(x, y) & (albedo.r + albedo.g + albedo.b > Floats(0.0f));
         if (!xsimd::any(lit)) return;
-        const RgbT<Floats> light = albedo * irradiance(x, y, albedo, lit) * Floats(kInvPi), before = radiance.color(x, y);
+        const RgbT<Floats> light = albedo * irradiance(x, y, albedo, lit) * Floats(kInvPi),
+                           before = radiance.color(x, y);
         radiance.set(x, y, blend(lit, before + light, before)); // other lanes may hold any number
     });
 }

@@ -12,7 +12,8 @@ namespace duet::raster {
 /// Serves one batch of pixels, whose objects select the probes.
 class RadianceLookup {
 public:
-    /// `probes` may be null: the environment alone arrives. `image` is the radiance of the pixels without what is looked
+    /// `probes` may be null: the environment alone arrives. `image` is the radiance of the pixels without what is
+    /// looked
     /// up here.
     RadianceLookup(const RasterSceneData& data, const GBuffer& gbuffer, const ReflectionProbes* probes,
                    const Planes3& image, int x, int y);

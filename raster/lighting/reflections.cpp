@@ -46,8 +46,8 @@ void add_reflections(const RasterSceneData& data, const RasterSettings& settings
                 sum = blend(lanes, sum, Rgbs(zero));
                 if (xsimd::any(coated)) {
                     const Floats width = load(gbuffer.coat_alpha, x, y);
-                    const Floats reflected = coat * specular_albedo(coat_lobe(width, cosine, coated), Rgbs(Floats(0.04f)), width,
-                                                           cosine).r;
+                    const Floats reflected =
+                        coat * specular_albedo(coat_lobe(width, cosine, coated), Rgbs(Floats(0.04f)), width, cosine).r;
                     const Rgbs above = lookup(p, n, mirrored, width, coated) * reflected;
                     sum = blend(coated, sum * (one - reflected) + above, sum);
                 }

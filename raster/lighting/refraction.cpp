@@ -48,7 +48,8 @@ public:
         if (glass.thin) return sheet(glass, Floats(1.0f) - in.through, lanes);
         // What add_reflections() does not reflect enters.
         const Floats cosine = max(-dot(w_, n_), Floats(1e-4f));
-        const Floats entering = Floats(1.0f) - specular_albedo(LobeLookup()(alpha_, cosine, lanes), f0_, alpha_, cosine).g;
+        const Floats entering =
+            Floats(1.0f) - specular_albedo(LobeLookup()(alpha_, cosine, lanes), f0_, alpha_, cosine).g;
         const auto exit = data_.glass_shapes->exit(object, gbuffer_.projection.eye(), p_, in.w);
         if (!exit) // light leaves in the direction it came from
             return lookup_(p_, n_, w_, alpha_, lanes) * entering * (tint * tint);

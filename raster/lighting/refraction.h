@@ -1,4 +1,5 @@
-// Glass: one look through two interfaces (Wyman 2005, "An Approximate Image-Space Approach for Interactive Refraction").
+// Glass: one look through two interfaces (Wyman 2005, "An Approximate Image-Space Approach for Interactive
+// Refraction").
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"
@@ -7,7 +8,7 @@
 namespace duet::raster {
 
 /// Adds the light that arrives through glass: refracted on entry, where the ray leaves the object (GlassShapes), and
-/// then looked up in the image or in the object's reflection probe. Reflections are add_reflections()'s.
+/// then sampled in the image or in the object's reflection probe. Reflections are add_reflections()'s.
 void add_refraction(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
                     Planes3& radiance);
 

@@ -119,7 +119,8 @@ Floats LobeLookup::lost(const Floats& alpha, const Floats& cosine, const xsimd::
     return result;
 }
 
-RgbT<Floats> specular_albedo(const LobeTables& tables, const RgbT<Floats>& normal, const Floats& alpha, const Floats& cosine) {
+RgbT<Floats> specular_albedo(const LobeTables& tables, const RgbT<Floats>& normal, const Floats& alpha,
+                             const Floats& cosine) {
     const Floats one(1.0f), grazing = one - cosine, square = grazing * grazing;
     const auto mirror = alpha < Floats(MetalBsdf::kSmoothAlpha);
     const Floats energy = xsimd::select(mirror, one, tables.energy),

@@ -39,7 +39,7 @@ RgbT<Floats> specular_albedo(const LobeTables& tables, const RgbT<Floats>& norma
                              const Floats& cosine);
 
 /// Looks the tables up. The rows of a roughness are interpolated once and reused while the roughness stays the same, so
-/// that what remains is looked up in registers, by the angle. (Gathers would take 28 of 16 lanes each.)
+/// that what remains is sampled in registers, by the angle. (Gathers would take 28 of 16 lanes each.)
 class LobeLookup {
 public:
     /// alpha is in [0, 1], `cosine` between normal and viewer in (0, 1]. Only the given lanes need be right.

@@ -53,7 +53,8 @@ inline constexpr float kSmallCone = 1.0f / 16;
 /// the lobe; sine2 is as above. Transformed to the cosine's space, the sphere's cone is elliptic; the horizon clips it
 /// as it would clip the circular cone of the same axis and form factor (Hill and Heitz 2016, "Real-Time Area Lighting:
 /// a Journey from Research to Production"). A small cone counts as circular.
-template <typename T> T sphere_in_lobe(const CosineSpaceT<T>& lobe, const Vec3T<T>& d, T sine2, const MaskOf<T>& lanes) {
+template <typename T>
+T sphere_in_lobe(const CosineSpaceT<T>& lobe, const Vec3T<T>& d, T sine2, const MaskOf<T>& lanes) {
     const Vec3T<T> u = lobe(d);
     const T squared = dot(u, u), inverse = inverse_sqrt(squared);
     // The form factor of a small cone is its solid angle over π, which the transformation scales by its determinant.

@@ -23,7 +23,7 @@ void render_alpha_depth_tile(const RasterSceneData& data, const Geometry& geomet
                              const PassView& view, const PixelRect& rect, std::size_t index, ImageFloat& image);
 
 /// Returns the dither threshold of a texel, in [0, 1): a rank of Bayer's matrix (1973, "An Optimum Method for
-/// Two-Level Rendition of Continuous-Tone Pictures") plus a hash within its step of 1/16, so that the mean is exact
+/// Two-Level Rendition of Continuous-Tone Images") plus a hash within its step of 1/16, so that the mean is exact
 /// for every opacity.
 float dither(int x, int y);
 

@@ -22,7 +22,7 @@ std::vector<SkippedWork> list_skipped(const RasterSceneData& data, const RasterS
     add_if(!needs.textures, "textures", "no material has one");
     add_if(!needs.lens, "lens", "the camera is a pinhole: all samples share one view");
     add_if(!needs.motion, "motion", "nothing moves: all samples share one moment");
-    add_if(!needs.footprints, "texture footprints", "no material has a picture that is filtered");
+    add_if(!needs.footprints, "texture footprints", "no material has a image that is filtered");
     add_if(!needs.normal_maps, "normal maps", "no material has one");
     add_if(!needs.alpha, "transparent layers", "no material has holes or lets light through");
     add_if(!needs.spheres, "spheres", "the scene has none");
@@ -59,12 +59,14 @@ void list_shadow_approximations(const RasterSceneData& data, const RasterSetting
         result.emplace_back("Shadows of point, spot and sun lights are filtered over about three texels of a map.");
     if (scene.needs.surface_lights)
         result.emplace_back(
-            "Soft shadows are estimated from the depths that the light's center sees, by few taps per pixel that neighbors "
+            "Soft shadows are estimated from the depths that the light's center sees, by few taps per pixel that "
+            "neighbors "
             "share.");
     if (std::any_of(scene.maps.begin(), scene.maps.end(),
                     [](const SurfaceMaps& maps) { return maps.has_transparency() && !(maps.cutoff > 0); }))
         result.emplace_back(
-            "Shadows of partly transparent surfaces are dithered: they stop all light at that fraction of a map's texels.");
+            "Shadows of partly transparent surfaces are dithered: they stop all light at that fraction of a map's "
+            "texels.");
     if (data.shadows->moments() > 1)
         result.push_back(message("Shadows of moving objects are those of ", data.shadows->moments(), " moments."));
     if (data.shadows->coarser())
@@ -82,7 +84,7 @@ std::vector<std::string> list_approximations(const RasterSceneData& data, const 
     };
     const bool many = settings.samples_per_pixel > 1;
     const bool moving = needs.motion && scene.camera.shutter_open != scene.camera.shutter_close;
-    add_if(needs.lens && !many, "The lens is a pinhole at its centre: one sample a pixel sees no depth of field.");
+    add_if(needs.lens && !many, "The lens is a pinhole at its center: one sample a pixel sees no depth of field.");
     add_if(needs.lens && many,
            "Depth of field is the mean of one view a sample, through the same lens points in every pixel.");
     add_if(moving && !many,

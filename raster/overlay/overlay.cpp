@@ -24,13 +24,13 @@ void Overlay::add_edges(const EdgeBuffer& edge_buffer) {
     ++samples_;
 }
 
-void Overlay::composite(ImageRgb& picture) const {
+void Overlay::composite(ImageRgb& image) const {
     if (samples_ == 0) return;
-    for (std::size_t i = 0; i < picture.size(); ++i) {
+    for (std::size_t i = 0; i < image.size(); ++i) {
         const float covered = sums_[i] / static_cast<float>(samples_);
-        picture[i] = settings_.shading == Shading::kLines   ? Rgb(covered)
-                     : settings_.shading == Shading::kEdges ? Rgb(1 - covered)
-                                                            : picture[i] * (1 - covered);
+        image[i] = settings_.shading == Shading::kLines   ? Rgb(covered)
+                   : settings_.shading == Shading::kEdges ? Rgb(1 - covered)
+                                                          : image[i] * (1 - covered);
     }
 }
 

@@ -18,7 +18,7 @@ public:
     void add_lines(const PassView& view);
     void add_edges(const EdgeBuffer& edge_buffer);
     /// Draws the result: white lines on black, black edges on white, or black edges over the image.
-    void composite(ImageRgb& picture) const;
+    void composite(ImageRgb& shown_image) const;
 
 private:
     const RasterSceneData& data_;

@@ -1,4 +1,5 @@
-// The shapes of glass objects as seen from within: how far the surface is and which way it faces, in each direction from
+// The shapes of glass objects as seen from within: how far the surface is and which way it faces, in each direction
+// from
 // the object's center. A refracted ray finds there where it leaves.
 #pragma once
 

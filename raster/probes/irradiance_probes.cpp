@@ -148,7 +148,8 @@ void IrradianceProbes::set_distances(const ProbeCapture& capture, Probe& probe) 
     for_each_pixel(capture, [&](const ProbeCapture::Pixel& pixel) {
         const Vec2 at = octahedral(capture.direction(pixel));
         const auto cell = [](float v) {
-            return std::clamp(static_cast<int>((v + 1) * 0.5f * static_cast<float>(kDistanceSide)), 0, kDistanceSide - 1);
+            return std::clamp(static_cast<int>((v + 1) * 0.5f * static_cast<float>(kDistanceSide)), 0,
+                              kDistanceSide - 1);
         };
         const float distance = min(capture.distance(pixel), farthest), weight = capture.solid_angle(pixel);
         sums(cell(at.x), cell(at.y)) += Vec3(distance, distance * distance, 1) * weight;
@@ -251,7 +252,8 @@ RgbT<Floats> IrradianceProbes::irradiance(const Vec3d& eye, const Vec3s& p, cons
             const Vec3 q(probes_[probe].position - eye);
             const float bias = kBias * std::min({step.x, step.y, step.z});
             const auto part = [&](std::size_t axis, int far) { return far ? f[axis] : Floats(1.0f) - f[axis]; };
-            const Corner c(probes_[probe], Vec3s{Floats(q.x) - p.x, Floats(q.y) - p.y, Floats(q.z) - p.z} - n * Floats(bias), n, basis,
+            const Corner c(probes_[probe],
+                           Vec3s{Floats(q.x) - p.x, Floats(q.y) - p.y, Floats(q.z) - p.z} - n * Floats(bias), n, basis,
                            part(0, dx) * part(1, dy) * part(2, dz) + Floats(1e-4f));
             sum += c.weight;
             light += c.irradiance * c.weight;

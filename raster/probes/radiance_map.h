@@ -17,7 +17,8 @@ public:
     static constexpr int kLevels = 5;
 
     RadianceMap() = default;
-    /// What arrives from a direction: the radiance, how much of it lights emit, and the distance of where it comes from.
+    /// What arrives from a direction: the radiance, how much of it lights emit, and the distance of where it comes
+    /// from.
     struct Arriving {
         Rgb radiance, emitted;
         float distance = kInfinity;

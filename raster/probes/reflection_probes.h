@@ -9,7 +9,8 @@
 
 namespace duet::raster {
 
-/// Holds the reflection probes of a scene, which no view changes. The largest objects that reflect have a probe at their
+/// Holds the reflection probes of a scene, which no view changes. The largest objects that reflect have a probe at
+/// their
 /// center, which does not see them; all others use the nearest probe.
 class ReflectionProbes {
 public:

@@ -8,7 +8,7 @@ namespace duet::raster {
 
 /// The BRDF has two terms: base color / π, and 4 % of the light in a lobe (m + 2)/(2π) · cosᵐ around the mirror
 /// direction. The lobe reflects at most the incident energy for every direction (Phong 1975, "Illumination for
-/// Computer Generated Pictures"; normalized as in Lafortune and Willems 1994, "Using the Modified Phong Reflectance
+/// Computer Generated Images"; normalized as in Lafortune and Willems 1994, "Using the Modified Phong Reflectance
 /// Model for Physically Based Rendering"). m = 32 = 2⁵ takes five squarings.
 inline constexpr int kPhongSquarings = 5;
 inline constexpr float kPhongDiffuse = kInvPi;

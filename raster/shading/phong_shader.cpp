@@ -1,5 +1,5 @@
 // Implements Phong shading: normals are interpolated, and light is computed per sample (Phong 1975, "Illumination for
-// Computer Generated Pictures").
+// Computer Generated Images").
 #include "raster/shading/built_in_shaders.h"
 #include "raster/shading/phong_model.h"
 #include "raster/shading/shader_program.h"

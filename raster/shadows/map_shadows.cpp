@@ -77,8 +77,8 @@ MapShadows::Receivers MapShadows::at_moment(const Receivers& receivers, int x, i
     store(px, 0, p.x), store(py, 0, p.y), store(pz, 0, p.z);
     store(nx, 0, n.x), store(ny, 0, n.y), store(nz, 0, n.z);
     for (std::size_t i = 0; i < Floats::size; ++i) {
-        const std::int32_t object = x + static_cast<int>(i) < gbuffer_.width() ? gbuffer_.object(x + static_cast<int>(i), y)
-                                                                               : -1;
+        const std::int32_t object =
+            x + static_cast<int>(i) < gbuffer_.width() ? gbuffer_.object(x + static_cast<int>(i), y) : -1;
         if (object < 0 || !to_moment_[static_cast<std::size_t>(object)]) continue;
         const Mat4d& m = *to_moment_[static_cast<std::size_t>(object)];
         const Vec3 moved(transform_point(m, Vec3d(Vec3(px[i], py[i], pz[i])) + eye_) - eye_);

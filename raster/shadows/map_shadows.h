@@ -1,4 +1,4 @@
-// The shadows of all lights of a scene, looked up in lanes.
+// The shadows of all lights of a scene, sampled in lanes.
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"
@@ -24,7 +24,8 @@ private:
 class MapShadows final : public ShadowLookup {
 public:
     /// None of the references is copied. The points are those of the G-buffer's pixels at `time`. A point of a moving
-    /// object is looked up where it is at the map's moment, so that the object does not shade itself by its motion. With `all_taps`, each pixel takes the taps of all sixteen pixels of a
+    /// object is looked up where it is at the map's moment, so that the object does not shade itself by its motion.
+    /// With `all_taps`, each pixel takes the taps of all sixteen pixels of a
     /// block, for surfaces whose neighbors are too few to average.
     MapShadows(const Shadows& shadows, const SoftShadowMaps& soft, const GBuffer& gbuffer, float time,
                bool all_taps = false);
@@ -33,7 +34,8 @@ public:
     bool noisy(std::size_t light) const override {
         return !all_taps_ && shadows(light) && !soft_.of(shadows_.source_of(light), moment_).empty();
     }
-    /// Each pixel of a block of 4 × 4 looks at one cell of an area light, with taps of its own. The mean over a block is
+    /// Each pixel of a block of 4 × 4 looks at one cell of an area light, with taps of its own. The mean over a block
+    /// is
     /// the shadow; blur_shadows() computes it.
     Floats visibility(std::size_t light, const Vec3T<Floats>& p, const Vec3T<Floats>& n, int x, int y,
                       const xsimd::batch_bool<float>& mask) const override;

@@ -10,7 +10,8 @@ using Mask = Floats::batch_bool_type;
 /// Facets of one surface meet at up to 27 degrees (tangent), or at the fraction kOfElevation of the light's elevation
 /// above the surface, and do not shade each other.
 constexpr float kSteepest = 0.5f, kOfElevation = 0.9f;
-/// A texel on the light's side whose surface falls from the receiver's plane by a greater fraction of the elevation lies
+/// A texel on the light's side whose surface falls from the receiver's plane by a greater fraction of the elevation
+/// lies
 /// beyond the end of the receiver's surface, and says nothing about its light.
 constexpr float kFalling = 0.23f;
 constexpr float kLeastKnown = 0.25f; ///< filter weight of the texels that count, at least
@@ -39,7 +40,9 @@ std::array<Floats, kTaps> box(const Floats& f) {
     return {quarter - f * quarter, quarter, quarter, quarter, f * quarter};
 }
 
-Floats dot_constant(const Vec3T<Floats>& a, Vec3 b) { return a.x * Floats(b.x) + a.y * Floats(b.y) + a.z * Floats(b.z); }
+Floats dot_constant(const Vec3T<Floats>& a, Vec3 b) {
+    return a.x * Floats(b.x) + a.y * Floats(b.y) + a.z * Floats(b.z);
+}
 
 } // namespace
 

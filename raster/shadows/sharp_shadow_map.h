@@ -14,7 +14,8 @@ public:
     SharpShadowMap(const ShadowMap& map, const Vec3d& eye);
 
     /// Returns the lit fraction of points with unit normals, over 4 × 4 texels with the weights of the quadratic
-    /// B-spline, or over a box of 4 texels if the map is dithered. `inside` receives the lanes that lie in the map; the others are unspecified.
+    /// B-spline, or over a box of 4 texels if the map is dithered. `inside` receives the lanes that lie in the map; the
+    /// others are unspecified.
     Floats visibility(const Vec3T<Floats>& p, const Vec3T<Floats>& n, xsimd::batch_bool<float>& inside) const;
 
 private:

@@ -58,7 +58,8 @@ void LayeredTile::add(const DepthTile& tile) {
         for (std::size_t i = first; same && i < first + kPacketSize; i += Ints::size)
             same = xsimd::all(Ints::load_aligned(&layers_[0]->ids_[i]) == Ints::load_aligned(tile.ids() + i));
         if (!same) { // the first sample, or more than one primitive
-            for (std::uint32_t i = first; i < first + kPacketSize; ++i) add_one(i, tile.ids()[i], offset, tile.reversed_depth()[i]);
+            for (std::uint32_t i = first; i < first + kPacketSize; ++i)
+                add_one(i, tile.ids()[i], offset, tile.reversed_depth()[i]);
             continue;
         }
         Layer& layer = *layers_[0];

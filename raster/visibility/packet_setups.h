@@ -14,7 +14,7 @@ template <VertexShader S, typename D> struct PacketSetups : PacketPrimitives {
 
     PacketOf<std::int32_t> slots; ///< cache slot per sample, see SetupCache::lookup_or_insert
     PacketOf<std::int32_t> lanes; ///< index of each sample's setup among the 32 of its pair
-    /// Stores two groups of sixteen setups, with one bit per sample whose setup is among them.
+    /// Stores two groups of packet setups, with one bit per sample whose setup is among them.
     struct Pair {
         const Setups *first, *second;
         std::uint32_t samples;
@@ -42,20 +42,20 @@ template <VertexShader S, typename D> struct PacketSetups : PacketPrimitives {
 
 private:
     /// get(i, of) returns for one batch of samples from the i-th on a value of each sample's setup. of() selects
-    /// the array in a group of sixteen setups. FromOneTriangle: all samples see one triangle. FromOnePacket, FromPair:
-    /// all setups are in one or two groups of sixteen. FromPairs: the general case.
+    /// the array in a group of packet setups. FromOneTriangle: all samples see one triangle. FromOnePacket, FromPair:
+    /// all setups are in one or two groups of packet. FromPairs: the general case.
     struct FromOneTriangle {
-        const Setups& sixteen;
+        const Setups& packet;
         std::size_t lane;
         template <typename T, typename Of> xsimd::batch<T> get(std::size_t, const Of& of) const {
-            return xsimd::batch<T>(of(sixteen)[lane]);
+            return xsimd::batch<T>(of(packet)[lane]);
         }
     };
     struct FromOnePacket {
-        const Setups& sixteen;
+        const Setups& packet;
         const PacketOf<std::int32_t>& lanes;
         template <typename T, typename Of> xsimd::batch<T> get(std::size_t i, const Of& of) const {
-            return look_up(of(sixteen), lanes, i);
+            return look_up(of(packet), lanes, i);
         }
     };
     struct FromPair {

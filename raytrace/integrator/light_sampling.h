@@ -20,7 +20,8 @@ struct LightLiSample : LightLiSampleT<float> {
 };
 /// Returns the sample of a light that was chosen as described by `chosen`.
 inline LightLiSample light_sample(const LightSample& s, const SampledLight& chosen) {
-    return {{s.wi, s.radiance, s.pdf * chosen.probability, s.delta}, s.distance, static_cast<std::int64_t>(chosen.index)};
+    return {
+        {s.wi, s.radiance, s.pdf * chosen.probability, s.delta}, s.distance, static_cast<std::int64_t>(chosen.index)};
 }
 /// Draws a light sample: `choice` in [0, 1) chooses the light, and `u` in [0, 1)² the point on it. Returns nothing
 /// if the chosen light sends no light to the receiver.

@@ -17,7 +17,8 @@
 
 namespace duet::raytrace {
 
-/// Returns the light that the vertex scatters from a light sample to the viewer, unless the light is occluded. It is not
+/// Returns the light that the vertex scatters from a light sample to the viewer, unless the light is occluded. It is
+/// not
 /// divided by the sample's density yet.
 template <typename AnyVertex, typename T>
 inline RgbT<T> scattered_light(const AnyVertex& vertex, const LightLiSampleT<T>& light) {

@@ -51,8 +51,8 @@ inline SurfaceGeometryT<Floats> round_points(std::span<const BatchPath> paths) {
         load_four(paths, [&](const BatchPath& path) -> const float& { return sphere(path).center.x; });
     LaneValues t;
     for_lanes(paths, [&](std::size_t i, const BatchPath& path) { t.values[i] = path.hit->t; });
-    return surface_geometry(point_on_sphere(to_doubles(Vec(cx, cy, cz)), to_doubles(radius), to_doubles(Vec(ox, oy, oz)),
-                                            to_doubles(Vec(wx, wy, wz)), t.doubles()));
+    return surface_geometry(point_on_sphere(to_doubles(Vec(cx, cy, cz)), to_doubles(radius),
+                                            to_doubles(Vec(ox, oy, oz)), to_doubles(Vec(wx, wy, wz)), t.doubles()));
 }
 
 inline SurfaceGeometryT<Floats> smooth_points(std::span<const BatchPath> paths) {

@@ -5,12 +5,14 @@
 _CONTRAST = """(() => {
   const parse = text => {
     const n = text.match(/[\\d.]+/g).map(Number);
-    return text.startsWith("color(") ? [...n.slice(-4, -1).map(v => v * 255), n[3] ?? 1] : [n[0], n[1], n[2], n[3] ?? 1];
+    return text.startsWith("color(") ? [...n.slice(-4, -1).map(v => v * 255), n[3] ?? 1] : [n[0], n[1], n[2],
+      n[3] ?? 1];
   };
   const over = (top, below) => below.map((v, c) => top[c] * top[3] + v * (1 - top[3]));
   const curve = v => v / 255 <= 0.03928 ? v / 255 / 12.92 : ((v / 255 + 0.055) / 1.055) ** 2.4;
   const light = rgb => 0.2126 * curve(rgb[0]) + 0.7152 * curve(rgb[1]) + 0.0722 * curve(rgb[2]);
-  const ratio = (a, b) => { const [x, y] = [light(a), light(b)]; return (Math.max(x, y) + 0.05) / (Math.min(x, y) + 0.05); };
+  const ratio = (a, b) => { const [x, y] = [light(a), light(b)];
+    return (Math.max(x, y) + 0.05) / (Math.min(x, y) + 0.05); };
   const grounds = e => {
     const layers = [], on = ground => layers.reduceRight((below, top) => over(top, below), ground);
     for (let at = e; at; at = at.parentElement) {
@@ -45,7 +47,8 @@ def contrast(page):
 def quiet(page, url):
     """No errors on the console, and no address asked for but the page itself (and pictures that stand in it)."""
     page.browser.pump(0.05)
-    return page.faults + [f"asked for {r[:100]}" for r in page.requests if r.split("#")[0] != url and not r.startswith("data:")]
+    return page.faults + [f"asked for {r[:100]}"
+                          for r in page.requests if r.split("#")[0] != url and not r.startswith("data:")]
 
 
 def sideways(page):
@@ -53,7 +56,8 @@ def sideways(page):
     width, room = page.js("[document.documentElement.scrollWidth, document.documentElement.clientWidth]")
     if width <= room:
         return []
-    return [f"the page is {width} pixels wide, the window {room}: " + page.js(f"""[...document.querySelectorAll("body *")]
+    return [f"the page is {width} pixels wide, the window {room}: "
+            + page.js(f"""[...document.querySelectorAll("body *")]
         .filter(e => e.checkVisibility() && e.getBoundingClientRect().right > {room} + 1)
         .map(e => e.id || e.className || e.tagName).join(", ")""")]
 
@@ -88,8 +92,10 @@ def keyboard(page):
         at, ring, name = page.js("""(e => {
           const drawn = (style, width) => style !== "none" && parseFloat(width) >= 2;
           const outlined = s => drawn(s.outlineStyle, s.outlineWidth), stroked = s => drawn(s.stroke, s.strokeWidth);
-          const ring = outlined(getComputedStyle(e)) || [...e.querySelectorAll(".ring")].some(r => stroked(getComputedStyle(r)));
-          return [window.controls.indexOf(e), ring, e.id || e.textContent.trim().slice(0, 30)]; })(document.activeElement)""")
+          const ring = outlined(getComputedStyle(e)) ||
+              [...e.querySelectorAll(".ring")].some(r => stroked(getComputedStyle(r)));
+          return [window.controls.indexOf(e), ring,
+              e.id || e.textContent.trim().slice(0, 30)]; })(document.activeElement)""")
         if at < 0 or at in order:
             break
         order.append(at)
@@ -104,6 +110,8 @@ def keyboard(page):
 
 def targets(page, least=24):
     """Buttons are large enough for a finger (WCAG 2.2, 2.5.8: 24 × 24 CSS pixels)."""
-    return page.js(f"""[...document.querySelectorAll("button, select, summary")].filter(e => e.checkVisibility()).flatMap(e => {{
+    return page.js(f"""[...document.querySelectorAll("button, select,
+      summary")].filter(e => e.checkVisibility()).flatMap(e => {{
       const b = e.getBoundingClientRect();
-      return b.width < {least} || b.height < {least} ? [`${{e.id || e.textContent}} measures ${{b.width}} × ${{b.height}}`] : []; }})""")
+      return b.width < {least} || b.height < {least}
+          ? [`${{e.id || e.textContent}} measures ${{b.width}} × ${{b.height}}`] : []; }})""")

@@ -28,7 +28,8 @@ class OtherPages(support.PageTest):
         self.check(self.make("ladder", "ladder", "models/cornell.json", *SMALL, "--spp", "4", "--raster-spp", "1"))
 
     def test_bench(self):
-        self.check(self.make("bench", "bench", "models/cornell.json", *SMALL, "--spp", "1,4", "--repeats", "2", "--samplers", "sobol",
+        self.check(self.make("bench", "bench", "models/cornell.json", *SMALL, "--spp", "1,4", "--repeats", "2",
+                             "--samplers", "sobol",
                              "--reference-spp", "1024", "--references", "@references"))
 
 

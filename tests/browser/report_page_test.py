@@ -32,10 +32,12 @@ class ReportPage(support.PageTest):
             self.assertTrue(page.visible(f"[aria-labelledby={section}-title]"), section)
         self.assertIn(str(report["hits"]["edge"]), page.text("#hits-table"))
         stages = page.js("[...document.querySelectorAll('#stages .name')].map(e => e.textContent)")
-        self.assertEqual(sorted(stages), sorted(["prepare", "prepare", *report["raster"]["stages"], *report["raytrace"]["stages"]]))
+        self.assertEqual(sorted(stages),
+                         sorted(["prepare", "prepare", *report["raster"]["stages"], *report["raytrace"]["stages"]]))
         skipped = page.js("[...document.querySelectorAll('#skipped th')].map(e => e.textContent)")
         self.assertEqual(sorted(skipped), sorted([*report["raster"]["skipped"], *report["raytrace"]["skipped"]]))
-        self.assertEqual(page.js("approximations.querySelectorAll('li').length"), len(report["raster"]["approximations"]))
+        self.assertEqual(page.js("approximations.querySelectorAll('li').length"),
+                         len(report["raster"]["approximations"]))
         unexplained = page.js("[...document.querySelectorAll('#metrics-table tr')]"
                               ".filter(r => !r.querySelector('small')?.textContent).map(r => r.textContent)")
         self.assertEqual(unexplained, [], "each metric is explained: page/metrics.js")
@@ -58,7 +60,8 @@ class ReportPage(support.PageTest):
         for quantity in ("absolute", "flip", "signed"):
             page.js(f"quantity.value = '{quantity}'; quantity.dispatchEvent(new Event('change'))")
             self.assertEqual(page.js(count), WIDTH * HEIGHT)
-            cells = page.js("[...document.querySelectorAll('#bin-rows td')].map(t => Number(t.textContent.replaceAll('\\u2009', '')))")
+            cells = page.js("[...document.querySelectorAll('#bin-rows td')].map(t => "
+                            "Number(t.textContent.replaceAll('\\u2009', '')))")
             self.assertEqual(sum(cells), WIDTH * HEIGHT)
         page.js("quantity.value = 'flip'; quantity.dispatchEvent(new Event('change'))")
         chosen = page.js("[...bins.children].findIndex(b => b.dataset.count > 0 && b.dataset.count < 300)")
@@ -119,7 +122,8 @@ class ReportPage(support.PageTest):
             one.settle()
         self.assertEqual(again.js(view), page.js(view))
         again.front()
-        # The page writes its state, which it does a moment late, before it has read the new address: the new one must win.
+        # The page writes its state, which it does a moment late, before it has read the new address: the new one must
+        # win.
         again.js("""(() => {
             const setTimeoutOfBrowser = window.setTimeout;
             let write = null;

@@ -43,7 +43,8 @@ class Views(support.PageTest):
         width, height = page.js("[canvas.clientWidth, canvas.clientHeight]")
         part = (width - 2 * (pane[1] - 1)) / pane[1]
         zoom = min(part / WIDTH, height / HEIGHT)
-        return (pane[0] * (part + 2) + part / 2 + (x + 0.5 - WIDTH / 2) * zoom, height / 2 + (y + 0.5 - HEIGHT / 2) * zoom)
+        return (pane[0] * (part + 2) + part / 2 + (x + 0.5 - WIDTH / 2) * zoom,
+                height / 2 + (y + 0.5 - HEIGHT / 2) * zoom)
 
     def color(self, page, x, y, pane=(0, 1)):
         """The canvas's colour in the middle of a pixel."""
@@ -64,7 +65,8 @@ class Views(support.PageTest):
 
     def assert_shows(self, page, expected, x, y, pane=(0, 1), tolerance=1):
         found = self.color(page, x, y, pane)
-        self.assertTrue(all(abs(f - e) <= tolerance for f, e in zip(found, expected)), f"({x}, {y}): {found}, expected {expected}")
+        self.assertTrue(all(abs(f - e) <= tolerance for f, e in zip(found, expected)),
+                        f"({x}, {y}): {found}, expected {expected}")
 
     def picture(self, pixel, x, y, stops=0):
         return [srgb_byte(half(v) * 2 ** stops) for v in pixel(x, y)]
@@ -128,13 +130,15 @@ class Views(support.PageTest):
     def test_false_colours_order_by_lightness(self):
         page = self.pair()
         scale = "[...Array(512).keys()].map(x => [...scale.getContext('2d').getImageData(x, 5, 1, 1).data.slice(0, 3)])"
-        for mode, palette, top in (("flip", "hue", 512), ("flip", "grey", 512), ("difference", "hue", 256), ("difference", "grey", 512)):
+        for mode, palette, top in (("flip", "hue", 512), ("flip", "grey", 512), ("difference", "hue", 256),
+                                   ("difference", "grey", 512)):
             page.js(f"location.hash = 'mode={mode}&palette={palette}'")
             page.wait(f"document.querySelector('[data-mode={mode}]').getAttribute('aria-pressed') === 'true' && "
                       f"palette.value === '{palette}'")
             steps = [lightness(color) for color in page.js(scale)]
             up, down = steps[:top], steps[top:]
-            self.assertTrue(all(a <= b + 0.5 for a, b in zip(up, up[1:])) and up[-1] - up[0] > 60, (mode, palette, "rises"))
+            self.assertTrue(all(a <= b + 0.5 for a, b in zip(up, up[1:])) and up[-1] - up[0] > 60,
+                            (mode, palette, "rises"))
             self.assertTrue(all(a >= b - 0.5 for a, b in zip(down, down[1:])), (mode, palette, "falls"))
 
     def test_flip_map(self):
@@ -145,7 +149,8 @@ class Views(support.PageTest):
         shown = float(re.search(r"HDR-FLIP ([0-9.]+)", page.text("#inspector")).group(1))
         self.assertAlmostEqual(shown, figures["flip_max"], delta=0.5 / 4095 + 5e-5)
         x, y = (int(v) for v in page.text("#inspector thead th").split(" ", 1)[1].split(","))
-        self.assertIn((x, y), {(cx + dx, cy + dy) for cx, cy in (BRIGHTER, DARKER) for dx in (-1, 0, 1) for dy in (-1, 0, 1)})
+        self.assertIn((x, y),
+                      {(cx + dx, cy + dy) for cx, cy in (BRIGHTER, DARKER) for dx in (-1, 0, 1) for dy in (-1, 0, 1)})
         page.key("0")
         page.js("location.hash = 'mode=flip'")  # without the frame of the chosen pixel
         page.wait("inspector.querySelector('table') === null")
@@ -184,15 +189,18 @@ class Views(support.PageTest):
         def grey(folder):
             write_pfm(folder / "a.pfm", [[((4 * y + x) / 15,) * 3 for x in range(4)] for y in range(4)])
             write_pfm(folder / "b.pfm", [[(0.5,) * 3] * 4] * 4)
-        page = self.open(self.make("greys", "images", "@a.pfm", "@b.pfm", before=grey), hash_state="mode=flicker&play=false")
+        page = self.open(self.make("greys", "images", "@a.pfm", "@b.pfm", before=grey),
+                         hash_state="mode=flicker&play=false")
         page.settle()
         ratios = page.js("""(() => {
-          const curve = v => v / 255 <= 0.03928 ? v / 255 / 12.92 : ((v / 255 + 0.055) / 1.055) ** 2.4, ratios = [], z = canvas.height / 4;
+          const curve = v => v / 255 <= 0.03928 ? v / 255 / 12.92 : ((v / 255 + 0.055) / 1.055) ** 2.4, ratios = [],
+            z = canvas.height / 4;
           for (let k = 0; k < 16; ++k) {
             const left = (canvas.width - 4 * z) / 2 + (k % 4) * z, top = Math.floor(k / 4) * z;
             const d = canvas.getContext("2d").getImageData(left + 4, top + 4, z - 8, z - 8).data, lights = [];
             for (let i = 0; i < d.length; i += 4) lights.push(curve(d[i]));
-            ratios.push(Math.max(...lights.map(l => (Math.max(l, lights[0]) + 0.05) / (Math.min(l, lights[0]) + 0.05))));
+            ratios.push(Math.max(...lights.map(l => (Math.max(l, lights[0]) + 0.05) / (Math.min(l,
+              lights[0]) + 0.05))));
           }
           return ratios; })()""")
         self.assertGreaterEqual(min(ratios), 4.5)
@@ -215,7 +223,8 @@ class Views(support.PageTest):
         drawn = set()
         for key in "12345":
             page.key(key)
-            self.assertEqual(page.js("document.querySelector('#modes [aria-pressed=true]').dataset.mode"), MODES[int(key) - 1])
+            self.assertEqual(page.js("document.querySelector('#modes [aria-pressed=true]').dataset.mode"),
+                             MODES[int(key) - 1])
             drawn.add(page.js("canvas.toDataURL()"))
         self.assertEqual(len(drawn), len(MODES))
 
@@ -237,7 +246,8 @@ class Views(support.PageTest):
             holes = {(2, 2): (float("nan"), 0, 0), (9, 9): (0, float("inf"), 0)}
             write_pfm(folder / "a.pfm", rows(lambda x, y: holes.get((x, y), changed(x, y))))
             write_pfm(folder / "b.pfm", rows(reference))
-        page = self.open(self.make("invalid", "images", "@a.pfm", "@b.pfm", before=invalid), hash_state="mode=flicker&play=false")
+        page = self.open(self.make("invalid", "images", "@a.pfm", "@b.pfm", before=invalid),
+                         hash_state="mode=flicker&play=false")
         for key in "245":
             page.key(key)
             self.assert_shows(page, MAGENTA, 2, 2, tolerance=0)
@@ -245,7 +255,8 @@ class Views(support.PageTest):
         page.move(*self.point_at(page, 2, 2))
         self.assertIn("NaN", page.text("#inspector"))
         self.assertIn("2 pixels are not finite", page.text("#histogram-text"))
-        self.assertEqual(page.js("[...bins.children].reduce((n, b) => n + Number(b.dataset.count), 0)"), WIDTH * HEIGHT - 2)
+        self.assertEqual(page.js("[...bins.children].reduce((n, b) => n + Number(b.dataset.count), 0)"),
+                         WIDTH * HEIGHT - 2)
         self.assertEqual(page.text("#metrics-table tr.bad td").split("A")[0], "2")
 
     def test_values_that_the_page_cannot_keep_are_said_to_be_so(self):
@@ -253,10 +264,12 @@ class Views(support.PageTest):
             bright = {(2, 2): (1e6, 1, 1), (9, 9): (1, -70000, 1)}
             write_pfm(folder / "a.pfm", rows(lambda x, y: bright.get((x, y), changed(x, y))))
             write_pfm(folder / "b.pfm", rows(reference))
-        page = self.open(self.make("bright", "images", "@a.pfm", "@b.pfm", before=lamps), hash_state="mode=flicker&play=false&px=2&py=2")
+        page = self.open(self.make("bright", "images", "@a.pfm", "@b.pfm", before=lamps),
+                         hash_state="mode=flicker&play=false&px=2&py=2")
         self.assertTrue(page.text("#beyond").startswith("2 pixels hold values of 65"))
         cells = page.js("[...document.querySelectorAll('#inspector td.number')].map(cell => cell.textContent)")
-        self.assertEqual(cells[:4], ["≥ 65504", "1.000", "1.000", "–"])  # the brightness of what is not known is not, either
+        self.assertEqual(cells[:4],
+                         ["≥ 65504", "1.000", "1.000", "–"])  # the brightness of what is not known is not, either
         self.assertEqual([cells[8], cells[11]], ["≥ 65504", "–"])
         self.assertGreater(self.figures("bright")["metrics"]["worst"], 9e5)
         plain = self.pair()

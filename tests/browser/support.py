@@ -29,7 +29,8 @@ class PageTest(unittest.TestCase):
             if before:
                 before(folder)
             texts = [str(folder / a[1:]) if a.startswith("@") else a for a in arguments] # @FILE: in that folder
-            done = subprocess.run([cls.bin / "compare", *texts, "-o", folder, "--quiet"], capture_output=True, text=True)
+            done = subprocess.run([cls.bin / "compare", *texts, "-o", folder, "--quiet"], capture_output=True,
+                                  text=True)
             if done.returncode:
                 raise RuntimeError(f"compare {' '.join(texts)}: {done.stderr}")
         return (folder / "index.html").as_uri()

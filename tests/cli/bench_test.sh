@@ -27,7 +27,8 @@ done
 [ "$(ls "$scratch/cache/duet/references" | wc -l)" -eq 4 ] || fail "expected four references in the cache"
 
 # Against itself nothing is worse (times may drift tenfold here).
-expect 0 "$bin/compare" bench models/cornell.json models/furnace.json $small --baseline "$scratch/report/report.json" --drift 9
+expect 0 "$bin/compare" bench models/cornell.json models/furnace.json $small --baseline "$scratch/report/report.json" \
+    --drift 9
 # An earlier run of a thousand times fewer seconds.
 sed '/"seconds": {/,/}/s/"value": [0-9.e-]*/"value": 1e-9/' "$scratch/report/report.json" >"$scratch/fast.json"
 expect 1 "$bin/compare" bench models/cornell.json $small --baseline "$scratch/fast.json"
@@ -35,7 +36,9 @@ one_line_error slower
 expect 2 "$bin/compare" bench models/cornell.json $small --depth 3 --baseline "$scratch/report/report.json"
 one_line_error depth
 
-terminated 2 "$bin/compare" bench models/cornell.json -o "$scratch/interrupted" --size 64x64 --reference-spp 1000000 --quiet
+terminated 2 "$bin/compare" bench models/cornell.json -o "$scratch/interrupted" --size 64x64 --reference-spp 1000000 \
+    --quiet
 nothing_in "$scratch/interrupted"
-[ "$(ls "$scratch/cache/duet/references" | grep -cv '\.film\.exr$')" -eq 4 ] || fail "SIGTERM left a reference that is not whole"
+[ "$(ls "$scratch/cache/duet/references" | grep -cv '\.film\.exr$')" -eq 4 ] || fail \
+    "SIGTERM left a reference that is not whole"
 finish

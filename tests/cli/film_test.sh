@@ -1,5 +1,5 @@
 #!/bin/sh
-# Films: whatever kills the program, the next run goes on to the same bits; shards join to the picture of one run.
+# Films: whatever kills the program, the next run goes on to the same bits; shards join to the image of one run.
 . "$(dirname "$0")/support.sh"
 
 render() {
@@ -25,7 +25,8 @@ cmp "$scratch/whole.pfm" "$scratch/killed.pfm" || fail "a killed render that wen
 terminated 1 "$bin/raytrace" models/cornell.json -o "$scratch/stopped.pfm" --size 64x64 --quiet --spp 1000000 \
     --film "$scratch/stopped.exr" --film-interval 10000
 expect 0 "$bin/raytrace" merge -o "$scratch/again.pfm" "$scratch/stopped.exr"
-cmp "$scratch/stopped.pfm" "$scratch/again.pfm" || fail "the film of an interrupted render is not what the picture shows"
+cmp "$scratch/stopped.pfm" "$scratch/again.pfm" || fail \
+    "the film of an interrupted render is not what the image shows"
 
 # Shards, and the joint film, which goes on.
 render a.png --samples 0:16 --film "$scratch/a.exr"
@@ -34,14 +35,14 @@ expect 0 "$bin/raytrace" merge -o "$scratch/joined.pfm" --film "$scratch/joint.e
 grep -q "2 films, 32 samples a pixel" "$scratch/stderr" || fail "merge does not say what it joined"
 render one.pfm --spp 32
 "$bin/compare" images "$scratch/joined.pfm" "$scratch/one.pfm" --fail-above rmse=1e-9 >/dev/null ||
-    fail "shards do not join to the picture of one run"
+    fail "shards do not join to the image of one run"
 render more.pfm --spp 48 --film "$scratch/joint.exr"
 "$bin/compare" images "$scratch/more.pfm" "$scratch/whole.pfm" --fail-above rmse=1e-9 >/dev/null ||
     fail "a joint film does not go on"
 
 # What cannot be: each says why in a line.
 expect 2 render x.pfm --spp 48 --seed 3 --film "$scratch/a.exr"
-one_line_error "a film of another picture: seed: found 0, expected 3"
+one_line_error "a film of another image: seed: found 0, expected 3"
 expect 2 "$bin/raytrace" merge -o "$scratch/x.pfm" "$scratch/a.exr" "$scratch/a.exr"
 one_line_error "expected films that share none"
 expect 2 "$bin/raytrace" merge -o "$scratch/x.pfm" --film "$scratch/x.exr" "$scratch/b.exr" "$scratch/joint.exr"

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Each picture format is written, statistics have the promised keys, an orbit its frames.
+# Each image format is written, statistics have the promised keys, an orbit its frames.
 . "$(dirname "$0")/support.sh"
 
 for program in raster raytrace; do
@@ -10,10 +10,13 @@ for program in raster raytrace; do
     done
     expect 0 "$bin/$program" models/cornell.json -o "$scratch/a.ppm" --ascii --size 24x16 --spp 2 --quiet
     head -c 2 "$scratch/a.ppm" | grep -q P3 || fail "--ascii wrote no P3"
-    expect 0 "$bin/$program" models/cornell.json -o "$scratch/a.png" --size 24x16 --spp 2 --quiet --stats - --aov depth,hit
+    expect 0 "$bin/$program" models/cornell.json -o "$scratch/a.png" --size 24x16 --spp 2 --quiet --stats - --aov \
+        depth,hit
     [ -s "$scratch/a.depth.exr" ] && [ -s "$scratch/a.hit.exr" ] || fail "$program: --aov wrote no files beside the PNG"
-    for key in program version scene width height threads samples_per_pixel passes seed seconds load prepare render write total \
-        rays camera indirect shadow triangles memory_bytes bvh estimated_relmse invalid_samples first_invalid approximations skipped; do
+    for key in program version scene width height threads samples_per_pixel passes seed seconds load prepare render \
+        write total \
+        rays camera indirect shadow triangles memory_bytes bvh estimated_relmse invalid_samples first_invalid \
+            approximations skipped; do
         grep -q "\"$key\":" "$scratch/stdout" || fail "$program --stats lacks $key"
     done
     expect 0 "$bin/$program" models/cornell.json -o "$scratch/orbit-%04d.png" --orbit 3 --size 24x16 --spp 2 --quiet

@@ -23,14 +23,18 @@ one_line_error --stats
 
 short="--size 64x48 --repeats 1 --seconds 0.001"
 # A closed mesh, so that rays are aimed at its weak places, too.
-expect 0 "$bin/compare" kernels models/meshes/pear.obj models/cornell.json $short --scene alone,room,clutter,instances --threads 2 \
+expect 0 "$bin/compare" kernels models/meshes/pear.obj models/cornell.json $short --scene alone,room,clutter,instances \
+    --threads 2 \
     --watertight 20000 --stats "$scratch/all.json"
-for text in "pear, alone" "pear, room" "pear, clutter" "pear, instances" "cornell, alone" "camera-bulk" "bounce" "shadow" "build" "memory" \
-    "rays aimed at points, edges and vertices" "judged in double precision: 0 wrong, 0 edge faults" "duet bulk  *0  *0  *0" \
+for text in "pear, alone" "pear, room" "pear, clutter" "pear, instances" "cornell, alone" "camera-bulk" "bounce" \
+    "shadow" "build" "memory" \
+    "rays aimed at points, edges and vertices" "judged in double precision: 0 wrong, 0 edge faults" \
+        "duet bulk  *0  *0  *0" \
     "camera \*" "too few" "repeats"; do
     grep -q "$text" "$scratch/stdout" || fail "the table lacks «$text»"
 done
-for key in rows mesh scene triangles work threads ours peer peer_name ratio best repeats watertight misses judged wrong edge_faults \
+for key in rows mesh scene triangles work threads ours peer peer_name ratio best repeats watertight misses judged \
+    wrong edge_faults \
     leaks as_rendered; do
     grep -q "\"$key\":" "$scratch/all.json" || fail "--stats lacks $key"
 done
@@ -49,7 +53,8 @@ else
     one_line_error libembree
 fi
 
-expect 0 "$bin/compare" kernels models/meshes/bowl.obj $short --peers none --bvh high --quiet --stats "$scratch/alone.json"
+expect 0 "$bin/compare" kernels models/meshes/bowl.obj $short --peers none --bvh high --quiet --stats \
+    "$scratch/alone.json"
 [ ! -s "$scratch/stdout" ] && [ ! -s "$scratch/stderr" ] || fail "--quiet is not quiet"
 grep -q '"peer": null' "$scratch/alone.json" || fail "--peers none: a peer is in the rows"
 grep -q '"bvh": "high"' "$scratch/alone.json" || fail "--bvh high: not found in --stats"

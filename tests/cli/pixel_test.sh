@@ -1,5 +1,5 @@
 #!/bin/sh
-# --pixel: a sample's path in words, without a picture.
+# --pixel: a sample's path in words, without a image.
 . "$(dirname "$0")/support.sh"
 
 expect 0 "$bin/raytrace" models/cornell.json --size 64x64 --pixel 32,40,1
@@ -7,7 +7,7 @@ for text in "pixel 32,40, sample 1" "vertex 0: object" "light sample light" "thr
     grep -qF "$text" "$scratch/stdout" || fail "--pixel does not tell «$text»"
 done
 expect 2 "$bin/raytrace" models/cornell.json --size 64x64 --pixel 64,0
-one_line_error "expected a pixel of the picture of 64 x 64"
+one_line_error "expected a pixel of the image of 64 x 64"
 expect 2 "$bin/raytrace" models/cornell.json --pixel 7
 one_line_error "expected x,y or x,y,sample"
 expect 2 "$bin/raytrace" models/cornell.json

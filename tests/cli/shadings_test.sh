@@ -20,8 +20,10 @@ done
 expect 2 "$bin/raster" $scene --shading fancy -o "$scratch/no.ppm"
 one_line_error "lit, phong, gouraud, flat, toon, wireframe, lines, edges, normal, albedo or depth"
 
-expect 0 "$bin/raster" $scene --size 96x64 --quiet --shading phong --msaa 8 -o "$scratch/msaa.ppm" --stats "$scratch/msaa.json"
-grep -q '"samples_per_pixel": 8' "$scratch/msaa.json" || fail "the statistics of --msaa 8 name another number of samples"
+expect 0 "$bin/raster" $scene --size 96x64 --quiet --shading phong --msaa 8 -o "$scratch/msaa.ppm" --stats \
+    "$scratch/msaa.json"
+grep -q '"samples_per_pixel": 8' "$scratch/msaa.json" || fail \
+    "the statistics of --msaa 8 name another number of samples"
 cmp -s "$scratch/msaa.ppm" "$scratch/phong.ppm" && fail "--msaa 8 changes nothing"
 expect 0 "$bin/raster" $scene --size 96x64 --quiet --shading phong --msaa 8 --sample-shading -o "$scratch/each.ppm"
 cmp -s "$scratch/msaa.ppm" "$scratch/each.ppm" && fail "--sample-shading changes nothing"

@@ -12,7 +12,7 @@ for scene in models/cornell.json models/everything.json; do
                 fail "$program $scene: $threads threads give other bits than one"
         done
     done
-    # A seed that is read changes the picture.
+    # A seed that is read changes the image.
     expect 0 "$bin/raytrace" $scene -o "$scratch/seed.exr" --spp 6 --seed 1 $small,variance
     ! cmp -s "$scratch/raytrace-1.exr" "$scratch/seed.exr" || fail "$scene: --seed changes nothing"
 done

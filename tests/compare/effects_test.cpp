@@ -24,7 +24,7 @@ Scene model(const std::string& name) {
     return load_scene(std::filesystem::path(DUET_SOURCE_DIR) / "models" / (name + ".json"));
 }
 
-raster::RasterSettings sixteen(const raster::LightComponentSet& parts) {
+raster::RasterSettings with_16_samples(const raster::LightComponentSet& parts) {
     raster::RasterSettings settings;
     settings.samples_per_pixel = 16;
     settings.components = parts;
@@ -57,7 +57,7 @@ TEST_SUITE("statistical") {
         const Scene scene = model("cornell");
         const View view = small(scene, 96);
         const ImageRgb truth = traced(scene, view, raytrace::Integrator::kLights, false);
-        raster::RasterSettings settings = sixteen(kLights);
+        raster::RasterSettings settings = with_16_samples(kLights);
         const double with = error(scene, view, settings, truth);
         settings.shadows = false;
         const double without = error(scene, view, settings, truth);
@@ -70,7 +70,7 @@ TEST_SUITE("statistical") {
         const Scene scene = model("everything");
         const View view = small(scene, 96);
         const ImageRgb truth = traced(scene, view, raytrace::Integrator::kLights, false);
-        raster::RasterSettings settings = sixteen(kLights);
+        raster::RasterSettings settings = with_16_samples(kLights);
         settings.environment = false;
         const double with = error(scene, view, settings, truth);
         settings.shadows = false;
@@ -83,7 +83,7 @@ TEST_SUITE("statistical") {
         const Scene scene = model("spheres");
         const View view = small(scene, 128);
         const ImageRgb truth = traced(scene, view, raytrace::Integrator::kEnvironment, true);
-        raster::RasterSettings settings = sixteen(kEnvironment);
+        raster::RasterSettings settings = with_16_samples(kEnvironment);
         settings.indirect_light = false;
         const double with = error(scene, view, settings, truth);
         settings.ambient_occlusion = false;
@@ -92,13 +92,14 @@ TEST_SUITE("statistical") {
         CHECK(with < without / 3);
     }
 
-    TEST_CASE("reflections in spheres and refractions of glass are those of the path tracer, but for their approximations") {
+    TEST_CASE("reflections in spheres and refractions of glass are those of the path tracer, but for their "
+              "approximations") {
         for (const auto& [name, bound] : {std::pair("spheres", 0.035), {"glass", 0.017}}) {
             const Scene scene = model(name);
             const View view = small(scene, 128);
             const ImageRgb truth = traced(scene, view, raytrace::Integrator::kReflection, true);
             Control control;
-            const raster::RasterSettings settings = sixteen(kReflection);
+            const raster::RasterSettings settings = with_16_samples(kReflection);
             const double trimmed =
                 error_metrics(raster::render(raster::prepare(scene, settings), view, settings, control).radiance, truth)
                     .relmse_trimmed;
@@ -126,7 +127,7 @@ TEST_SUITE("statistical") {
         finish_scene(scene);
         const View view{scene.camera, 96, 72};
         const ImageRgb truth = traced(scene, view, raytrace::Integrator::kUnshadowed, false);
-        raster::RasterSettings settings = sixteen(kLights);
+        raster::RasterSettings settings = with_16_samples(kLights);
         settings.shadows = false;
         const double found = error(scene, view, settings, truth);
         MESSAGE("relmse ", found);
@@ -134,7 +135,7 @@ TEST_SUITE("statistical") {
     }
 
     // The worst pixel in a thousand is trimmed: in such small images a light's reflection covers one pixel or none.
-    TEST_CASE("all effects together bring the picture nearer to the path tracer's, in each scene") {
+    TEST_CASE("all effects together bring the image nearer to the path tracer's, in each scene") {
         const auto trimmed = [](const Scene& scene, const View& view, const raster::RasterSettings& settings,
                                 const ImageRgb& truth) {
             Control control;
@@ -145,7 +146,7 @@ TEST_SUITE("statistical") {
             const Scene scene = model(name);
             const View view = small(scene, 64);
             const ImageRgb truth = traced(scene, view, raytrace::Integrator::kPath, true);
-            raster::RasterSettings settings = sixteen({});
+            raster::RasterSettings settings = with_16_samples({});
             const double with = trimmed(scene, view, settings, truth);
             settings.shadows = settings.ambient_occlusion = settings.indirect_light = false;
             const double without = trimmed(scene, view, settings, truth);

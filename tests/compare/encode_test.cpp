@@ -56,8 +56,7 @@ double half_value(std::uint16_t bits) {
 
 TEST_SUITE("unit") {
 
-    TEST_CASE(
-        "every half-precision number survives, and what lies between goes to the nearer neighbour, ties to even") {
+    TEST_CASE("every half-precision number survives, and what lies between goes to the nearer neighbor, ties to even") {
         for (std::uint32_t bits = 0; bits < 0x7bff; ++bits) {
             const double low = half_value(static_cast<std::uint16_t>(bits)),
                          high = half_value(static_cast<std::uint16_t>(bits + 1));
@@ -100,7 +99,7 @@ TEST_SUITE("unit") {
             }
     }
 
-    TEST_CASE("a smooth picture becomes small") {
+    TEST_CASE("a smooth image becomes small") {
         std::vector<std::uint32_t> values(256 * 256);
         for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<std::uint32_t>(i / 256 + 3 * (i % 256));
         CHECK(encode_plane(values, 256, 4).size() < values.size() / 20);

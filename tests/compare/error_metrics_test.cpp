@@ -53,7 +53,7 @@ TEST_SUITE("unit") {
         CHECK(m.pixels == 2);
     }
 
-    TEST_CASE("equal pictures: no error, infinite PSNR") {
+    TEST_CASE("equal images: no error, infinite PSNR") {
         const ImageRgb a(5, 4, Rgb(0.3f));
         const ErrorMetrics m = error_metrics(a, a);
         CHECK(m.mse == 0);
@@ -109,7 +109,7 @@ TEST_SUITE("unit") {
         CHECK(std::isnan(m.worst));
     }
 
-    TEST_CASE("pictures of different sizes are refused") {
+    TEST_CASE("images of different sizes are refused") {
         CHECK_THROWS_AS(error_metrics(ImageRgb(2, 3), ImageRgb(3, 2)), Error);
     }
 }

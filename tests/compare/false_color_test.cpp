@@ -20,7 +20,7 @@ TEST_SUITE("unit") {
         CHECK(diverging_color(-5) == diverging_color(-1));
     }
 
-    TEST_CASE("the difference picture: A − B over the range, magenta where there is no number") {
+    TEST_CASE("the difference image: A − B over the range, magenta where there is no number") {
         ImageRgb a(3, 1, Rgb(1.0f)), b(3, 1, Rgb(1.0f));
         a[1] = Rgb(2.0f);
         b[2].g = std::numeric_limits<float>::quiet_NaN();

@@ -76,14 +76,14 @@ TEST_SUITE("unit") {
         CHECK(found.exposures == golden_figure("linear", "flip_exposures"));
     }
 
-    TEST_CASE("FLIP of equal pictures is 0, of swapped ones the same") {
+    TEST_CASE("FLIP of equal images is 0, of swapped ones the same") {
         const TestPair pair = encoded_pair();
         CHECK(flip(pair.test, pair.test).max == 0);
         CHECK(flip(pair.test, pair.reference).map.pixels() == flip(pair.reference, pair.test).map.pixels());
         CHECK(hdr_flip(pair.test, pair.test).max == 0);
     }
 
-    TEST_CASE("FLIP of black and white is all but 1; of pictures beyond [0, 1] that of clamped ones") {
+    TEST_CASE("FLIP of black and white is all but 1; of images beyond [0, 1] that of clamped ones") {
         const ImageRgb black(30, 30), white(30, 30, Rgb(1)), bright(30, 30, Rgb(7)), negative(30, 30, Rgb(-1));
         CHECK(flip(black, white).min > 0.96); // green and blue differ most of all color pairs
         CHECK(flip(negative, bright).map.pixels() == flip(black, white).map.pixels());
@@ -99,7 +99,7 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("FLIP of a picture does not depend on how its rows are worked on: transposed, the map is transposed") {
+    TEST_CASE("FLIP of a image does not depend on how its rows are worked on: transposed, the map is transposed") {
         const TestPair pair = encoded_pair(67, 131);
         const auto transposed = [](const auto& image) {
             auto result = std::decay_t<decltype(image)>(image.height(), image.width());
@@ -114,7 +114,7 @@ TEST_SUITE("unit") {
         CHECK(worst < 2e-4f);
     }
 
-    TEST_CASE("pictures smaller than the filters, down to one pixel") {
+    TEST_CASE("images smaller than the filters, down to one pixel") {
         for (const auto& [width, height] : {std::pair(1, 1), std::pair(3, 40), std::pair(40, 2)}) {
             const TestPair pair = encoded_pair(width, height);
             const Flip found = flip(pair.test, pair.reference);
@@ -157,7 +157,7 @@ TEST_SUITE("unit") {
         CHECK(std::isfinite(faint.mean));
     }
 
-    TEST_CASE("FLIP of pictures of different sizes is refused") {
+    TEST_CASE("FLIP of images of different sizes is refused") {
         CHECK_THROWS_AS(flip(ImageRgb(2, 3), ImageRgb(3, 2)), Error);
         CHECK_THROWS_AS(hdr_flip(ImageRgb(2, 3), ImageRgb(2, 2)), Error);
     }

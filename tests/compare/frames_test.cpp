@@ -55,7 +55,7 @@ TEST_SUITE("unit") {
         CHECK(beyond > 0);
     }
 
-    TEST_CASE("the peer draws the same picture, and another one is told from it") {
+    TEST_CASE("the peer draws the same image, and another one is told from it") {
         const Scene scene = frame_scene(kMesh);
         if (!has_peer(scene)) {
             MESSAGE("no llvmpipe here: skipped");

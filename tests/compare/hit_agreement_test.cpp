@@ -66,7 +66,7 @@ TEST_SUITE("unit") {
         CHECK(result.distance_violations == 0);
     }
 
-    TEST_CASE("an edge that passes the pixel's centre within 1/128 pixel explains; one a little further off does not") {
+    TEST_CASE("an edge that passes the pixel's center within 1/128 pixel explains; one a little further off does not") {
         // The boundary between two quads is at x = offset, and the center of pixel 32 is at 0.5.
         for (const double side : {-1.0, 1.0})
             for (const double distance : {0.0077, 0.0079}) {

@@ -41,7 +41,7 @@ void check_golden(const std::string& pair, const ImageMetrics& metrics) {
 
 TEST_SUITE("unit") {
 
-    TEST_CASE("all metrics equal other programs' on a pair of encoded and one of linear pictures") {
+    TEST_CASE("all metrics equal other programs' on a pair of encoded and one of linear images") {
         const TestPair encoded = encoded_pair(), linear = linear_pair();
         const ImageMetrics metrics = image_metrics(linear.test, linear.reference, Encoding::kLinear);
         check_golden("encoded", image_metrics(encoded.test, encoded.reference, Encoding::kEncoded));
@@ -78,7 +78,7 @@ TEST_SUITE("unit") {
             CHECK(names.count(name) == 1);
     }
 
-    TEST_CASE("SSIM: 1 for equal pictures, -1 at most for opposite structure, none below 11 pixels") {
+    TEST_CASE("SSIM: 1 for equal images, -1 at most for opposite structure, none below 11 pixels") {
         const TestPair pair = linear_pair(30, 25);
         CHECK(ssim(pair.test, pair.test) == doctest::Approx(1));
         ImageRgb up(11, 11), down(11, 11);

@@ -179,7 +179,8 @@ TEST_SUITE("unit") {
         CHECK(refusal(options).find("variance.R") != std::string::npos);
     }
 
-    TEST_CASE("compare images -o: the page, its figures and the difference; equal names are told apart by their paths") {
+    TEST_CASE("compare images -o: the page, its figures and the difference; equal names are told apart by their "
+              "paths") {
         const ScratchFolder scratch;
         for (const char* const side : {"old", "new"}) {
             fs::create_directories(scratch / side);

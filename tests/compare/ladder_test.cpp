@@ -108,12 +108,12 @@ TEST_SUITE("unit") {
         SceneBuilder builder = floor_scene(Diffuse{{Rgb(kAlbedo)}}, true);
         builder.scene.lights.push_back(PointLight{{0, 2, 0}, Rgb(10)});
         const Scene scene = builder.finish();
-        const LadderImages pictures = ladder_scene(scene, 16);
-        const Shares s = shares(pictures);
+        const LadderImages shown_images = ladder_scene(scene, 16);
+        const Shares s = shares(shown_images);
         CHECK(std::abs(s.sum - 1) < 1e-12);
         CHECK(share_of(s, "shadows") > 0.999);
         CHECK(others(s, "shadows") < 1e-3);
-        const ImageRgb before = pictures.image(3), after = pictures.image(4);
+        const ImageRgb before = shown_images.image(3), after = shown_images.image(4);
         double taken = 0, expected = 0;
         for (int y = 0; y < kSize; ++y)
             for (int x = 0; x < kSize; ++x) {
@@ -123,7 +123,7 @@ TEST_SUITE("unit") {
                     expected += 10 * 2 / (d2 * std::sqrt(d2)) * static_cast<double>(kAlbedo) / kPiDouble;
             }
         CHECK(taken == doctest::Approx(expected).epsilon(1e-3));
-        const CauseMap map = map_causes(pictures);
+        const CauseMap map = map_causes(shown_images);
         CHECK(map.cause(kSize / 2, kSize / 2) == 3);
         CHECK(map.visible == doctest::Approx(0.25).epsilon(0.01)); // the shadow's fraction of the image
     }
@@ -151,14 +151,14 @@ TEST_SUITE("unit") {
         SceneBuilder builder = floor_scene(Diffuse{{Rgb(kAlbedo)}}, true);
         builder.scene.environment = ConstantEnvironment{Rgb(1.5f)};
         const Scene scene = builder.finish();
-        const LadderImages pictures = ladder_scene(scene, 256);
-        const Shares s = shares(pictures);
+        const LadderImages shown_images = ladder_scene(scene, 256);
+        const Shares s = shares(shown_images);
         CHECK(std::abs(s.sum - 1) < 1e-12);
         CHECK(share_of(s, "environment") > 0.98);
         CHECK(others(s, "environment") < 1e-3);
         const std::array<Vec3, 4> square = {Vec3(-0.5f, 1, 0.5f), Vec3(0.5f, 1, 0.5f), Vec3(0.5f, 1, -0.5f),
                                             Vec3(-0.5f, 1, -0.5f)};
-        const ImageRgb before = pictures.image(4), after = pictures.image(5);
+        const ImageRgb before = shown_images.image(4), after = shown_images.image(5);
         double hidden = 0, expected = 0;
         for (int y = 20; y < 28; ++y)
             for (int x = 20; x < 28; ++x) {
@@ -175,13 +175,13 @@ TEST_SUITE("unit") {
         SceneBuilder builder = floor_scene(Metal{{Rgb(0.9f)}, 0}, true);
         builder.scene.environment = ConstantEnvironment{Rgb(1.5f)};
         const Scene scene = builder.finish();
-        const LadderImages pictures = ladder_scene(scene, 16);
-        const Shares s = shares(pictures);
+        const LadderImages shown_images = ladder_scene(scene, 16);
+        const Shares s = shares(shown_images);
         CHECK(std::abs(s.sum - 1) < 1e-12);
         CHECK(share_of(s, "reflections") > 0.85);
         // The mirror shows the square as black with a side of 12 pixels; only its edges are wrong.
-        CHECK(map_causes(pictures).visible < 60.0 / (kSize * kSize));
-        CHECK(pictures.image(7)(kSize / 2, kSize / 2).g == 0);
+        CHECK(map_causes(shown_images).visible < 60.0 / (kSize * kSize));
+        CHECK(shown_images.image(7)(kSize / 2, kSize / 2).g == 0);
     }
 
     // The floor and the wall illuminate each other, and nothing occludes the sun.
@@ -209,16 +209,16 @@ TEST_SUITE("unit") {
         CHECK(s.sum == 0);
     }
 
-    TEST_CASE("the last picture is the path tracer's; for any number of threads the same bits") {
+    TEST_CASE("the last image is the path tracer's; for any number of threads the same bits") {
         const Scene scene = load_scene(fs::path(DUET_SOURCE_DIR) / "models" / "cornell.json");
-        const LadderImages pictures = ladder_scene(scene, 8, 1);
+        const LadderImages shown_images = ladder_scene(scene, 8, 1);
         raytrace::PathTracerSettings settings;
         settings.samples_per_pixel = 8;
         settings.aovs.variance = true;
         Control control;
         const View view{scene.camera, kSize, kSize};
         const ImageRgb path = raytrace::render(raytrace::prepare(scene, settings), view, settings, control).radiance;
-        const ImageRgb last = pictures.image(kRungCount);
+        const ImageRgb last = shown_images.image(kRungCount);
         double largest = 0;
         for (std::size_t i = 0; i < path.size(); ++i)
             for (std::size_t c = 0; c < 3; ++c)
@@ -226,19 +226,19 @@ TEST_SUITE("unit") {
                     std::max(largest, std::abs(static_cast<double>(path[i][c]) - static_cast<double>(last[i][c])) /
                                           (static_cast<double>(path[i][c]) + 1e-3));
         CHECK(largest < 2e-6);
-        CHECK(pictures.invalid_samples == 0);
+        CHECK(shown_images.invalid_samples == 0);
         const LadderImages again = ladder_scene(scene, 8, 7);
         for (std::size_t half = 0; half < 2; ++half)
             for (std::size_t k = 0; k < kRungCount; ++k)
-                CHECK(pictures.halves[half][k].pixels() == again.halves[half][k].pixels());
+                CHECK(shown_images.halves[half][k].pixels() == again.halves[half][k].pixels());
     }
 
     TEST_CASE("rung 2 computes with the path tracer's surfaces: nothing changes, for the code is shared") {
         const Scene scene = load_scene(fs::path(DUET_SOURCE_DIR) / "models" / "everything.json");
-        const LadderImages pictures = ladder_scene(scene, 4);
-        CHECK(pictures.halves[0][0].pixels() == pictures.halves[0][1].pixels());
-        CHECK(pictures.image(1).pixels() != pictures.image(0).pixels());
-        const Shares s = shares(pictures);
+        const LadderImages shown_images = ladder_scene(scene, 4);
+        CHECK(shown_images.halves[0][0].pixels() == shown_images.halves[0][1].pixels());
+        CHECK(shown_images.image(1).pixels() != shown_images.image(0).pixels());
+        const Shares s = shares(shown_images);
         CHECK(std::abs(s.sum - 1) < 1e-12);
     }
 
@@ -255,17 +255,17 @@ TEST_SUITE("unit") {
         for (const json& share : report["shares"]) sum += share["share"].get<double>();
         CHECK(sum == doctest::Approx(1).epsilon(1e-12));
         REQUIRE(report["rungs"].size() == kRungCount);
-        std::vector<std::string> pictures = {"cause.png", "picture-0.png"};
+        std::vector<std::string> shown_images = {"cause.png", "picture-0.png"};
         for (std::size_t k = 0; k < kRungCount; ++k) {
             const json& rung = report["rungs"][k];
             CHECK(rung["code"]["raytrace"].contains("lines"));
-            pictures.push_back(message("picture-", k + 1, ".png"));
-            pictures.push_back(message("change-", k + 1, ".png"));
+            shown_images.push_back(message("picture-", k + 1, ".png"));
+            shown_images.push_back(message("change-", k + 1, ".png"));
             for (const json& q : rung["quantities"]) {
                 CHECK(q.contains(q["name"] == "hits" ? "hits" : "metrics"));
                 CHECK(q["seconds"]["raster"].get<double>() > 0);
                 for (const char* const side : {"-raster.png", "-raytrace.png"})
-                    pictures.push_back(message(k + 1, '-', q["name"].get<std::string>(), side));
+                    shown_images.push_back(message(k + 1, '-', q["name"].get<std::string>(), side));
             }
         }
         // The Cornell box has no environment, metal or glass. The report of these rungs says so and has no images.
@@ -274,11 +274,12 @@ TEST_SUITE("unit") {
             CHECK(report["rungs"][k]["note"].get<std::string>().find("The scene has no") == 0);
         }
         CHECK(report["rungs"][3]["note"].get<std::string>().find("Soft shadows are estimated") != std::string::npos);
-        for (const std::string& name : pictures) CHECK_MESSAGE(read_image(options.folder / name).width() == 24, name);
+        for (const std::string& name : shown_images)
+            CHECK_MESSAGE(read_image(options.folder / name).width() == 24, name);
         std::size_t files = 0;
         for (const fs::directory_entry& entry : fs::directory_iterator(options.folder))
             files += entry.is_regular_file() ? 1 : 0;
-        CHECK(files == pictures.size() + 2);
+        CHECK(files == shown_images.size() + 2);
         const std::string page = read_file(options.folder / "index.html");
         CHECK(page.find("cornell.json") != std::string::npos);
         CHECK(page.find("http://") == std::string::npos);

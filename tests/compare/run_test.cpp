@@ -52,9 +52,9 @@ TEST_SUITE("unit") {
             files += entry.is_regular_file() ? 1 : 0;
         CHECK(files == 5);
         for (const char* const name : {"raster.png", "raytrace.png", "difference.png"}) {
-            const ImageRgb picture = read_image(options.folder / name);
-            CHECK(picture.width() == 24);
-            CHECK(picture.height() == 20);
+            const ImageRgb shown_image = read_image(options.folder / name);
+            CHECK(shown_image.width() == 24);
+            CHECK(shown_image.height() == 20);
         }
         CHECK(read_file(options.folder / "index.html").find("cornell.json") != std::string::npos);
         const json report = json::parse(read_file(options.folder / "report.json"));

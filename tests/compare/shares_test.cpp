@@ -43,7 +43,7 @@ LadderImages random_images(int width, int height, unsigned seed) {
 
 TEST_SUITE("unit") {
 
-    TEST_CASE("shares add up to 1 whatever the pictures, by computation: to 1e-12") {
+    TEST_CASE("shares add up to 1 whatever the images, by computation: to 1e-12") {
         for (unsigned seed = 0; seed < 20; ++seed) {
             const Shares s = shares(random_images(61, 43, seed));
             CHECK(std::abs(s.sum - 1) < 1e-12);
@@ -107,7 +107,7 @@ TEST_SUITE("unit") {
         CHECK(std::abs(s.share[6]) < 0.15);
     }
 
-    TEST_CASE("equal pictures, and such as differ by rounding, have nothing to share out") {
+    TEST_CASE("equal images, and such as differ by rounding, have nothing to share out") {
         LadderImages images = level(ImageRgb(5, 5, Rgb(0.5f)));
         CHECK(shares(images).negligible);
         rise(images, 3, Rgb(1e-7f), 7);
@@ -130,7 +130,7 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("the largest cause is that of a pixel and its neighbours; a share, that of each pixel by itself") {
+    TEST_CASE("the largest cause is that of a pixel and its neighbors; a share, that of each pixel by itself") {
         LadderImages images = level(ImageRgb(5, 5, Rgb(0.1f)));
         for (std::size_t i = 0; i < 25; ++i) rise(images, i == 12 ? 6 : 4, Rgb(0.5f), i);
         CauseMap map = map_causes(images);
@@ -143,7 +143,7 @@ TEST_SUITE("unit") {
             for (int x = 0; x < 5; ++x) CHECK(map.cause(x, y) == (x % 4 > 0 && y % 4 > 0 ? 5 : 3));
     }
 
-    TEST_CASE("the picture of causes: full colours where much is to be seen, dark where nothing is") {
+    TEST_CASE("the image of causes: full colors where much is to be seen, dark where nothing is") {
         LadderImages images = level(ImageRgb(2, 1, Rgb(0.1f)));
         rise(images, 4, Rgb(0.5f), 0);
         const ImageRgb image = cause_image(map_causes(images));

@@ -36,10 +36,10 @@ Scene tori() {
         slivers.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
     }
     test::add(scene, slivers);
-    Light lamp = PointLight{};
-    std::get<PointLight>(lamp).position = {0, 4, 4};
-    std::get<PointLight>(lamp).intensity = Rgb(20);
-    scene.lights.push_back(lamp);
+    Light area_light = PointLight{};
+    std::get<PointLight>(area_light).position = {0, 4, 4};
+    std::get<PointLight>(area_light).intensity = Rgb(20);
+    scene.lights.push_back(area_light);
     scene.camera.eye = {4, 1.5, 0.3};
     scene.camera.look_at = {0, 0, 0};
     finish_scene(scene);
@@ -308,6 +308,6 @@ TEST_SUITE("statistical") {
         const SkipCase back_faces = find_case(skip_cases(scene, {1, 1, 0}), "raster", "back_faces");
         const SkipMeasurement faces = measured(back_faces, {scene.camera, 240, 180}, options);
         CHECK(faces.proved);
-        MESSAGE("back faces: ", faces.pixels_differ, " pixels of ", faces.image_pairs, " pictures differ");
+        MESSAGE("back faces: ", faces.pixels_differ, " pixels of ", faces.image_pairs, " images differ");
     }
 }

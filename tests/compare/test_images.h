@@ -50,8 +50,8 @@ inline TestPair linear_pair(int width = 96, int height = 70) {
             for (int c = 0; c < 3; ++c) {
                 const auto u = [](int v) { return static_cast<std::uint32_t>(v); };
                 const int value = pattern(x, y, c);
-                const bool lamp = x / 8 == 5 && y / 8 == 3;
-                const float radiance = lamp ? 30.0f : static_cast<float>(value * value) / 16384.0f; // exact
+                const bool area_light = x / 8 == 5 && y / 8 == 3;
+                const float radiance = area_light ? 30.0f : static_cast<float>(value * value) / 16384.0f; // exact
                 const float factor = 0.5f + static_cast<float>(pixel_noise(u(x), u(y), u(c))) / 16777216.0f;
                 pair.reference(x, y)[u(c)] = radiance;
                 pair.test(x, y)[u(c)] = radiance * factor; // rounded to float

@@ -140,7 +140,7 @@ TEST_SUITE("image") {
         }
     }
 
-    TEST_CASE("footprints are the differences of neighbours' coordinates") {
+    TEST_CASE("footprints are the differences of neighbors' coordinates") {
         const auto check = [](const Shape& shape, double tolerance) {
             Scene scene;
             test::add(scene, shape);
@@ -217,7 +217,7 @@ TEST_SUITE("image") {
         traced.aovs.hit = traced.aovs.normal = true;
         Control control;
         const Rendering b = raytrace::render(raytrace::prepare(scene, traced), view_of(scene), traced, control);
-        int other_hit = 0, other_normal = 0, leaf = 0, veil = 0;
+        int other_hit = 0, other_normal = 0, leaf = 0, sheet = 0;
         // Skip pixels covered by the partly transparent object: one pipeline blends normals there, the other uses
         // the hit that stopped the ray.
         const CameraModel camera(view_of(scene));
@@ -228,7 +228,7 @@ TEST_SUITE("image") {
         };
         for (std::size_t i = 0; i < a.hit.size(); ++i) {
             leaf += a.hit[i].valid() && a.hit[i].object == 3;
-            veil += a.hit[i].valid() && a.hit[i].object == 4;
+            sheet += a.hit[i].valid() && a.hit[i].object == 4;
             if (a.hit[i].object != b.hit[i].object || a.hit[i].primitive != b.hit[i].primitive) {
                 ++other_hit;
                 continue;
@@ -237,7 +237,7 @@ TEST_SUITE("image") {
             other_normal += max_component(abs(a.normal[i] - b.normal[i])) > 4e-3f;
         }
         CHECK(leaf > 500);
-        CHECK(veil > 200);
+        CHECK(sheet > 200);
         CHECK(other_hit <= 4); // on silhouettes
         CHECK(other_normal <= 4);
     }

@@ -113,7 +113,7 @@ TEST_SUITE("unit") {
         CHECK(block.channel == 2);
     }
 
-    TEST_CASE("sizes that differ and pictures without any variance are refused") {
+    TEST_CASE("sizes that differ and images without any variance are refused") {
         const ImageRgb a(4, 4), b(4, 5), none;
         CHECK_THROWS_AS(z_test({a, a}, {b, b}), Error);
         CHECK_THROWS_AS(z_test({a, b}, {a, none}), Error);

@@ -7,10 +7,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const duet::ImageBytes file{"fuzz", {reinterpret_cast<const char*>(data), size}};
     try {
         // A file without a signature is decoded as a TGA.
-        const duet::StoredImage picture = duet::decode_image(file, ".tga");
-        const std::size_t pixels = static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
-        if (picture.width < 1 || picture.height < 1 || picture.channels < 1 || picture.channels > 4 ||
-            picture.values.size() != pixels * static_cast<std::size_t>(picture.channels))
+        const duet::StoredImage shown_image = duet::decode_image(file, ".tga");
+        const std::size_t pixels =
+            static_cast<std::size_t>(shown_image.width) * static_cast<std::size_t>(shown_image.height);
+        if (shown_image.width < 1 || shown_image.height < 1 || shown_image.channels < 1 || shown_image.channels > 4 ||
+            shown_image.values.size() != pixels * static_cast<std::size_t>(shown_image.channels))
             std::abort();
     } catch (const duet::Error&) {
     }

@@ -16,7 +16,8 @@ import report
 OWN_FILES = ("grades.csv", "histogram.svg", "index.html")
 BINS = 10  # of the histogram; the last one holds full points, too
 STYLE = page.STYLE + """
-table{border-collapse:collapse}th,td{text-align:left;padding:.2rem .8rem;border-bottom:1px solid #ddd}td.n{text-align:right}"""
+table{border-collapse:collapse}th,td{text-align:left;padding:.2rem .8rem;border-bottom:1px solid #ddd}
+td.n{text-align:right}"""
 
 
 def submissions(folder):
@@ -35,10 +36,12 @@ def submissions(folder):
         raise labs.Unusable(f"--class {folder}: found no submission; expected .cpp files, or folders with .cpp files")
     students = [student for student, _ in found + empty]
     if reserved := [student for student in students if student in OWN_FILES]:
-        raise labs.Unusable(f"--class {folder}: a submission is named {reserved[0]}, as a file of the grades; rename it")
+        raise labs.Unusable(f"--class {folder}: a submission is named {reserved[0]}, as a file of the grades; "
+                            f"rename it")
     doubled = sorted({student for student in students if students.count(student) > 1})
     if doubled:
-        raise labs.Unusable(f"--class {folder}: {', '.join(doubled)}: a file and a folder of the same name; expected one of them")
+        raise labs.Unusable(f"--class {folder}: {', '.join(doubled)}: a file and a folder of the same name; expected "
+                            f"one of them")
     return found, empty
 
 
@@ -55,7 +58,8 @@ def grade_students(lab_id, found, build, seed, out):
     """The results by student, graded on all processors, with progress where someone watches."""
     results, begun = {}, time.monotonic()
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        jobs = {pool.submit(grade_student, lab_id, path, build, seed, out / student): student for student, path in found}
+        jobs = {pool.submit(grade_student, lab_id, path, build, seed, out / student): student
+                for student, path in found}
         for done, job in enumerate(concurrent.futures.as_completed(jobs), 1):
             results[jobs[job]] = job.result()
             left = (time.monotonic() - begun) / done * (len(found) - done)
@@ -103,7 +107,8 @@ def bin_name(i):
 
 def histogram_text(counts):
     widest = max(counts)
-    return "\n".join(f"{bin_name(i):>9} % {'█' * round(40 * count / max(widest, 1))} {count}" for i, count in enumerate(counts))
+    return "\n".join(f"{bin_name(i):>9} % {'█' * round(40 * count / max(widest, 1))} {count}"
+                     for i, count in enumerate(counts))
 
 
 def histogram_svg(counts, title):
@@ -112,10 +117,13 @@ def histogram_svg(counts, title):
     for i, count in enumerate(counts):
         height, x = 200 * count / max(*counts, 1), 40 + 56 * i
         bars.append(f'<rect x="{x}" y="{240 - height:.1f}" width="48" height="{height:.1f}" fill="#0a7d4f"/>'
-                    f'<text x="{x + 24}" y="{234 - height:.1f}">{count}</text><text x="{x + 24}" y="258">{bin_name(i)}</text>')
-    return ('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 640 290" width="640" height="290" font-family="sans-serif" '
+                    f'<text x="{x + 24}" y="{234 - height:.1f}">{count}</text><text x="{x + 24}" '
+                    f'y="258">{bin_name(i)}</text>')
+    return ('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 640 290" width="640" height="290" '
+            'font-family="sans-serif" '
             f'font-size="12" text-anchor="middle"><text x="320" y="20" font-size="16">{html.escape(title)}</text>'
-            f'{"".join(bars)}<path d="M40 240h556" stroke="#222"/><text x="320" y="282">percent of the points</text></svg>\n')
+            f'{"".join(bars)}<path d="M40 240h556" stroke="#222"/><text x="320" y="282">percent of the '
+            f'points</text></svg>\n')
 
 
 def hardest_items(results):
@@ -133,10 +141,13 @@ def as_page(title, results, svg):
     rows = [f'<tr><td><a href="{html.escape(student)}/index.html">{html.escape(student)}</a>'
             f'<td class="n">{"by hand" if result.get("ungraded") else result["earned"]}'
             f'<td>{html.escape(result.get("error", "").split(chr(10))[0])}' for student, result in results.items()]
-    items = [f'<tr><td>{html.escape(name)}<td class="n">{count} of {len(results)}' for name, count in hardest_items(results)]
+    items = [f'<tr><td>{html.escape(name)}<td class="n">{count} of {len(results)}'
+             for name, count in hardest_items(results)]
     return (f"{page.HEAD}<title>{html.escape(title)}</title><style>{STYLE}</style>"
-            f"<h1>{html.escape(title)}</h1>{svg}<h2>Items, the hardest first</h2><table><tr><th>item<th>students with its points"
-            f"{''.join(items)}</table><h2>Students</h2><table><tr><th>student<th>points<th>note{''.join(rows)}</table></html>\n")
+            f"<h1>{html.escape(title)}</h1>{svg}<h2>Items, the hardest first</h2><table><tr><th>item<th>students with "
+            f"its points"
+            f"{''.join(items)}</table><h2>Students</h2><table><tr><th>student<th>points"
+            f"<th>note{''.join(rows)}</table></html>\n")
 
 
 def grade_class(arguments):
@@ -144,7 +155,8 @@ def grade_class(arguments):
     found, empty = submissions(arguments.class_folder)
     out = arguments.out
     if out.resolve().is_relative_to(arguments.class_folder.resolve()):
-        raise labs.Unusable(f"--out {out}: lies among the submissions; expected a folder outside {arguments.class_folder}")
+        raise labs.Unusable(f"--out {out}: lies among the submissions; expected a folder outside "
+                            f"{arguments.class_folder}")
     out.mkdir(parents=True, exist_ok=True)
     grade.judge_of(arguments.lab, arguments.build)
     compiling.prepare(arguments.lab, arguments.build)

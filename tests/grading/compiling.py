@@ -31,7 +31,8 @@ FILE_DIRECTIVES = re.compile(r"\.(?:incbin|include|macro|irpc?|rept|altmacro)\b"
 ERROR = re.compile(r"^(?:\./)?([^:\n]+):(\d+):(?:(\d+):)? (?:fatal )?error: ")
 HINTS = [
     (r"multiple definition of `main'", "Your file has a main(); remove it, the grader has its own."),
-    (r"multiple definition of `([^']+)'", r"\1 is defined twice: in your file, and in the grader or another of your files."),
+    (r"multiple definition of `([^']+)'",
+     r"\1 is defined twice: in your file, and in the grader or another of your files."),
     (r"template instantiation depth", "A template uses itself without an end."),
 ]
 
@@ -52,7 +53,8 @@ def build_settings(build):
 @functools.lru_cache(maxsize=None)
 def system_folders(compiler):
     """Where the compiler's own headers lie."""
-    said = subprocess.run([compiler, "-E", "-v", "-x", "c++", "/dev/null"], text=True, capture_output=True, check=True).stderr
+    said = subprocess.run([compiler, "-E", "-v", "-x", "c++", "/dev/null"], text=True, capture_output=True,
+                          check=True).stderr
     listed = said.split("#include <...> search starts here:")[1].split("End of search list.")[0]
     return [pathlib.Path(line.strip()).resolve() for line in listed.strip().splitlines()]
 
@@ -75,7 +77,8 @@ def undefined_names(text):
     names = dict.fromkeys(re.findall(r"undefined reference to `(.+?)'$", text, re.MULTILINE))
     of_the_lab = [match[1] for name in names if (match := re.match(r"duet::lab::(\w+)", name))]
     if of_the_lab:
-        return (f"The submission doesn't define {', '.join(of_the_lab)} as lab.h declares {'it' if len(of_the_lab) == 1 else 'them'}: "
+        return (f"The submission doesn't define {', '.join(of_the_lab)} as lab.h declares "
+                f"{'it' if len(of_the_lab) == 1 else 'them'}: "
                 "with the same name, arguments and result, inside namespace duet::lab.")
     return f"{next(iter(names))} is declared and called, but nowhere defined." if names else ""
 
@@ -94,7 +97,8 @@ def plain_error(text, folder):
 
 def run_limited(command, folder):
     """Runs a command with limits. Returns its exit code, None where it took too long, and what it said first."""
-    limits = ["prlimit", f"--as={COMPILE_MEMORY}", f"--cpu={COMPILE_SECONDS}", f"--fsize={MAX_OUTPUT_BYTES}", "--core=0"]
+    limits = ["prlimit", f"--as={COMPILE_MEMORY}", f"--cpu={COMPILE_SECONDS}", f"--fsize={MAX_OUTPUT_BYTES}",
+              "--core=0"]
     with tempfile.TemporaryFile() as said: # no pipe: the size of a file is limited
         process = subprocess.Popen([*limits, *command], cwd=folder, stdin=subprocess.DEVNULL, stdout=said, stderr=said,
                                    start_new_session=True)
@@ -120,7 +124,8 @@ def run_compiler(build, arguments, what, folder):
                       f"{MAX_OUTPUT_BYTES >> 20} MiB of program. Is there a template without end, or a huge array?")
     if undefined := undefined_names(said):
         raise Refused(undefined)
-    missing = re.search(r"^(?:\./)?(\S+?):(\d+):\d+: fatal error: (.*): (?:No such file|Permission|Is a dir)", said, re.MULTILINE)
+    missing = re.search(r"^(?:\./)?(\S+?):(\d+):\d+: fatal error: (.*): (?:No such file|Permission|Is a dir)", said,
+                        re.MULTILINE)
     if missing:
         raise Refused(f"{missing[1]}, line {missing[2]}, includes {missing[3]}, which a submission may not. {ALLOWED}")
     raise Refused(f"{what} doesn't compile. The compiler's first error:\n{plain_error(said, folder)}")
@@ -131,7 +136,8 @@ ALLOWED = "Allowed are: the lab's lab.h and what it includes, common/vec, common
 
 
 def copy_submission(files, folder):
-    """Copies the submitted files, so that nothing beside them can be included by a relative path or a link. A file that is
+    """Copies the submitted files, so that nothing beside them can be included by a relative path or a link. A file that
+    is
     alone may have any name: who collects submissions names it. Returns the copies."""
     folder.mkdir()
     copies = []
@@ -140,7 +146,8 @@ def copy_submission(files, folder):
             raise Refused(f"{file.name} is no plain file; a submission may hold no links or devices")
         name = "lab.cpp" if len(files) == 1 and not FILE_NAME.fullmatch(file.name) else file.name
         if not FILE_NAME.fullmatch(name):
-            raise Refused(f"{file.name!r} is no name for a file of a submission; expected letters, digits, '.', '_' and '-'")
+            raise Refused(f"{file.name!r} is no name for a file of a submission; expected letters, digits, '.', '_' "
+                          f"and '-'")
         if file.stat().st_size > MAX_SOURCE_BYTES:
             raise Refused(f"{file.name} has {file.stat().st_size} bytes; at most {MAX_SOURCE_BYTES} are compiled")
         shutil.copyfile(file, folder / name)
@@ -222,7 +229,8 @@ def build_worker(lab_id, path, build, out):
     assembled = [compile_source(build, file, include, allowed) for file in copies if file.suffix == ".cpp"]
     worker = worker_object(lab_id, build, shared, contract)
     # -fno-lto: sections of a linker plugin, which a submission could write itself, would start another compiler
-    run_compiler(build, ["-static", "-fno-lto", str(worker), *map(str, assembled), "-o", str(out / "worker")], path.name, own)
+    run_compiler(build, ["-static", "-fno-lto", str(worker), *map(str, assembled), "-o", str(out / "worker")],
+                 path.name, own)
     return out / "worker"
 
 
@@ -230,7 +238,8 @@ def build_trusted_worker(lab_id, path, build, out):
     """Compiles one of the repository's own answers, which may include and link the whole project."""
     shared = build / "lessons" / "grading" / lab_id
     worker = worker_object(lab_id, build, shared, labs.stage(lab_id, shared / "include"))
-    libraries = [name for name in build_settings(build)["libraries"] if name.startswith("-") or pathlib.Path(name).exists()]
+    libraries = [name
+                 for name in build_settings(build)["libraries"] if name.startswith("-") or pathlib.Path(name).exists()]
     run_compiler(build, ["-march=native", "-I", str(labs.SOURCE), str(path.resolve()), str(worker), *libraries, "-o",
                          str(out / "worker")], path.name, out)
     return out / "worker"

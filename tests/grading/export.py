@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 """Exports what students get.
 
-  export handout OUT    a folder for each lab: the contract, the starter as lab.cpp, the headers that they may include, and
+  export handout OUT    a folder for each lab: the contract, the starter as lab.cpp, the headers that they may include,
+  and
                         how to compile it. No answers, no examiners, no lesson programs.
-  export template OUT   a complete repository: all that builds lessons and labs and grades them, each lab.cpp made from its
+  export template OUT   a complete repository: all that builds lessons and labs and grades them, each lab.cpp made from
+  its
                         starter, without answers, typical mistakes and hidden tests; committed, ready to push.
 """
 import argparse
@@ -17,10 +19,12 @@ import tempfile
 import labs
 
 # What no student gets: the repository's own answers, an instructor's hidden items, and the tests of the grader itself.
-EXCLUDED = re.compile(r"tests/grading/answers/|.*/lab_test_hidden\.cpp$|tests/grading/\w+_test\.py$|tests/grading/(selftest|page_figures)\.py$")
+EXCLUDED = re.compile(r"tests/grading/answers/|.*/lab_test_hidden\.cpp$|"
+                      r"tests/grading/\w+_test\.py$|tests/grading/(selftest|page_figures)\.py$")
 README = """# {lab} · {title}
 
-Write the functions that [{contract}](include/{contract}) declares into [lab.cpp](lab.cpp). Their comments say what each returns.
+Write the functions that [{contract}](include/{contract}) declares into [lab.cpp](lab.cpp). Their comments say what each
+returns.
 The folder [include](include) has all headers that lab.cpp may include, besides the standard library.
 
 Check that it compiles:
@@ -73,12 +77,14 @@ def write_template(folder):
     lines = ignored.read_text().splitlines(keepends=True)
     ignored.write_text("".join(line for line in lines if line.strip() != "lab.cpp"))
     git = ["git", "-c", "user.name=Course", "-c", "user.email=course@localhost"]
-    for command in (["git", "init", "-q", "-b", "main"], ["git", "add", "-A"], [*git, "commit", "-q", "-m", "Start of the course"]):
+    for command in (["git", "init", "-q", "-b", "main"], ["git", "add", "-A"],
+                    [*git, "commit", "-q", "-m", "Start of the course"]):
         subprocess.run(command, cwd=folder, check=True)
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="export", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(prog="export", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("what", choices=("handout", "template"))
     parser.add_argument("out", type=pathlib.Path, metavar="OUT", help="a folder that does not exist yet, or is empty")
     parser.add_argument("--labs", nargs="+", metavar="LAB", help="handout: these labs alone (default: all)")

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Tests what students get: handouts compile and hold no answer; the template builds a lab's examiner and grades with it,
+"""Tests what students get: handouts compile and hold no answer; the template builds a lab's examiner and grades with
+it,
 with an instructor's hidden item, which a second export keeps back.
 
 usage: export_test.py [--build FOLDER]
@@ -29,7 +30,8 @@ GIT = ["git", "-c", "user.name=Course", "-c", "user.email=course@localhost"]
 def run(*command, cwd=None):
     done = subprocess.run([str(word) for word in command], cwd=cwd, capture_output=True, text=True, check=False)
     if done.returncode != 0:
-        sys.exit(f"{' '.join(map(str, command))} ends with {done.returncode}:\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
+        sys.exit(f"{' '.join(map(str, command))} ends with "
+                 f"{done.returncode}:\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
     return done.stdout
 
 
@@ -43,7 +45,8 @@ def own_headers(folder):
 
 
 def handout_faults(out):
-    """Each lab's folder has all that its lab.cpp includes, and neither examiner nor answer. That a starter compiles against
+    """Each lab's folder has all that its lab.cpp includes, and neither examiner nor answer. That a starter compiles
+    against
     these headers is tested with its lab; here one compiles by the command of its page."""
     export(labs.SOURCE, "handout", out)
     faults = []
@@ -65,7 +68,8 @@ def template_faults(out, again):
     """A student's repository builds an examiner and grades; an instructor's hidden item counts, and isn't exported."""
     export(labs.SOURCE, "template", out)
     faults = []
-    if list(out.rglob("answers")) or list(out.rglob("mistakes.txt")) or list((out / "tests" / "grading").glob("*_test.py")):
+    if (list(out.rglob("answers")) or list(out.rglob("mistakes.txt"))
+            or list((out / "tests" / "grading").glob("*_test.py"))):
         faults.append("the template has answers, mistakes or the grader's own tests")
     if "lab.cpp" not in run("git", "ls-files", "raytrace/lessons/02-sphere", cwd=out):
         faults.append("the template does not track lab.cpp")
@@ -75,7 +79,8 @@ def template_faults(out, again):
     result = json.loads(run(*grade, "raytrace-02", out / "raytrace/lessons/02-sphere/lab.cpp", "--json", "-", cwd=out))
     hidden = [item for item in result["items"] if item["title"] == "a hidden item"]
     if result["points"] != 130 or len(hidden) != 1 or hidden[0]["status"] != "not_attempted":
-        faults.append(f"with a hidden item of 30 points the lab has {result['points']} points, and the item is {hidden}")
+        faults.append(f"with a hidden item of 30 points the lab has {result['points']} points, and the item is "
+                      f"{hidden}")
     if "lab:raytrace-02" in run("ctest", "--preset", "release", "-N", cwd=out):
         faults.append("the template tests answers that it doesn't have")
     run(*GIT, "add", "-A", cwd=out)
@@ -101,7 +106,8 @@ def main():
     parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        faults = handout_faults(folder / "handout") + template_faults(folder / "template", folder / "again") + refusal_faults(folder)
+        faults = handout_faults(folder / "handout") + template_faults(folder / "template",
+                                                                      folder / "again") + refusal_faults(folder)
     print("\n".join(faults) or "handouts and the template are as they should be")
     sys.exit(1 if faults else 0)
 

@@ -46,7 +46,8 @@ def examine(program, out, *arguments):
 
 
 def not_examined(program, out, reason):
-    """The result of a submission that is no program, or never ends: every item failed. The titles come from the examiner."""
+    """The result of a submission that is no program, or never ends: every item failed. The titles come from the
+    examiner."""
     result = examine(program, out)
     for item in result["items"]:
         item["message"] = "Not examined, for the reason above."
@@ -62,7 +63,8 @@ def grade(lab_id, path, build=DEFAULT_BUILD, seed=1, page_folder=None, images_fo
         try:
             make = compiling.build_trusted_worker if trusted else compiling.build_worker
             worker = make(lab_id, path, build, out)
-            result = examine(program, out, "--worker", worker, "--seed", str(seed), *(["--trusted"] if trusted else []), *options)
+            result = examine(program, out, "--worker", worker, "--seed", str(seed), *(["--trusted"] if trusted else []),
+                             *options)
         except compiling.Refused as refused:
             result = not_examined(program, out, str(refused))
         except subprocess.TimeoutExpired:
@@ -120,23 +122,30 @@ def grade_all(arguments):
 
 
 def parse_arguments():
-    parser = argparse.ArgumentParser(prog="grade", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(prog="grade", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("lab", nargs="?", help="the lab's id, such as raytrace-05 or assignment-2")
-    parser.add_argument("submission", nargs="?", type=pathlib.Path, help="a .cpp file, or a folder of .cpp and .h files")
+    parser.add_argument("submission", nargs="?", type=pathlib.Path,
+                        help="a .cpp file, or a folder of .cpp and .h files")
     parser.add_argument("--start", action="store_true", help="grade lab.cpp beside the starter, which it is made from")
     parser.add_argument("--all", action="store_true", help="grade every lab.cpp beside a starter, a line each")
     parser.add_argument("--class", dest="class_folder", metavar="FOLDER", type=pathlib.Path,
                         help="grade a whole class: a file or folder for each student")
     parser.add_argument("-o", "--out", metavar="FOLDER", type=pathlib.Path, default=pathlib.Path("grades"),
-                        help="where --class writes the CSV, the histogram and a page for each student (default: grades)")
+                        help="where --class writes the CSV, the histogram and a page for each student (default: "
+                             "grades)")
     parser.add_argument("--seed", type=int, default=1, help="another number gives other test values (default: 1)")
-    parser.add_argument("--json", metavar="FILE", help="write the result as JSON (-: to standard output, and nothing else)")
-    parser.add_argument("--page", metavar="FOLDER", type=pathlib.Path, help="write a page with expected, found and difference")
+    parser.add_argument("--json", metavar="FILE",
+                        help="write the result as JSON (-: to standard output, and nothing else)")
+    parser.add_argument("--page", metavar="FOLDER", type=pathlib.Path,
+                        help="write a page with expected, found and difference")
     parser.add_argument("--images", metavar="FOLDER", type=pathlib.Path,
                         help="write the images of that page as PNG files, named by what they show")
     parser.add_argument("--gradescope", metavar="FILE", help="write the result as Gradescope's results.json")
-    parser.add_argument("--autolab", metavar="FILE", help="write the points as the line of JSON that Autolab reads (-: print it as the last line)")
-    parser.add_argument("--build", metavar="FOLDER", type=lambda path: pathlib.Path(path).resolve(), default=DEFAULT_BUILD,
+    parser.add_argument("--autolab", metavar="FILE",
+                        help="write the points as the line of JSON that Autolab reads (-: print it as the last line)")
+    parser.add_argument("--build", metavar="FOLDER", type=lambda path: pathlib.Path(path).resolve(),
+                        default=DEFAULT_BUILD,
                         help="the build folder (default: build/release)")
     arguments = parser.parse_args()
     if arguments.lab is None and not arguments.all:

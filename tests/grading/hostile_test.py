@@ -86,7 +86,8 @@ REACHES = [
     'starts_a_thread()',
 ]
 REACH_HEAD = "".join(f"#include <{name}>\n" for name in (
-    "cstdio", "cstdlib", "fstream", "string", "thread", "cerrno", "fcntl.h", "dirent.h", "unistd.h", "csignal", "sys/mman.h",
+    "cstdio", "cstdlib", "fstream", "string", "thread", "cerrno", "fcntl.h", "dirent.h", "unistd.h", "csignal",
+                                                         "sys/mman.h",
     "sys/prctl.h", "sys/ptrace.h", "sys/resource.h", "sys/socket.h", "sys/stat.h", "sys/syscall.h")) + """
 static struct stat status;
 static rlimit limit{1u << 30, 1u << 30};
@@ -106,34 +107,43 @@ TOGETHER = {
                                        "ended the program by itself"),
     "abort": ("#include <cstdlib>", "std::abort();", "aborted"),
     "null pointer": ("", "volatile int* p = nullptr; *p = 1; return 2.0f;", "segmentation fault"),
-    "endless recursion": ("static int deep(volatile int n) { volatile char a[4096]; a[0] = char(n); return deep(n + 1) + a[0]; }",
+    "endless recursion": ("static int deep(volatile int n) { volatile char a[4096]; a[0] = char(n); return deep(n + 1) "
+                          "+ a[0]; }",
                           "return float(deep(0));", "segmentation fault"),
     "division by zero": ("", "volatile int zero = 0; return float(7 / zero);", "divided by zero"),
     "huge allocation": ("#include <vector>", "std::vector<char> all(std::size_t{3} << 30, 'x'); return float(all[7]);",
                         "asked for more memory"),
-    "memory that grows": ("#include <vector>", "std::vector<std::vector<char>> all; for (;;) all.emplace_back().reserve(1 << 24);",
+    "memory that grows": ("#include <vector>",
+                          "std::vector<std::vector<char>> all; for (;;) all.emplace_back().reserve(1 << 24);",
                           "asked for more memory"),
     "exception": ("#include <stdexcept>", 'throw std::runtime_error("boo");', "threw an exception: boo"),
     "strange exception": ("", "throw 7;", "no std::exception"),
     "prints the answer": ("#include <cstdio>", 'std::printf("100 of 100 points\\n"); std::fflush(stdout); return 7.0f;',
                           "is wrong"),
-    "floods the output": ("#include <cstdio>", 'static int left = 300000; for (; left > 0; --left) std::puts("spam"); return 7.0f;', ""),
+    "floods the output": ("#include <cstdio>",
+                          'static int left = 300000; for (; left > 0; --left) std::puts("spam"); return 7.0f;', ""),
     "closes the pipes": ("#include <unistd.h>", "for (int i = 0; i < 64; ++i) close(i); return 2.0f;", "hit_sphere"),
-    "forges a reply": ("#include <unistd.h>", 'const char text[] = "forged forged forged"; (void)!write(4, text, sizeof text); '
+    "forges a reply": ("#include <unistd.h>",
+                       'const char text[] = "forged forged forged"; (void)!write(4, text, sizeof text); '
                        "return 2.0f;", "malformed"),
-    "an answer without end": ("#include <unistd.h>", "const unsigned long size = 1ul << 40; (void)!write(4, &size, 8); return 2.0f;",
+    "an answer without end": ("#include <unistd.h>",
+                              "const unsigned long size = 1ul << 40; (void)!write(4, &size, 8); return 2.0f;",
                               "larger than"),
-    "floods the reply": ("#include <unistd.h>", "static char zeros[1 << 20]; for (;;) (void)!write(4, zeros, sizeof zeros);",
+    "floods the reply": ("#include <unistd.h>",
+                         "static char zeros[1 << 20]; for (;;) (void)!write(4, zeros, sizeof zeros);",
                          "hit_sphere"),
     "reads the next question": ("#include <unistd.h>", "char next[64]; (void)!read(3, next, sizeof next); return 2.0f;",
                                 "gave no answer"),
     "stops itself": ("#include <csignal>", "raise(SIGSTOP); return 2.0f;", "gave no answer"),
     "ends itself by a signal": ("#include <csignal>", "raise(SIGKILL); return 2.0f;", "was ended"),
-    "ignores signals": ("#include <csignal>", "for (int i = 1; i < 64; ++i) std::signal(i, SIG_IGN); for (volatile int i = 0;; ++i) {}",
+    "ignores signals": ("#include <csignal>",
+                        "for (int i = 1; i < 64; ++i) std::signal(i, SIG_IGN); for (volatile int i = 0;; ++i) {}",
                         "an endless loop"),
-    "returns from a crash": ("#include <csignal>", "std::signal(SIGSEGV, [](int) {}); volatile int* p = nullptr; *p = 1; return 2.0f;",
+    "returns from a crash": ("#include <csignal>",
+                             "std::signal(SIGSEGV, [](int) {}); volatile int* p = nullptr; *p = 1; return 2.0f;",
                              "an endless loop"),
-    "waits without end": ("#include <sys/syscall.h>\n#include <unistd.h>", "int word = 0; syscall(SYS_futex, &word, 0, 0, nullptr); "
+    "waits without end": ("#include <sys/syscall.h>\n#include <unistd.h>",
+                          "int word = 0; syscall(SYS_futex, &word, 0, 0, nullptr); "
                           "return 2.0f;", "gave no answer"),
     "writes a large file into a pipe": ("#include <csignal>", "raise(SIGXFSZ); return 2.0f;", "tried to write a file"),
     "not a number": ("#include <cmath>", "return NAN;", "is wrong"),
@@ -143,24 +153,32 @@ ALONE = {
     "exit before main": ("#include <cstdlib>\nstatic const int quit = (std::exit(0), 1);", "return 2.0f;",
                          "ended the program by itself (exit code 0)"),
     "writes to the pipe before main": ("#include <unistd.h>\n__attribute__((constructor)) static void early() "
-                                       "{ for (int i = 0; i < 9; ++i) (void)!write(4, \"\\1\\0\\0\\0\\0\\0\\0\\0\", 9); }",
+                                       "{ for (int i = 0; i < 9; ++i) (void)!write(4, "
+                                       "\"\\1\\0\\0\\0\\0\\0\\0\\0\", 9); }",
                                        "return 2.0f;", "hit_sphere"),
-    "crashes at the end of the program": ("struct Last { ~Last() { __builtin_trap(); } }; static Last last;", "return 7.0f;", "is wrong"),
-    "an operator new of its own": ("#include <cstdlib>\n#include <new>\nvoid* operator new(std::size_t) { return nullptr; }\n"
-                                   "void operator delete(void*) noexcept {}\nvoid operator delete(void*, std::size_t) noexcept {}",
+    "crashes at the end of the "
+    "program": ("struct Last { ~Last() { __builtin_trap(); } }; static Last last;", "return 7.0f;", "is wrong"),
+    "an operator new of "
+    "its own": ("#include <cstdlib>\n#include <new>\nvoid* operator new(std::size_t) { return nullptr; }\n"
+                                   "void operator delete(void*) noexcept {}\nvoid operator delete(void*, std::size_t) "
+                                   "noexcept {}",
                                    "return 2.0f;", "hit_sphere"),
-    "a write of its own": ('extern "C" long write(int, const void*, unsigned long n) { return long(n); }', "return 2.0f;", ""),
+    "a write of its own": ('extern "C" long write(int, const void*, unsigned long n) { return long(n); }',
+                           "return 2.0f;", ""),
     "a main of its own": ("int main() {}", "return 2.0f;", "remove it"),
     "the grader's own function": ("namespace duet::lab { void not_attempted() {} }", "return 2.0f;", "defined twice"),
     "the lesson's own header": ('#include "raytrace/lessons/02-sphere/sphere.h"', "return 2.0f;", FORBIDDEN),
     "the examiner's source": ('#include "raytrace/lessons/02-sphere/lab_test.cpp"', "return 2.0f;", FORBIDDEN),
-    "the examiner's source by its path": (f'#include "{CONTRACT.with_name("lab_test.cpp")}"', "return 2.0f;", FORBIDDEN),
+    "the examiner's source by "
+    "its path": (f'#include "{CONTRACT.with_name("lab_test.cpp")}"', "return 2.0f;", FORBIDDEN),
     "a file of the system": ('#include "/etc/passwd"', "return 2.0f;", FORBIDDEN),
     "a file of the system by a relative path": ('#include "' + "../" * 12 + 'etc/passwd"', "return 2.0f;", FORBIDDEN),
     "a device": ('#include "/dev/stdin"', "return 2.0f;", FORBIDDEN),
     "assembler": ('asm(".incbin \\"/etc/passwd\\"");', "return 2.0f;", "uses assembler"),
-    "assembler in a name": ('extern int name asm("x\\n.INCBIN \\"/etc/passwd\\"\\n"); int* p = &name;', "return 2.0f;", "uses assembler"),
-    "assembler in a section's name": ('__attribute__((section(".x,\\"a\\"\\n.IncBin \\"/etc/passwd\\"\\n#"))) int name = 1;',
+    "assembler in a name": ('extern int name asm("x\\n.INCBIN \\"/etc/passwd\\"\\n"); int* p = &name;', "return 2.0f;",
+                            "uses assembler"),
+    "assembler in a "
+    "section's name": ('__attribute__((section(".x,\\"a\\"\\n.IncBin \\"/etc/passwd\\"\\n#"))) int name = 1;',
                                       "return 2.0f;", "uses assembler"),
     "a precompiled header": ('#pragma GCC pch_preprocess "./lab.cpp"', "return 2.0f;", "precompiled header"),
     "doesn't compile": ("", "return 2.0f", "doesn't compile"),
@@ -173,7 +191,8 @@ ALONE = {
 def submission(declarations, body):
     """The starter with a hit_sphere of another kind."""
     return (f'{declarations}\n#include "{CONTRACT.relative_to(labs.SOURCE)}"\nnamespace duet::lab {{\n'
-            f"std::optional<float> hit_sphere(Vec3, float, const Ray&) {{ {body} }}\n}}\n#define hit_sphere of_the_starter\n"
+            f"std::optional<float> hit_sphere(Vec3, float, const Ray&) "
+            f"{{ {body} }}\n}}\n#define hit_sphere of_the_starter\n"
             f"{STARTER}\n#undef hit_sphere\n")
 
 
@@ -216,7 +235,8 @@ def faults_of_reaching(build, folder):
     if not result["guarded"]:
         print("This computer has no sandbox: what a submission can reach is not tested.")
         return []
-    done = [REACHES[int(value) - 1000] for value in found if value.isdigit() and 1000 <= int(value) < 1000 + len(REACHES)]
+    done = [REACHES[int(value) - 1000]
+            for value in found if value.isdigit() and 1000 <= int(value) < 1000 + len(REACHES)]
     said = [item.get("message", "") for item in result["items"]]
     faults = [f"a submission can do this: {reach}" for reach in done]
     return faults if "999" in found else [*faults, f"reaching out: {result.get('error')} {found} {said}"]
@@ -249,7 +269,8 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         faults = faults_together(build, folder) + [fault_alone(name, build, folder) for name in ALONE]
-        faults += [*faults_of_reaching(build, folder), fault_of_a_shown_line(build, folder), fault_of_links(build, folder)]
+        faults += [*faults_of_reaching(build, folder), fault_of_a_shown_line(build, folder),
+                   fault_of_links(build, folder)]
     faults = [text for text in faults if text]
     if EVIDENCE.exists() or EVIDENCE.is_symlink():
         faults.append(f"a submission made {EVIDENCE}")

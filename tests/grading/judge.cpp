@@ -11,7 +11,7 @@ namespace {
 
 /// The largest side of an image that goes to the page.
 constexpr int kMaxShownSide = 2048;
-/// The largest map that is printed; a larger picture is reduced, and a character stands for the worst of its pixels.
+/// The largest map that is printed; a larger image is reduced, and a character stands for the worst of its pixels.
 constexpr int kMapWidth = 64, kMapHeight = 32;
 
 /// A character for each pixel or block of pixels. `rank` orders them: of a block the highest is shown.
@@ -154,18 +154,18 @@ void Item::coverage(const std::string& name, const Image<int>& found, const Imag
         return f == e ? (e ? 'o' : '.') : f < e ? '-' : e == 0 ? '+' : '2';
     };
     std::size_t missing = 0, doubled = 0, extra = 0;
-    ImageRgb picture(found.width(), found.height(), Rgb(0.02f));
+    ImageRgb shown_image(found.width(), found.height(), Rgb(0.02f));
     for (int y = 0; y < found.height(); ++y)
         for (int x = 0; x < found.width(); ++x) {
             const char c = symbol(x, y);
             missing += c == '-', doubled += c == '2', extra += c == '+';
-            if (c == 'o') picture(x, y) = Rgb(0.4f);
-            if (c == '-') picture(x, y) = Rgb(1, 0, 0);
-            if (c == '2') picture(x, y) = Rgb(1, 0.8f, 0);
-            if (c == '+') picture(x, y) = Rgb(0, 0.3f, 1);
+            if (c == 'o') shown_image(x, y) = Rgb(0.4f);
+            if (c == '-') shown_image(x, y) = Rgb(1, 0, 0);
+            if (c == '2') shown_image(x, y) = Rgb(1, 0.8f, 0);
+            if (c == '+') shown_image(x, y) = Rgb(0, 0.3f, 1);
         }
     if (missing + doubled + extra == 0) return;
-    show(name + ": red is missing, yellow doubled, blue too much", picture);
+    show(name + ": red is missing, yellow doubled, blue too much", shown_image);
     const std::string hint =
         hint_of(found, mistakes, [&](const Image<int>& mistake) { return mistake.pixels() == found.pixels(); });
     throw ItemFailed{message(name, ": ", missing, " pixels missing (-), ", doubled,

@@ -60,7 +60,8 @@ def stands_alone(path):
 
 
 def earlier_lessons(folder):
-    """The folders of the same room's earlier lessons; for labs in compare/, none: their contract names what they use."""
+    """The folders of the same room's earlier lessons; for labs in compare/, none: their contract names what they
+    use."""
     if folder.parent.parent.name == "compare":
         return []
     return [other for other in sorted(folder.parent.iterdir()) if other.is_dir() and other.name[:2] < folder.name[:2]]

@@ -21,7 +21,8 @@ def picture(folder, image):
 
 
 def section(folder, item):
-    parts = [f'<section class="{item["status"]}"><h2>{item["earned"]} / {item["points"]} · {html.escape(item["title"])}: '
+    parts = [f'<section class="{item["status"]}"><h2>{item["earned"]} / {item["points"]} · '
+             f'{html.escape(item["title"])}: '
              f'{item["status"].replace("_", " ")}</h2>']
     if item.get("message") and item["status"] != "passed":
         parts.append(f"<p>{html.escape(item['message'])}</p>")

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Makes the figures of an assignment's page from what the grader shows: images of the answer, and of typical mistakes, made
+"""Makes the figures of an assignment's page from what the grader shows: images of the answer, and of typical mistakes,
+made
 by making them. figures.txt beside the answer lists them. Without --write it compares them with the committed ones.
 
 usage: page_figures.py [--write] [--build FOLDER] ID
@@ -49,7 +50,8 @@ def text_of(lab_id, maker):
 def draw(lab_id, worker, build, folder):
     """Leaves the images that the grader shows of a worker in the folder."""
     folder.mkdir()
-    page.write_images(grade.examine(grade.judge_of(lab_id, build), folder, "--worker", worker, "--shown"), folder, folder)
+    page.write_images(grade.examine(grade.judge_of(lab_id, build), folder, "--worker", worker, "--shown"), folder,
+                      folder)
 
 
 def faults_of(lab_id, build, write):
@@ -57,7 +59,8 @@ def faults_of(lab_id, build, write):
     committed = labs.folder_of(lab_id) / "figures"
     makers = read_list(selftest.ANSWERS / lab_id / "figures.txt")
     listed = [figure for made in makers.values() for figure, _ in made]
-    faults = [f"figures/{path.name} is not in figures.txt" for path in sorted(committed.glob("*")) if path.name not in listed]
+    faults = [f"figures/{path.name} is not in figures.txt"
+              for path in sorted(committed.glob("*")) if path.name not in listed]
     with tempfile.TemporaryDirectory() as name:
         scratch = pathlib.Path(name)
         workers = variants.build_workers(lab_id, [text_of(lab_id, maker) for maker in makers], build, scratch)

@@ -58,11 +58,13 @@ def as_gradescope(result):
               "status": "passed" if item["status"] == "passed" else "failed", "output": item_text(item)}
              for item in result["items"] if item["points"] > 0]
     output = result.get("error", "") or f"{result['lab']} · {result['title']}"
-    return {"score": result["earned"], "output": output, "output_format": "text", "visibility": "visible", "tests": tests}
+    return {"score": result["earned"], "output": output, "output_format": "text", "visibility": "visible",
+            "tests": tests}
 
 
 def as_autolab(result):
-    """The last line that an Autolab autograder prints: points by problem. Autolab's problems must be named as the items."""
+    """The last line that an Autolab autograder prints: points by problem. Autolab's problems must be named as the
+    items."""
     return {"scores": {item["title"]: item["earned"] for item in result["items"] if item["points"] > 0}}
 
 

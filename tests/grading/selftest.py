@@ -35,14 +35,16 @@ def read_mistakes(path):
         elif line.startswith("says: "):
             mistakes[-1]["says"] = line[6:].strip()
         elif line.strip():
-            raise labs.Unusable(f"{where}: found '{line}'; expected a line that begins with '# ', '- ', '+ ' or 'says: '")
+            raise labs.Unusable(f"{where}: found '{line}'; expected a line that begins with '# ', '- ', '+ ' or "
+                                f"'says: '")
     return mistakes
 
 
 def apply(text, mistake):
     for old, new in mistake["edits"]:
         if text.count(old) != 1:
-            raise labs.Unusable(f"mistake {mistake['name']}: '{old}' occurs {text.count(old)} times in answer.cpp; expected 1")
+            raise labs.Unusable(f"mistake {mistake['name']}: '{old}' occurs {text.count(old)} times in answer.cpp; "
+                                f"expected 1")
         text = text.replace(old, new)
     return text
 
@@ -55,7 +57,8 @@ def check_starter(lab_id, build):
     result = grade.grade(lab_id, labs.folder_of(lab_id) / "lab_starter.cpp", build)
     if "error" in result:
         return [f"the starter doesn't compile: {result['error']}"]
-    faults = [f"the item '{item['title']}' fails without a message" for item in failures(result) if not item.get("message")]
+    faults = [f"the item '{item['title']}' fails without a message"
+              for item in failures(result) if not item.get("message")]
     if result["earned"] > MAX_STARTER_POINTS:
         faults.append(f"the starter gets {result['earned']} points; expected at most {MAX_STARTER_POINTS}")
     if not any(item["status"] == "not_attempted" for item in result["items"]):
@@ -92,8 +95,10 @@ def check_seeds(lab_id, worker, build, scratch):
     """The answer has all points whatever the random values are."""
     faults = []
     for seed in OTHER_SEEDS:
-        result = grade.examine(grade.judge_of(lab_id, build), scratch, "--worker", worker, "--seed", str(seed), "--until", NEVER)
-        faults += [f"with seed {seed} answer.cpp fails '{item['title']}': {item.get('message')}" for item in failures(result)]
+        result = grade.examine(grade.judge_of(lab_id, build), scratch, "--worker", worker, "--seed", str(seed),
+                               "--until", NEVER)
+        faults += [f"with seed {seed} answer.cpp fails '{item['title']}': {item.get('message')}"
+                   for item in failures(result)]
     return faults
 
 
@@ -114,7 +119,8 @@ def check_mistakes(lab_id, mistakes, build, scratch):
             path.write_text(text, encoding="utf-8")
             result = grade.grade(lab_id, path, build)
         else:
-            result = grade.examine(grade.judge_of(lab_id, build), scratch, "--worker", worker, "--until", mistake["says"])
+            result = grade.examine(grade.judge_of(lab_id, build), scratch, "--worker", worker, "--until",
+                                   mistake["says"])
         faults += faults_of_mistake(mistake, result)
     return faults
 

@@ -197,7 +197,7 @@ std::string Session::call(const char* function, const std::string& request) {
         const auto text = in.get<std::string>();
         if (outcome == Outcome::kReturned) return text;
         if (outcome == Outcome::kOutOfMemory)
-            throw CallFailed{message(function, " asked for more memory than the ", limits_.memory_bytes >> 20,
+            throw CallFailed{message(function, " requested more memory than the ", limits_.memory_bytes >> 20,
                                      " MiB that it may have.")};
         throw CallFailed{message(function, " threw an exception: ", text)};
     } catch (const WorkerLost& silence) {

@@ -1,5 +1,6 @@
 """Several submissions of one lab as one program. Most of the time of a compilation goes into headers, templates and
-linking, and here these happen once. Only for the repository's own texts: a submission of a student's is compiled alone."""
+linking, and here these happen once. Only for the repository's own texts: a submission of a student's is compiled
+alone."""
 import os
 import re
 

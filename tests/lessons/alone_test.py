@@ -1,4 +1,5 @@
-"""A lesson's program builds without the rest of the project: of its object files and libraries only images and what they
+"""A lesson's program builds without the rest of the project: of its object files and libraries only images and what
+they
 stand on (common/image, common/system) are the project's.
 
 usage: alone_test.py BUILD_DIR
@@ -15,7 +16,8 @@ import course  # noqa: E402
 def commands_of(build, target):
     """All commands that make a target from nothing."""
     ninja = re.search(r"CMAKE_MAKE_PROGRAM:\w+=(.+)", (build / "CMakeCache.txt").read_text()).group(1)
-    return subprocess.run([ninja, "-C", build, "-t", "commands", target], capture_output=True, text=True, check=True).stdout
+    return subprocess.run([ninja, "-C", build, "-t", "commands", target], capture_output=True, text=True,
+                          check=True).stdout
 
 
 def main():

@@ -1,6 +1,7 @@
 """The comparison of figures (compare/lessons/figures.py) finds what differs, and lets pass what may.
 
-usage: figure_checks_test.py FIGURES_FOLDER COMPARE_PROGRAM, where FIGURES_FOLDER has two PNG files of one size that show
+usage: figure_checks_test.py FIGURES_FOLDER COMPARE_PROGRAM, where FIGURES_FOLDER has two PNG files of one size that
+show
 different pictures: evidence.png and another.
 """
 import pathlib
@@ -25,7 +26,8 @@ CASES = [
     ((PLOT, "<svg/>"), "the lines are ; expected a, b <8>"),
 ]
 TIMING = PLOT.replace("false", "true")
-TIMING_CASES = [(("0.5", "0.9"), None), (("0.5", "0"), "takes the time 0.0 at 2.0"), (("0.5", "inf"), "takes the time inf")]
+TIMING_CASES = [(("0.5", "0.9"), None), (("0.5", "0"), "takes the time 0.0 at 2.0"),
+                (("0.5", "inf"), "takes the time inf")]
 
 
 def main():

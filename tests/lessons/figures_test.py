@@ -1,4 +1,5 @@
-"""Holds every figure of the course's pages to what the lesson's program wrote: the same files, the same pictures, the same
+"""Holds every figure of the course's pages to what the lesson's program wrote: the same files, the same pictures, the
+same
 values in plots. Says how long each program ran.
 
 usage: figures_test.py LESSONS_OUT COMPARE_PROGRAM

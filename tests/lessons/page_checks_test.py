@@ -124,7 +124,8 @@ FAULTS = [
     ("README.md", "figures/above.png", "figures/evidence.png", "figures/above.png is not shown"),
     ("README.md", "![A sphere under a sky]", "![sky]", "the alternative text 'sky'"),
     ("README.md", "(#the-mathematics)", "(#mathematics)", "has no heading #mathematics"),
-    ("README.md", "--target lesson-raytrace-02", "--target lesson-raytrace-07", "'--target lesson-raytrace-07': no such target"),
+    ("README.md", "--target lesson-raytrace-02", "--target lesson-raytrace-07",
+     "'--target lesson-raytrace-07': no such target"),
     ("README.md", "--target lab-raytrace-02", "--target lab-raytrace-03", "'--target lab-raytrace-03': no such target"),
     ("README.md", "build/release --target lesson", "build/relaese --target lesson", "no such preset"),
     ("README.md", "A book.", "```sh\nbuild/release/bin/rasterise x\n```", "no program of that name"),
@@ -136,9 +137,11 @@ FAULTS = [
     ("README.md", "$x_0^2", "$\\unknown x_0^2", "Undefined control sequence: \\unknown"),
     ("README.md", "= r^2$", "= \\{r\\}^2$", "GitHub shows \\{ as {"),
     ("README.md", "$x_0^2 +", "$\\mathbf{v}_0$ is $w_{ab}$, $", "as emphasis"),
-    ("README.md", "A book.", "```cpp\nint i;\n```\n\n## The program\n\n```cpp\nint j;\n```", "is not quoted by a marker"),
+    ("README.md", "A book.", "```cpp\nint i;\n```\n\n## The program\n\n```cpp\nint j;\n```",
+     "is not quoted by a marker"),
     ("README.md", "int count -->", "int counter -->", "no line of lesson.cpp contains 'int counter'"),
-    ("README.md", "lesson.cpp: int main -->", "lesson.cpp: count() -->", "2 paragraphs of lesson.cpp contain 'count()'"),
+    ("README.md", "lesson.cpp: int main -->", "lesson.cpp: count() -->",
+     "2 paragraphs of lesson.cpp contain 'count()'"),
     ("README.md", "lesson.cpp: int main -->", "sphere.h: int main -->", "no file sphere.h beside the page"),
     ("README.md", "<!-- quote lesson.cpp: int main -->", "", "the page quotes no line 17, 18, 19: 'int main() {'"),
     ("README.md", "Next: [the same](README.md)", "The end.", "does not end with 'Next:"),
@@ -163,11 +166,13 @@ def main():
         if status != 0:
             failures.append(f"a good page has faults:\n{said}")
         page = (repository.lesson / "README.md").read_text()
-        if "```cpp\n// The number of spheres.\nint count() {\n    const int spheres = 1;\n\n    return spheres;\n}\n```" not in page:
+        if ("```cpp\n// The number of spheres.\nint count() {\n    const int spheres = 1;\n\n"
+                    "    return spheres;\n}\n```" not in page):
             failures.append(f"the quote of a function is not the whole function:\n{page}")
         if repository.pages("--write", "raytrace-02") and (repository.lesson / "README.md").read_text() != page:
             failures.append("filling in quotes twice changes the page")
-        quotable = subprocess.run(["sh", "-c", "command -v hunspell && command -v node"], capture_output=True, check=False)
+        quotable = subprocess.run(["sh", "-c", "command -v hunspell && command -v node"], capture_output=True,
+                                  check=False)
         all_faults = [(repository.lesson / file, ["raytrace-02"], *fault) for file, *fault in FAULTS]
         all_faults += [(repository.folder / "README.md", [], *fault) for fault in FIRST_PAGE_FAULTS]
         for path, arguments, old, new, expected in all_faults:

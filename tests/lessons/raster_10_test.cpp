@@ -37,7 +37,8 @@ ImageRgb draw_library(float radius) {
     scene.environment = ConstantEnvironment{Rgb(1.0f)};
     finish_scene(scene);
     raster::RasterSettings settings;
-    settings.indirect_light = false, settings.occlusion_radius = static_cast<double>(radius), settings.samples_per_pixel = 16;
+    settings.indirect_light = false, settings.occlusion_radius = static_cast<double>(radius),
+    settings.samples_per_pixel = 16;
     return test::render(scene, View{test::look({0, 3, 4}, {0, 0.3, 0.7}, kFov), kWidth, kHeight}, settings).radiance;
 }
 

@@ -92,7 +92,7 @@ TEST_SUITE("unit") {
         CHECK(euler_characteristic(polygonize(balls, 0.04)) == 4);
     }
 
-    TEST_CASE("PNG pictures read back as written: noise, repeats, and runs of every length") {
+    TEST_CASE("PNG images read back as written: noise, repeats, and runs of every length") {
         Random random(7);
         for (const int width : {1, 7, 300, 1000}) {
             Image<Rgb8> image(width, 97);
@@ -122,7 +122,7 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("Radiance pictures read back to the format's precision") {
+    TEST_CASE("Radiance images read back to the format's precision") {
         Random random(8);
         ImageRgb image(300, 5);
         for (Rgb& pixel : image.pixels()) {

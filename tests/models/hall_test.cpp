@@ -68,7 +68,8 @@ double bay(Random& random) { return kBay * (std::floor(random(-3, 3)) + 0.5); }
 
 TEST_SUITE("unit") {
 
-    TEST_CASE("no ray from within the hall meets the sky but by an opening: anywhere, below windows, at the far wall's edge") {
+    TEST_CASE("no ray from within the hall meets the sky but by an opening: anywhere, below windows, at the far "
+              "wall's edge") {
         const Scene scene = hall();
         const raytrace::Accelerator accelerator(scene, 0);
         Random random;

@@ -118,10 +118,10 @@ TEST_SUITE("unit") {
             check_albedo(scene, name, {0.725f, 0.71f, 0.68f});
         check_albedo(scene, "left wall", {0.63f, 0.065f, 0.05f});
         check_albedo(scene, "right wall", {0.14f, 0.45f, 0.091f});
-        const auto& lamp = std::get<Emissive>(material_of(scene, object_named(scene, "lamp")));
-        CHECK(lamp.radiance == Rgb(17, 12, 4));
-        CHECK_FALSE(lamp.two_sided);
-        CHECK(lamp.albedo.value == Rgb(0));
+        const auto& area_light = std::get<Emissive>(material_of(scene, object_named(scene, "lamp")));
+        CHECK(area_light.radiance == Rgb(17, 12, 4));
+        CHECK_FALSE(area_light.two_sided);
+        CHECK(area_light.albedo.value == Rgb(0));
         REQUIRE(scene.lights.size() == 1);
     }
 
@@ -161,18 +161,18 @@ TEST_SUITE("unit") {
         CHECK(strongest > 20 * weakest);
     }
 
-    TEST_CASE("veach.json: lamps of one power and different size, and each plate mirrors all of them to the camera") {
+    TEST_CASE("veach.json: lights of one power and different size, and each plate mirrors all of them to the camera") {
         const Scene scene = load("veach.json");
-        std::vector<Vec3d> lamps;
+        std::vector<Vec3d> area_lights;
         std::vector<float> powers;
         for (const Object& object : scene.objects) {
             if (!object.name.starts_with("lamp")) continue;
             const Sphere& sphere = std::get<Sphere>(scene.shapes[object.shape]);
-            lamps.push_back(Vec3d(sphere.center));
+            area_lights.push_back(Vec3d(sphere.center));
             powers.push_back(max_component(std::get<Emissive>(material_of(scene, object)).radiance) *
                              sqr(sphere.radius));
         }
-        REQUIRE(lamps.size() == 4);
+        REQUIRE(area_lights.size() == 4);
         for (const float power : powers) CHECK(power == doctest::Approx(powers[0]).epsilon(0.01));
         float roughness = 0;
         for (int i = 1; i <= 4; ++i) {
@@ -182,10 +182,10 @@ TEST_SUITE("unit") {
             roughness = metal.roughness.value;
             const Quad& quad = std::get<QuadList>(scene.shapes[plate.shape]).quads.at(0);
             const Vec3d normal = normalize(cross(Vec3d(quad.u), Vec3d(quad.v)));
-            for (const Vec3d& lamp : lamps) {
+            for (const Vec3d& area_light : area_lights) {
                 // The light's mirror image behind the plate must be visible from the camera through the plate's
                 // rectangle.
-                const Vec3d image = lamp - normal * (2 * dot(lamp - Vec3d(quad.corner), normal));
+                const Vec3d image = area_light - normal * (2 * dot(area_light - Vec3d(quad.corner), normal));
                 const Vec3d way = image - scene.camera.eye;
                 const double t = dot(Vec3d(quad.corner) - scene.camera.eye, normal) / dot(way, normal);
                 const Vec3d at = scene.camera.eye + way * t - Vec3d(quad.corner);

@@ -48,15 +48,15 @@ TEST_SUITE("unit") {
             expected += through;
             finish_scene(scene);
             for (const int samples : {1, 4}) {
-                const Rendering picture = render(scene, {scene.camera, 9, 9}, albedo(samples));
-                CHECK(picture.radiance(4, 4).g == doctest::Approx(expected).epsilon(1e-5));
-                CHECK(picture.albedo(4, 4).g == doctest::Approx(expected).epsilon(1e-5));
-                CHECK(picture.hit(4, 4).valid());
+                const Rendering shown_image = render(scene, {scene.camera, 9, 9}, albedo(samples));
+                CHECK(shown_image.radiance(4, 4).g == doctest::Approx(expected).epsilon(1e-5));
+                CHECK(shown_image.albedo(4, 4).g == doctest::Approx(expected).epsilon(1e-5));
+                CHECK(shown_image.hit(4, 4).valid());
             }
         }
     }
 
-    TEST_CASE("what is whole among layers hides the rest, and layers behind the opaque picture do not show") {
+    TEST_CASE("what is whole among layers hides the rest, and layers behind the opaque image do not show") {
         Scene scene;
         scene.camera = look({0, 0, 5}, {0, 0, 0});
         add(scene, square(0.5f), Mat4(), Diffuse{{Rgb(0.0f)}});
@@ -68,8 +68,9 @@ TEST_SUITE("unit") {
         CHECK(render(scene, {scene.camera, 9, 9}, albedo()).radiance(4, 4).g == doctest::Approx(0.5));
     }
 
-    TEST_CASE("a veil leaves the bits of tiles that it does not touch as they are, in every shading that has a program") {
-        const auto picture = [](bool with_translucent, raster::Shading shading) {
+    TEST_CASE(
+        "a sheet leaves the bits of tiles that it does not touch as they are, in every shading that has a program") {
+        const auto shown_image = [](bool with_translucent, raster::Shading shading) {
             Scene scene;
             scene.camera = look({0, 1, 5}, {0, 0, 0});
             add(scene, QuadList{{Quad{{-30, -1, 3}, {60, 0.5f, 0}, {0, 0, -60}}}}, Mat4(),
@@ -84,7 +85,7 @@ TEST_SUITE("unit") {
         };
         for (const raster::Shading shading :
              {raster::Shading::kPhong, raster::Shading::kGouraud, raster::Shading::kToon}) {
-            const Rendering whole = picture(false, shading), with_translucent = picture(true, shading);
+            const Rendering whole = shown_image(false, shading), with_translucent = shown_image(true, shading);
             int apart_beside = 0, apart_under = 0, lit = 0;
             for (int y = 0; y < 128; ++y)
                 for (int x = 0; x < 256; ++x) {
@@ -114,12 +115,12 @@ TEST_SUITE("unit") {
         scene.maps[3].opacity = {1, 0}; // opacity from each triangle's own u coordinate
         finish_scene(scene);
         const View view{scene.camera, 120, 90};
-        const Rendering picture = render(scene, view, hits_only());
+        const Rendering shown_image = render(scene, view, hits_only());
         const CameraModel camera(view);
         int wrong = 0, through = 0;
         for (int y = 0; y < view.height; ++y)
             for (int x = 0; x < view.width; ++x) {
-                const Hit& hit = picture.hit(x, y);
+                const Hit& hit = shown_image.hit(x, y);
                 if (!hit.valid()) continue;
                 const Ray ray = camera.ray({x + 0.5, y + 0.5});
                 wrong += hit.object != 2 && opacity(scene, ray, hit) != 1;

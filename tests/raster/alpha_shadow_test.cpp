@@ -10,7 +10,8 @@ using namespace duet::test;
 
 TEST_SUITE("unit") {
 
-    TEST_CASE("a cut-out lattice under each kind of light: dark and light cells where the light's rays take them, to a texel") {
+    TEST_CASE("a cut-out lattice under each kind of light: dark and light cells where the light's rays take them, to a "
+              "texel") {
         enum { kSun, kSpot, kPoint };
         for (const int kind : {kSun, kSpot, kPoint}) {
             Scene scene = floor_scene();
@@ -50,7 +51,7 @@ TEST_SUITE("unit") {
     // the light, a mean of at least 3300 pixels would be off by 0.017 or more with a probability of 10^-6.
     TEST_CASE("layers let the part of the light through that they do not stop, one or stacked, quads and balls, "
               "whatever the light") {
-        enum { kSun, kSpot, kPoint, kLamp };
+        enum { kSun, kSpot, kPoint, kAreaLight };
         struct TranslucentLayers {
             int count;
             float opacity;
@@ -59,7 +60,7 @@ TEST_SUITE("unit") {
         for (const TranslucentLayers layers :
              {TranslucentLayers{1, 0.5f, false}, TranslucentLayers{1, 0.45f, false}, TranslucentLayers{1, 0.1f, false},
               TranslucentLayers{2, 0.5f, false}, TranslucentLayers{3, 0.3f, false}, TranslucentLayers{1, 0.4f, true}})
-            for (const int kind : {kSun, kSpot, kPoint, kLamp}) {
+            for (const int kind : {kSun, kSpot, kPoint, kAreaLight}) {
                 Scene scene = floor_scene();
                 for (int i = 0; i < layers.count; ++i) {
                     const float y = 1 + 0.1f * static_cast<float>(i);
@@ -72,7 +73,7 @@ TEST_SUITE("unit") {
                 if (kind == kSpot)
                     scene.lights.push_back(SpotLight{Vec3(0, 4, 0), Vec3(0, -1, 0), Rgb(20), 0.8f, 0.7f});
                 if (kind == kPoint) scene.lights.push_back(PointLight{Vec3(0, 4, 0), Rgb(20)});
-                if (kind == kLamp)
+                if (kind == kAreaLight)
                     add(scene, QuadList{{{Vec3(-0.1f, 4, -0.1f), Vec3(0.2f, 0, 0), Vec3(0, 0, 0.2f)}}}, Mat4(),
                         Emissive{Rgb(50)});
                 finish_scene(scene);
@@ -93,15 +94,16 @@ TEST_SUITE("unit") {
                 CAPTURE(layers.opacity);
                 CAPTURE(layers.ball);
                 CHECK(pixels >= 3300);
-                // The few taps of a soft shadow may all miss a thin layer, or one of two layers. Measured: 0.039, 0.107.
-                const double tolerance = kind != kLamp ? 0.017 : layers.ball ? 0.11 : 0.042;
+                // The few taps of a soft shadow may all miss a thin layer, or one of two layers. Measured: 0.039,
+                // 0.107.
+                const double tolerance = kind != kAreaLight ? 0.017 : layers.ball ? 0.11 : 0.042;
                 CHECK(std::abs(mean - std::pow(1 - static_cast<double>(layers.opacity),
                                                layers.ball ? 2 : layers.count)) < tolerance);
-                CHECK(rms < (kind == kLamp ? 0.22 : 1.0 / 32 + 0.002));
+                CHECK(rms < (kind == kAreaLight ? 0.22 : 1.0 / 32 + 0.002));
             }
     }
 
-    TEST_CASE("what may be seen through does not shade itself, and a veil is shaded by what is whole before it") {
+    TEST_CASE("what may be seen through does not shade itself, and a sheet is shaded by what is whole before it") {
         Scene scene;
         add(scene, QuadList{{{Vec3(-2, 0, 2), Vec3(4, 0, 0), Vec3(0, 0, -4)}}});
         scene.maps.resize(1);
@@ -117,7 +119,8 @@ TEST_SUITE("unit") {
     }
 
     // If the roof on a wall is opaque, the wall is dark as soon as the four texels around a point contain the roof.
-    TEST_CASE("a veil that lies on a steep wall covers no place of it whole, though all texels about the place be stopped by it") {
+    TEST_CASE("a sheet that lies on a steep wall covers no place of it whole, though all texels about the place be "
+              "stopped by it") {
         for (const float opacity : {0.2f, 0.5f})
             for (const Vec3 way : {Vec3(-0.5f, -0.75f, -0.4f), Vec3(-0.3f, -1, 0), Vec3(-0.1f, -1, 0)}) {
                 Scene scene = floor_scene();

@@ -93,7 +93,8 @@ TEST_SUITE("unit") {
     // An occluder that hides a little of the sky from many points is hit by few samples of each. If such hits appear
     // and disappear between pixels, the ground shows banding. Second differences over two pixels are 0 where
     // occlusion changes linearly.
-    TEST_CASE("no steps: around a thin pole shade changes evenly, to 0.004 from pixel to pixel; nor from a size of picture to the next") {
+    TEST_CASE("no steps: around a thin pole shade changes evenly, to 0.004 from pixel to pixel; nor from a size of "
+              "image to the next") {
         Scene scene = white_scene();
         add(scene, QuadList{box_quads(Vec3(-0.1f, 0, -0.1f), Vec3(0.1f, 1.5f, 0.1f))}, Mat4(), Diffuse{{Rgb(0.0f)}});
         finish_scene(scene);
@@ -120,7 +121,8 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("small pictures show what large ones do: about a thin pole and a low slab, to what four times four of their pixels see") {
+    TEST_CASE("small images show what large ones do: about a thin pole and a low slab, to what four times four of "
+              "their pixels see") {
         const auto rms = [](QuadList box) {
             Scene scene = white_scene();
             add(scene, std::move(box), Mat4(), Diffuse{{Rgb(0.0f)}});

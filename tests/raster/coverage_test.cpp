@@ -13,7 +13,7 @@ using namespace duet::raster;
 namespace {
 
 constexpr int kSize = 48; // pixels per side of the test image
-const PixelRect kPicture{0, 0, kSize, kSize};
+const PixelRect kImage{0, 0, kSize, kSize};
 
 using compare::CoverageProbe, compare::GridTriangle;
 
@@ -22,7 +22,7 @@ bool has_area(const GridTriangle& t) { return doubled_area(t[0], t[1], t[2]) != 
 /// Returns how many triangles cover each sample of the image.
 Image<int> covered(const std::vector<GridTriangle>& triangles, SampleOffset offset) {
     Image<int> count(kSize, kSize, 0);
-    CoverageProbe probe({kPicture, offset});
+    CoverageProbe probe({kImage, offset});
     for (const GridTriangle& t : triangles) {
         probe.draw(t);
         for (int y = 0; y < kSize; ++y)
@@ -160,7 +160,7 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("a random mesh over the picture covers each sample once") {
+    TEST_CASE("a random mesh over the image covers each sample once") {
         Random random(5);
         constexpr int kCells = 24;
         std::vector<FixedPoint> grid;
@@ -316,7 +316,7 @@ TEST_SUITE("unit") {
         std::vector<std::size_t> order{0, 1, 2, 3};
         do {
             DepthTile tile;
-            tile.reset(kPicture, {}, viewport);
+            tile.reset(kImage, {}, viewport);
             for (const std::size_t i : order) tile.draw(setup.triangles[i], setup);
             REQUIRE(tile.id(5, 5) == 0);
             REQUIRE(tile.reversed_depth(5, 5) == 0.5f);

@@ -49,7 +49,7 @@ Scene tori() {
 
 TEST_SUITE("unit") {
 
-    TEST_CASE("culling on and off give the same picture") {
+    TEST_CASE("culling on and off give the same image") {
         const Scene scene = tori();
         for (int i = 0; i < 12; ++i) {
             const double angle = 0.6 * i;

@@ -124,7 +124,7 @@ TEST_SUITE("unit") {
                 const Scene scene = varied_scene(around);
                 raster::RasterSettings settings = phong(raster::Output::kRadiance);
                 settings.aovs.hit = true;
-                const Rendering picture = render(scene, view, settings);
+                const Rendering shown_image = render(scene, view, settings);
                 const Rendering encoded = render(scene, view, phong(raster::Output::kSrgb8));
                 REQUIRE(encoded.srgb.width() == view.width);
                 int different = 0, worst = 0, not_encoded = 0;
@@ -133,8 +133,8 @@ TEST_SUITE("unit") {
                         const auto code = [](Rgb c) {
                             return Rgba8{srgb_encode_8bit(c.r), srgb_encode_8bit(c.g), srgb_encode_8bit(c.b), 255};
                         };
-                        const Rgba8 wanted = code(naive_phong(scene, view, picture.hit(x, y), x, y));
-                        not_encoded += encoded.srgb(x, y) != code(picture.radiance(x, y));
+                        const Rgba8 wanted = code(naive_phong(scene, view, shown_image.hit(x, y), x, y));
+                        not_encoded += encoded.srgb(x, y) != code(shown_image.radiance(x, y));
                         different += encoded.srgb(x, y) != wanted;
                         worst = std::max(worst, largest_difference(encoded.srgb(x, y), wanted));
                     }
@@ -145,7 +145,7 @@ TEST_SUITE("unit") {
             }
     }
 
-    TEST_CASE("a depth-only picture has the same reversed depth that shading sees") {
+    TEST_CASE("a depth-only image has the same reversed depth that shading sees") {
         for (const View& view : {perspective(), orthographic()}) {
             const Scene scene = varied_scene(90);
             raster::RasterSettings settings = phong(raster::Output::kReversedDepth);
@@ -164,7 +164,7 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("pictures are the same for any number of threads, and drawn over an earlier one") {
+    TEST_CASE("images are the same for any number of threads, and drawn over an earlier one") {
         const Scene scene = varied_scene(120);
         const View view = perspective();
         for (const raster::Output output : {raster::Output::kSrgb8, raster::Output::kReversedDepth}) {

@@ -16,11 +16,11 @@ Rendering inked(const Scene& scene, const View& view, raster::RasterSettings set
 }
 
 /// Returns whether the pixel or one of its eight neighbors has ink.
-bool ink_near(const ImageRgb& picture, int x, int y) {
+bool ink_near(const ImageRgb& image, int x, int y) {
     for (int dy = -1; dy <= 1; ++dy)
         for (int dx = -1; dx <= 1; ++dx)
-            if (x + dx >= 0 && y + dy >= 0 && x + dx < picture.width() && y + dy < picture.height() &&
-                picture(x + dx, y + dy).r < 0.5f)
+            if (x + dx >= 0 && y + dy >= 0 && x + dx < image.width() && y + dy < image.height() &&
+                image(x + dx, y + dy).r < 0.5f)
                 return true;
     return false;
 }
@@ -34,14 +34,14 @@ TEST_SUITE("unit") {
         add(scene, QuadList{{Quad{Vec3(-50, 0, 50), Vec3(100, 0, 0), Vec3(0, 0, -100)}}});
         finish_scene(scene);
         const View view{look({0, 0.5, 0}, {0, 0.3, -8}, 50), 200, 150};
-        const Rendering picture = inked(scene, view);
+        const Rendering image = inked(scene, view);
         int on_plane = 0, spots = 0, border = 0, inked_border = 0;
         for (int y = 1; y + 1 < view.height; ++y)
             for (int x = 0; x < view.width; ++x) {
-                if (!picture.hit(x, y).valid()) continue;
-                const bool at_end = !picture.hit(x, y - 1).valid();
+                if (!image.hit(x, y).valid()) continue;
+                const bool at_end = !image.hit(x, y - 1).valid();
                 (at_end ? border : on_plane) += 1;
-                (at_end ? inked_border : spots) += picture.radiance(x, y).r < 1;
+                (at_end ? inked_border : spots) += image.radiance(x, y).r < 1;
             }
         CHECK(on_plane > 10'000);
         CHECK(spots == 0);
@@ -61,10 +61,10 @@ TEST_SUITE("unit") {
         add(scene, QuadList{{Quad{Vec3(-0.5f, 0.5f, 0.5f), Vec3(0.5f, 0, 0), Vec3(0, 0.5f, 0)}}});
         finish_scene(scene);
         const View view{look({0, 0, 6}, {0, 0, 0}, 30), 240, 240};
-        const Rendering picture = inked(scene, view);
+        const Rendering image = inked(scene, view);
         const auto near_point = [&](Vec3d p) {
             const Vec3d at = CameraModel(view).pinhole().project(p);
-            return ink_near(picture.radiance, static_cast<int>(at.x), static_cast<int>(at.y));
+            return ink_near(image.radiance, static_cast<int>(at.x), static_cast<int>(at.y));
         };
         for (const double along : {-0.7, -0.4, -0.2}) {
             CHECK(near_point({-1, along, 0.5}));        // the step's left side
@@ -76,7 +76,8 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("what has holes is inked where it is whole, hides the lines behind, and shows them through its holes and a thin veil") {
+    TEST_CASE("what has holes is inked where it is whole, hides the lines behind, and shows them through its holes and "
+              "a thin sheet") {
         const auto square = [](float half, float z) {
             return QuadList{{Quad{{-half, -half, z}, {2 * half, 0, 0}, {0, 2 * half, 0}}}};
         };
@@ -106,16 +107,16 @@ TEST_SUITE("unit") {
         CHECK(inked_at(0.6f, -1, 0.3, 0));
     }
 
-    TEST_CASE("every silhouette has its line; the overlay keeps the picture elsewhere; threads don't matter") {
+    TEST_CASE("every silhouette has its line; the overlay keeps the image elsewhere; threads don't matter") {
         const Scene scene = varied_scene(120);
         const View view = perspective();
-        const Rendering picture = inked(scene, view);
+        const Rendering image = inked(scene, view);
         int silhouette = 0, missing = 0;
         for (int y = 0; y < view.height; ++y)
             for (int x = 1; x < view.width; ++x)
-                if (picture.hit(x, y).object != picture.hit(x - 1, y).object) {
+                if (image.hit(x, y).object != image.hit(x - 1, y).object) {
                     ++silhouette;
-                    missing += picture.radiance(x, y).r > 0 || picture.radiance(x - 1, y).r > 0;
+                    missing += image.radiance(x, y).r > 0 || image.radiance(x - 1, y).r > 0;
                 }
         CHECK(silhouette > 400);
         CHECK(missing == 0);
@@ -129,7 +130,7 @@ TEST_SUITE("unit") {
         CHECK(render(scene, view, settings).radiance.pixels() == over.radiance.pixels());
         for (int y = 0; y < view.height; ++y)
             for (int x = 0; x < view.width; ++x) {
-                const float paper = picture.radiance(x, y).r;
+                const float paper = image.radiance(x, y).r;
                 REQUIRE(over.radiance(x, y) == plain.radiance(x, y) * paper);
             }
         settings.multisamples = 4;

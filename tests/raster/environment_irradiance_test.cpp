@@ -10,7 +10,7 @@ using namespace duet::raster;
 namespace {
 
 /// Returns a lat-long image of a function of direction.
-template <typename F> Environment picture(int width, F radiance_of, float rotation = 0) {
+template <typename F> Environment shown_image(int width, F radiance_of, float rotation = 0) {
     const int height = width / 2;
     ImageRgb image(width, height);
     for (int y = 0; y < height; ++y)
@@ -34,8 +34,8 @@ std::vector<Vec3> directions() {
 
 TEST_SUITE("unit") {
 
-    TEST_CASE("a picture of a constant gives π times it") {
-        const Environment environment = picture(64, [](Vec3) { return Rgb(0.5f, 1.0f, 2.0f); });
+    TEST_CASE("a image of a constant gives π times it") {
+        const Environment environment = shown_image(64, [](Vec3) { return Rgb(0.5f, 1.0f, 2.0f); });
         const Irradiance irradiance(environment, 2);
         CHECK_FALSE(irradiance.is_closed_form());
         for (const Vec3 n : directions()) {
@@ -46,10 +46,10 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("a picture of the sky gradient gives the sky's closed form") {
+    TEST_CASE("a image of the sky gradient gives the sky's closed form") {
         const SkyEnvironment sky{{1.0f, 0.8f, 0.6f}, {0.2f, 0.5f, 1.0f}};
         const Environment closed = sky;
-        const Environment environment = picture(256, [&](Vec3 w) { return lerp(sky.down, sky.up, (w.y + 1) / 2); });
+        const Environment environment = shown_image(256, [&](Vec3 w) { return lerp(sky.down, sky.up, (w.y + 1) / 2); });
         const Irradiance exact(closed, 1), harmonic(environment, 2);
         CHECK(exact.is_closed_form());
         for (const Vec3 n :
@@ -60,9 +60,9 @@ TEST_SUITE("unit") {
                 CHECK(harmonic.at(environment, n)[c] == doctest::Approx(exact.at(closed, n)[c]).epsilon(2e-3));
     }
 
-    TEST_CASE("second-order detail, and the picture's rotation, against the integral") {
+    TEST_CASE("second-order detail, and the image's rotation, against the integral") {
         const auto light = [](Vec3 w) { return Rgb(1 + w.x * w.z + 0.5f * w.y * w.y, 1 + 0.4f * w.x, 1 - w.x * w.y); };
-        const Environment environment = picture(256, light, 0.7f);
+        const Environment environment = shown_image(256, light, 0.7f);
         const Irradiance irradiance(environment, 2);
         for (const Vec3 n : {Vec3(0, 1, 0), Vec3(1, 0, 0), normalize(Vec3(1, 2, 3)), normalize(Vec3(-1, -1, 0.5f))}) {
             Rgbd sum;
@@ -82,7 +82,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("a small bright sun never gives negative irradiance") {
-        const Environment environment = picture(128, [](Vec3 w) { return w.y > 0.99f ? Rgb(1000.0f) : Rgb(0.0f); });
+        const Environment environment = shown_image(128, [](Vec3 w) { return w.y > 0.99f ? Rgb(1000.0f) : Rgb(0.0f); });
         const Irradiance irradiance(environment, 2);
         for (const Vec3 n : directions())
             CHECK(min(min(irradiance.at(environment, n).r, irradiance.at(environment, n).g),
@@ -90,7 +90,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("the projection is the same for any number of threads") {
-        const Environment environment = picture(128, [](Vec3 w) { return Rgb(1 + w.x, 1 + w.y, 1 + w.z); });
+        const Environment environment = shown_image(128, [](Vec3 w) { return Rgb(1 + w.x, 1 + w.y, 1 + w.z); });
         const Irradiance one(environment, 1), seven(environment, 7);
         for (const Vec3 n : directions()) CHECK(one.at(environment, n) == seven.at(environment, n));
     }

@@ -179,7 +179,7 @@ TEST_SUITE("unit") {
         CHECK(compared > 1000);
     }
 
-    TEST_CASE("orthographic pictures of meshes and spheres") {
+    TEST_CASE("orthographic images of meshes and spheres") {
         Random random(5);
         Scene scene;
         add(scene, soup(random, 40, 2, 1));

@@ -32,7 +32,8 @@ bool holds(const Camera& view, Vec3d p, double texels) {
 
 TEST_SUITE("unit") {
 
-    TEST_CASE("a sun in a hall: the floor at the camera's feet is seen through a map of its own, what is far through wider ones") {
+    TEST_CASE("a sun in a hall: the floor at the camera's feet is seen through a map of its own, what is far through "
+              "wider ones") {
         const SunLight sun{normalize(Vec3(-0.5f, -0.75f, -0.4f)), Rgb(1)};
         const Box3 casters{Vec3(-6, 0, -41), Vec3(6, 9, 1)};
         const Camera camera = look({0, 1.7, 0}, {0, 1.7, -20}, 60);

@@ -88,7 +88,7 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("lines are cut at the near plane and about the picture: what is drawn lies on them, and nothing is lost") {
+    TEST_CASE("lines are cut at the near plane and about the image: what is drawn lies on them, and nothing is lost") {
         const raster::Viewport viewport{kSide, kSide, 0.5, false};
         std::mt19937 engine(9);
         const auto real = [&](double low, double high) {
@@ -133,7 +133,7 @@ TEST_SUITE("unit") {
         CHECK(before > 100);
     }
 
-    TEST_CASE("the picture of lines: a quad's outline without its diagonal, the same for any number of threads") {
+    TEST_CASE("the image of lines: a quad's outline without its diagonal, the same for any number of threads") {
         Scene scene;
         add(scene, QuadList{{Quad{Vec3(-1, -1, 0), Vec3(2, 0, 0), Vec3(0, 2, 0)}}});
         finish_scene(scene);
@@ -142,13 +142,13 @@ TEST_SUITE("unit") {
         view.camera.height = 2.5;
         raster::RasterSettings settings;
         settings.shading = raster::Shading::kLines;
-        const Rendering picture = render(scene, view, settings);
+        const Rendering shown_image = render(scene, view, settings);
         double sum = 0;
-        for (const Rgb c : picture.radiance) sum += static_cast<double>(c.r);
+        for (const Rgb c : shown_image.radiance) sum += static_cast<double>(c.r);
         // Each side is 51.2 pixels long, so 51 or 52 columns have a sample within it.
         CHECK(sum >= 4 * 51 - 4);
         CHECK(sum <= 4 * 52);
-        CHECK(picture.radiance(32, 32).r == 0);
+        CHECK(shown_image.radiance(32, 32).r == 0);
         const Scene varied = varied_scene(60);
         settings.threads = 1;
         settings.samples_per_pixel = 3;

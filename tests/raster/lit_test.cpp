@@ -46,7 +46,7 @@ bool names(const Rendering& rendering, const std::string& part) {
 
 TEST_SUITE("unit") {
 
-    TEST_CASE("a diffuse floor under a square lamp: the configuration factor of the rectangle") {
+    TEST_CASE("a diffuse floor under a square light: the configuration factor of the rectangle") {
         const Rgb albedo(0.8f, 0.5f, 0.2f), light(3, 5, 7);
         Scene scene = floor_scene(Diffuse{{albedo}});
         // The light is above the eye and emits downward (its normal u × v is −y).
@@ -64,20 +64,20 @@ TEST_SUITE("unit") {
         CHECK_FALSE(names(rendering, "etal"));
     }
 
-    TEST_CASE("a lamp shines on one side, shows its radiance there, and does not light itself") {
+    TEST_CASE("a light shines on one side, shows its radiance there, and does not light itself") {
         Scene scene = floor_scene(Diffuse{{Rgb(0.5f)}});
         // The light's front faces up, so it does not illuminate the floor below.
         add(scene, QuadList{{{Vec3(-0.3f, 1, 0.3f), Vec3(0.6f, 0, 0), Vec3(0, 0, -0.6f)}}}, Mat4(),
             Emissive{.radiance = Rgb(2, 3, 4), .albedo = {Rgb(0.9f)}});
         finish_scene(scene);
         const Rendering rendering = render(scene, kFromAbove, plain());
-        int lamp = 0, dark = 0;
+        int area_light = 0, dark = 0;
         for (const Rgb c : rendering.radiance) {
-            lamp += c == Rgb(2, 3, 4);
+            area_light += c == Rgb(2, 3, 4);
             dark += c == Rgb();
         }
-        CHECK(lamp > 50);
-        CHECK(lamp + dark == 32 * 24);
+        CHECK(area_light > 50);
+        CHECK(area_light + dark == 32 * 24);
     }
 
     TEST_CASE("point, spot and sun light a diffuse floor by the inverse square and the cosine") {
@@ -141,7 +141,8 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("white clay, rough metal, plastic and panes in a constant environment vanish, but for what their tables leave") {
+    TEST_CASE("white clay, rough metal, plastic and panes in a constant environment vanish, but for what their tables "
+              "leave") {
         Diffuse clay{{Rgb(1.0f)}};
         clay.roughness = 0.8f;
         Dielectric pane, frosted;
@@ -177,7 +178,8 @@ TEST_SUITE("unit") {
                 w.y = std::abs(w.y);
                 const Rgb behind = radiance(scene.environment, Vec3(pinhole.ray({x + 0.5, y + 0.5}).direction));
                 if (std::abs(rendering.radiance(x, y).b - behind.b) < 1e-6f) continue;
-                check_rgb(rendering.radiance(x, y), radiance(scene.environment, w), 0.02); // from a map of 32 × 32 texels
+                // From a map of 32 × 32 texels
+                check_rgb(rendering.radiance(x, y), radiance(scene.environment, w), 0.02);
             }
         raster::RasterSettings off;
         off.environment = false;
@@ -185,23 +187,25 @@ TEST_SUITE("unit") {
         CHECK(std::all_of(dark.radiance.begin(), dark.radiance.end(), [](Rgb c) { return c == Rgb(); }));
     }
 
-    TEST_CASE("rough metal under a sun is its BSDF; under a small far lamp nearly that of the same sun") {
+    TEST_CASE("rough metal under a sun is its BSDF; under a small far light nearly that of the same sun") {
         const Metal metal{{Rgb(0.9f, 0.7f, 0.4f)}, 0.5f};
-        Scene with_lamp = floor_scene(metal), with_sun = floor_scene(metal);
-        add(with_lamp, Sphere{Vec3(0, 100, 0), 1}, Mat4(), Emissive{Rgb(1000.0f)});
-        finish_scene(with_lamp);
+        Scene with_area_light = floor_scene(metal), with_sun = floor_scene(metal);
+        add(with_area_light, Sphere{Vec3(0, 100, 0), 1}, Mat4(), Emissive{Rgb(1000.0f)});
+        finish_scene(with_area_light);
         with_sun.lights.push_back(SunLight{Vec3(0, -1, 0), Rgb(1000.0f) * (kPi * 1e-4f)});
         finish_scene(with_sun);
-        const Rendering lamp = render(with_lamp, kFromAbove, plain()), sun = render(with_sun, kFromAbove, plain());
+        const Rendering area_light = render(with_area_light, kFromAbove, plain()),
+                        sun = render(with_sun, kFromAbove, plain());
         const MetalBsdf bsdf{Rgb(0.9f, 0.7f, 0.4f), 0.25f};
         const Ray ray = CameraModel(kFromAbove).ray({16.5, 12.5});
         const Vec3 wo(-ray.direction.x, ray.direction.z,
                       -ray.direction.y); // y is up; any rotation about the normal is valid
         const Rgb expected = bsdf.eval(wo, Vec3(0, 0, 1), TransportMode::kRadiance) * (1000 * kPi * 1e-4f);
         check_rgb(sun.radiance(16, 12), expected, 1e-4);
-        check_rgb(lamp.radiance(16, 12), expected, 0.15); // the transformed cosine is close to the lobe, but not exact
+        check_rgb(area_light.radiance(16, 12), expected,
+                  0.15); // the transformed cosine is close to the lobe, but not exact
         CHECK_FALSE(names(sun, "linearly transformed cosines"));
-        CHECK(names(lamp, "linearly transformed cosines"));
+        CHECK(names(area_light, "linearly transformed cosines"));
     }
 
     TEST_CASE("light from behind the geometric surface does not arrive, whatever the shading normal: it is in shadow") {
@@ -219,7 +223,7 @@ TEST_SUITE("unit") {
         CHECK(found.g < 0.05f); // measured: 0.038, of 0.45 without shadows
     }
 
-    TEST_CASE("normal, albedo and depth shadings and auxiliary pictures") {
+    TEST_CASE("normal, albedo and depth shadings and auxiliary images") {
         Scene scene = floor_scene(Diffuse{{Rgb(0.1f, 0.2f, 0.3f)}});
         finish_scene(scene);
         View view{look({0, 3, 0}, {0, 0, 0}), 8, 8};

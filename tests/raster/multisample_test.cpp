@@ -59,7 +59,7 @@ TEST_SUITE("unit") {
         CHECK_THROWS_AS(render(varied_scene(12), perspective(), both), Error);
     }
 
-    TEST_CASE("where each primitive has one colour it is supersampling, bit for bit") {
+    TEST_CASE("where each primitive has one color it is supersampling, bit for bit") {
         for (const int around : {12, 400}) // triangles of many pixels, and of less than one
             for (const View& view : {perspective(), orthographic()}) {
                 const Scene scene = varied_scene(around);
@@ -110,16 +110,16 @@ TEST_SUITE("unit") {
         add(scene, mesh);
         finish_scene(scene);
         const View view{look({0, 0.02, 4}, {0, 0, 0}, 30), 160, 120};
-        const Rendering picture = render(scene, view, multisampled(16, raster::Shading::kDepth));
+        const Rendering shown_image = render(scene, view, multisampled(16, raster::Shading::kDepth));
         const double nearest = 4.0 / (4 + 1); // the camera's target is 4 m away, the strip at least 1 m
-        for (const Rgb c : picture.radiance) {
+        for (const Rgb c : shown_image.radiance) {
             REQUIRE(static_cast<double>(c.r) <= nearest * 1.001);
             REQUIRE(c.r >= 0);
         }
-        CHECK(picture.statistics.invalid_samples == 0);
+        CHECK(shown_image.statistics.invalid_samples == 0);
     }
 
-    TEST_CASE("the same bits for any number of threads; auxiliary pictures; memory that does not grow with samples") {
+    TEST_CASE("the same bits for any number of threads; auxiliary images; memory that does not grow with samples") {
         const Scene scene = varied_scene(90);
         const View view = perspective();
         raster::RasterSettings settings = multisampled(8, raster::Shading::kPhong);
@@ -147,7 +147,7 @@ TEST_SUITE("unit") {
             settings.multisamples = count;
             return render(scene, view, settings).statistics.memory_bytes;
         };
-        const std::int64_t four = bytes(4), sixteen = bytes(16);
-        CHECK(sixteen < four + four / 10);
+        const std::int64_t four = bytes(4), all_samples = bytes(16);
+        CHECK(all_samples < four + four / 10);
     }
 }

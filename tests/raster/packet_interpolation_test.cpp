@@ -128,18 +128,21 @@ bool lies_inside(const raster::UnclippedTriangle& whole, Vec2d pixel) {
 
 TEST_SUITE("unit") {
 
-    TEST_CASE("barycentrics and depths in float are as exact as is said, of slivers, too, and right where they are not") {
+    TEST_CASE("barycentrics and depths in float are as exact as is said, of slivers, too, and right where they "
+              "are not") {
         using raster::kPacketSize, raster::NoVaryings, raster::PacketInterpolator;
         const Scene scene = slivers();
         for (const View& view : {perspective(), orthographic()}) {
-            const PacketImage picture(scene, view);
-            const raster::Geometry& geometry = picture.geometry;
+            const PacketImage shown_image(scene, view);
+            const raster::Geometry& geometry = shown_image.geometry;
             const NoVaryings nothing;
             int seen = 0, close = 0, mended = 0;
             double worst = 0, worst_mended = 0;
-            picture.for_each_tile([&](const raster::PixelRect& rect, std::span<const raster::SamplePacket> packets) {
-                PacketInterpolator<NoVaryings, float> in_float(geometry.triangles, picture.pass, rect, nothing, false);
-                PacketInterpolator<NoVaryings, double> in_double(geometry.triangles, picture.pass, rect, nothing,
+            shown_image.for_each_tile([&](const raster::PixelRect& rect,
+                                          std::span<const raster::SamplePacket> packets) {
+                PacketInterpolator<NoVaryings, float> in_float(geometry.triangles, shown_image.pass, rect, nothing,
+                                                               false);
+                PacketInterpolator<NoVaryings, double> in_double(geometry.triangles, shown_image.pass, rect, nothing,
                                                                  false);
                 std::vector<std::uint32_t> inside(packets.size());
                 in_double.interpolate_packets(
@@ -176,14 +179,15 @@ TEST_SUITE("unit") {
     TEST_CASE("of triangles that compete for packets, more than there is room for, each result has its own, all of "
               "them or a few at a time") {
         using raster::NoVaryings, raster::PacketInterpolator;
-        const PacketImage picture(shuffled_wall(), perspective());
-        const raster::Triangles& triangles = picture.geometry.triangles;
+        const PacketImage shown_image(shuffled_wall(), perspective());
+        const raster::Triangles& triangles = shown_image.geometry.triangles;
         const NoVaryings nothing;
         for (const std::size_t together : {std::size_t{1}, std::size_t{5}, std::size_t{10'000}}) {
             int seen = 0;
             double worst = 0;
-            picture.for_each_tile([&](const raster::PixelRect& rect, std::span<const raster::SamplePacket> packets) {
-                PacketInterpolator<NoVaryings, double> solver(triangles, picture.pass, rect, nothing, false);
+            shown_image.for_each_tile([&](const raster::PixelRect& rect,
+                                          std::span<const raster::SamplePacket> packets) {
+                PacketInterpolator<NoVaryings, double> solver(triangles, shown_image.pass, rect, nothing, false);
                 for (std::size_t first = 0; first < packets.size(); first += together) {
                     const auto some = packets.subspan(first, std::min(together, packets.size() - first));
                     solver.interpolate_packets(
@@ -209,14 +213,14 @@ TEST_SUITE("unit") {
 
     TEST_CASE("coverage vouches only for samples that lie in their unsnapped triangles, and for most of those") {
         for (const View& view : {perspective(), orthographic()}) {
-            const PacketImage picture(slivers(), view);
+            const PacketImage shown_image(slivers(), view);
             int vouched = 0, wrong = 0, inside = 0;
-            picture.for_each_tile([&](const raster::PixelRect&, std::span<const raster::SamplePacket> packets) {
+            shown_image.for_each_tile([&](const raster::PixelRect&, std::span<const raster::SamplePacket> packets) {
                 for (const raster::SamplePacket& place : packets)
                     for (std::size_t i = 0; i < raster::kPacketSize; ++i) {
                         const auto id = static_cast<std::uint32_t>(place.ids[i]);
                         if (id == raster::kNoTriangle) continue;
-                        const bool lies = lies_inside(picture.geometry.triangles.unclipped(id), place.position(i));
+                        const bool lies = lies_inside(shown_image.geometry.triangles.unclipped(id), place.position(i));
                         vouched += place.inside >> i & 1;
                         wrong += (place.inside >> i & 1) && !lies;
                         inside += lies;
@@ -236,21 +240,22 @@ TEST_SUITE("unit") {
                              Quad{Vec3(-1, 0, 0), Vec3(1.5f, 0, 1), Vec3(0, 1, 0)}}});
         finish_scene(scene);
         for (const View& view : {perspective(), orthographic()}) {
-            const PacketImage picture(scene, view);
+            const PacketImage shown_image(scene, view);
             const NoVaryings nothing;
             std::array<int, 2> halves{};
             int together = 0;
             double worst = 0;
-            picture.for_each_tile([&](const raster::PixelRect& rect, std::span<const raster::SamplePacket> packets) {
-                PacketInterpolator<NoVaryings, float> solver(picture.geometry.triangles, picture.pass, rect, nothing,
-                                                             false);
+            shown_image.for_each_tile([&](const raster::PixelRect& rect,
+                                          std::span<const raster::SamplePacket> packets) {
+                PacketInterpolator<NoVaryings, float> solver(shown_image.geometry.triangles, shown_image.pass, rect,
+                                                             nothing, false);
                 solver.interpolate_packets(
                     packets, true, each([&](std::size_t s, const auto& result) {
                         CHECK(result.samples->on_mesh == result.samples->visible);
                         for (std::size_t i = 0; i < kPacketSize; ++i) {
                             if (!(result.samples->on_mesh >> i & 1)) continue;
-                            const Hit hit =
-                                find_hit(picture.geometry, picture.pass, result.samples->id(i), packets[s].position(i));
+                            const Hit hit = find_hit(shown_image.geometry, shown_image.pass, result.samples->id(i),
+                                                     packets[s].position(i));
                             const std::size_t triangle = result.samples->index(i), half = triangle % 2;
                             const float both = result.b1[i] + result.b2[i];
                             ++halves[half];
@@ -269,7 +274,8 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("points of spheres, side by side, are those of each sample's own ray: of stretched ones and from inside, too") {
+    TEST_CASE("points of spheres, side by side, are those of each sample's own ray: of stretched ones and from "
+              "inside, too") {
         Scene scene;
         add(scene, Sphere{Vec3(0.3f, 0.2f, 0.5f), 0.9f});
         add(scene, Sphere{Vec3(-1, 0.4f, 0), 0.5f},
@@ -277,27 +283,27 @@ TEST_SUITE("unit") {
         add(scene, Sphere{Vec3(0, 0, 0), 40}); // contains everything else
         finish_scene(scene);
         for (const View& view : {perspective(), orthographic()}) {
-            const PacketImage picture(scene, view);
+            const PacketImage shown_image(scene, view);
             std::array<int, 3> seen{};
             double worst = 0, worst_depth = 0;
             int wrong_side = 0;
-            picture.for_each_tile([&](const raster::PixelRect&, std::span<const raster::SamplePacket> packets) {
+            shown_image.for_each_tile([&](const raster::PixelRect&, std::span<const raster::SamplePacket> packets) {
                 for (const raster::SamplePacket& place : packets)
-                    for (const raster::DrawSphere& sphere : picture.geometry.spheres) {
-                        const raster::SpherePacket result(picture.pass, place, sphere, false);
+                    for (const raster::DrawSphere& sphere : shown_image.geometry.spheres) {
+                        const raster::SpherePacket result(shown_image.pass, place, sphere, false);
                         for (std::size_t i = 0; i < raster::kPacketSize; ++i) {
                             if (static_cast<std::uint32_t>(place.ids[i]) != sphere.id) continue;
                             const Vec2d pixel = place.position(i);
-                            const Rayd exact = picture.pinhole.ray(pixel);
+                            const Rayd exact = shown_image.pinhole.ray(pixel);
                             const Ray ray = raster::rounded(exact, 0);
-                            const Hit hit = find_hit(picture.geometry, picture.pass, sphere.id, pixel);
-                            const SurfacePoint point = surface_point(picture.scene, ray, hit);
+                            const Hit hit = find_hit(shown_image.geometry, shown_image.pass, sphere.id, pixel);
+                            const SurfacePoint point = surface_point(shown_image.scene, ray, hit);
                             const Vec3 n(result.n[0][i], result.n[1][i], result.n[2][i]);
                             const Vec3 p = sphere.sphere.center + n * sphere.sphere.radius;
                             const double grazing = std::abs(static_cast<double>(dot(point.ng, ray.direction)));
                             ++seen[sphere.object];
                             worst = std::max(worst, static_cast<double>(length(p - point.p_object)) * grazing);
-                            const double depth = static_cast<double>(hit.t) * picture.pinhole.near / exact.t_min;
+                            const double depth = static_cast<double>(hit.t) * shown_image.pinhole.near / exact.t_min;
                             worst_depth = std::max(
                                 worst_depth, std::abs(static_cast<double>(result.depth[i]) / depth - 1) * grazing);
                             wrong_side += (result.side[i] < 0) != (dot(point.ng, ray.direction) > 0);
@@ -316,12 +322,13 @@ TEST_SUITE("unit") {
         const Scene scene = smooth_slivers();
         const Mesh& mesh = std::get<Mesh>(scene.shapes[0]);
         for (const View& view : {perspective(), orthographic()}) {
-            const PacketImage picture(scene, view);
+            const PacketImage shown_image(scene, view);
             const NormalVaryings normals;
             int results = 0, of_directions = 0, turned = 0;
             double worst = 0;
-            picture.for_each_tile([&](const raster::PixelRect& rect, std::span<const raster::SamplePacket> packets) {
-                PacketInterpolator<NormalVaryings, float> solver(picture.geometry.triangles, picture.pass, rect,
+            shown_image.for_each_tile([&](const raster::PixelRect& rect,
+                                          std::span<const raster::SamplePacket> packets) {
+                PacketInterpolator<NormalVaryings, float> solver(shown_image.geometry.triangles, shown_image.pass, rect,
                                                                  normals, false);
                 solver.interpolate_packets(
                     packets, true, each([&](std::size_t s, const auto& result) {
@@ -330,15 +337,16 @@ TEST_SUITE("unit") {
                         ++of_directions;
                         for (std::size_t i = 0; i < kPacketSize; ++i) {
                             if (!(result.samples->visible >> i & 1)) continue;
-                            const raster::Interpolated at = interpolate(
-                                picture.geometry.triangles.unclipped(result.samples->id(i)), packets[s].position(i));
+                            const raster::Interpolated at =
+                                interpolate(shown_image.geometry.triangles.unclipped(result.samples->id(i)),
+                                            packets[s].position(i));
                             const auto& corner = mesh.triangles[result.samples->index(i)];
                             const auto number = [&](std::size_t k) { return Vec3d(mesh.normals[corner[k]]); };
                             const auto p = [&](std::size_t k) { return Vec3d(mesh.positions[corner[k]]); };
                             const Vec3d wanted = normalize(number(0) * at.b0 + number(1) * at.b1 + number(2) * at.b2);
                             const Vec3d n = normalize(Vec3d(Vec3(result.at[0][i], result.at[1][i], result.at[2][i])));
                             worst = std::max(worst, length(n - wanted));
-                            const Vec3d way = picture.pinhole.ray(packets[s].position(i)).direction,
+                            const Vec3d way = shown_image.pinhole.ray(packets[s].position(i)).direction,
                                         ng = cross(p(1) - p(0), p(2) - p(0));
                             turned += dot(ng, way) * dot(ng, n) > 0; // the visible side of the face is opposite to n
                         }

@@ -47,38 +47,38 @@ TEST_SUITE("unit") {
         for (const double aperture : {0.0, 0.1}) {
             View view{look({2, 2, 4}, {0, 0, 0}, 40), 150, 110};
             view.camera.aperture_radius = aperture;
-            std::vector<Rendering> pictures;
+            std::vector<Rendering> images;
             for (const int threads : {1, 2, 7}) {
                 raster::RasterSettings settings;
                 settings.threads = threads;
                 settings.samples_per_pixel = 5;
                 settings.aovs = {
                     .depth = true, .normal = true, .albedo = true, .hit = true, .variance = false, .samples = true};
-                pictures.push_back(render(scene, view, settings));
+                images.push_back(render(scene, view, settings));
             }
-            for (const Rendering& other : pictures) {
-                CHECK(bitwise_equal(other.radiance, pictures[0].radiance));
-                CHECK(bitwise_equal(other.depth, pictures[0].depth));
-                CHECK(bitwise_equal(other.normal, pictures[0].normal));
-                CHECK(bitwise_equal(other.albedo, pictures[0].albedo));
-                CHECK(bitwise_equal(other.hit, pictures[0].hit));
+            for (const Rendering& other : images) {
+                CHECK(bitwise_equal(other.radiance, images[0].radiance));
+                CHECK(bitwise_equal(other.depth, images[0].depth));
+                CHECK(bitwise_equal(other.normal, images[0].normal));
+                CHECK(bitwise_equal(other.albedo, images[0].albedo));
+                CHECK(bitwise_equal(other.hit, images[0].hit));
                 CHECK(other.statistics.invalid_samples == 0);
             }
         }
     }
 
-    TEST_CASE("the same picture for any seed with one sample, another with several") {
+    TEST_CASE("the same image for any seed with one sample, another with several") {
         const Scene scene = varied();
         const View view{look({2, 2, 4}, {0, 0, 0}, 40), 60, 40};
-        const auto picture = [&](int samples, std::uint64_t seed) {
+        const auto shown_image = [&](int samples, std::uint64_t seed) {
             raster::RasterSettings settings;
             settings.samples_per_pixel = samples;
             settings.seed = seed;
             return render(scene, view, settings).radiance;
         };
-        CHECK(bitwise_equal(picture(1, 1), picture(1, 2)));
-        CHECK(bitwise_equal(picture(4, 1), picture(4, 1)));
-        CHECK_FALSE(bitwise_equal(picture(4, 1), picture(4, 2)));
+        CHECK(bitwise_equal(shown_image(1, 1), shown_image(1, 2)));
+        CHECK(bitwise_equal(shown_image(4, 1), shown_image(4, 1)));
+        CHECK_FALSE(bitwise_equal(shown_image(4, 1), shown_image(4, 2)));
     }
 
     TEST_CASE("many samples give a pixel the part of its area that is covered") {

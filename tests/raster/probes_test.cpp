@@ -24,7 +24,8 @@ std::vector<Vec3> directions() {
         for (int y = -3; y <= 3; ++y)
             for (int z = -3; z <= 3; ++z)
                 if (x != 0 || y != 0 || z != 0)
-                    result.push_back(normalize(Vec3(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z))));
+                    result.push_back(
+                        normalize(Vec3(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z))));
     return result;
 }
 
@@ -71,7 +72,10 @@ TEST_SUITE("unit") {
 
     TEST_CASE("what lights emit shows in mirrors alone") {
         const raster::RadianceMap map(
-            16, [](Vec3 w) { return raster::RadianceMap::Arriving{Rgb(w.y > 0 ? 9.0f : 1.0f), Rgb(w.y > 0 ? 8.0f : 0.0f), 1}; },
+            16,
+            [](Vec3 w) {
+                return raster::RadianceMap::Arriving{Rgb(w.y > 0 ? 9.0f : 1.0f), Rgb(w.y > 0 ? 8.0f : 0.0f), 1};
+            },
             1);
         CHECK(map.at(all({0, 1, 0})).g.get(0) == doctest::Approx(9));
         CHECK(map.at(all({0, 1, 0}), Floats(0.2f)).g.get(0) == doctest::Approx(1));

@@ -113,7 +113,7 @@ TEST_SUITE("unit") {
 
     // The scene is a mirror floor in front of an emissive wall. Below the wall's base the floor shows the wall upside
     // down.
-    TEST_CASE("gbuffer reflections: a mirror shows the wall that the picture shows, elsewhere the sky") {
+    TEST_CASE("gbuffer reflections: a mirror shows the wall that the image shows, elsewhere the sky") {
         Scene scene;
         add(scene, QuadList{{{Vec3(-5, 0, 5), Vec3(10, 0, 0), Vec3(0, 0, -10)}}}, Mat4(), Metal{{Rgb(1.0f)}, 0});
         add(scene, QuadList{{{Vec3(-5, 0, -1), Vec3(10, 0, 0), Vec3(0, 1, 0)}}}, Mat4(),

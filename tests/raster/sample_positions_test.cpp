@@ -10,7 +10,7 @@ using namespace duet::raster;
 
 TEST_SUITE("unit") {
 
-    TEST_CASE("a single sample is the centre of pixel and lens, as the shutter opens") {
+    TEST_CASE("a single sample is the center of pixel and lens, as the shutter opens") {
         const std::vector<Pass> passes = plan_passes(1, 17, true, true);
         REQUIRE(passes.size() == 1);
         REQUIRE(passes[0].samples.size() == 1);

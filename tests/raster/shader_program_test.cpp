@@ -64,8 +64,8 @@ Rendering show(const Scene& scene, const View& view, Asked asked, raster::Raster
     return raster::draw(raster::prepare(scene, settings), view, settings, Probe{asked}, control);
 }
 
-Vec3 shown(const Rendering& picture, int x, int y) {
-    const Rgb c = picture.radiance(x, y);
+Vec3 shown(const Rendering& shown_image, int x, int y) {
+    const Rgb c = shown_image.radiance(x, y);
     return Vec3(c.r, c.g, c.b) - Vec3(kLift, kLift, kLift);
 }
 
@@ -228,16 +228,16 @@ TEST_SUITE("unit") {
         add(scene, mesh);
         finish_scene(scene);
         const View view{look({0.3, 0.2, 2.5}, {0, 0, 0}, 40), 64, 48};
-        const Rendering picture = show(scene, view, Asked::kUv);
+        const Rendering shown_image = show(scene, view, Asked::kUv);
         for (int y = 0; y < view.height; ++y)
             for (int x = 0; x < view.width; ++x) {
-                if (!picture.hit(x, y).valid()) continue;
-                const Vec2 uv = surface_at(scene, view, {x + 0.5, y + 0.5}, picture.hit(x, y)).uv;
-                REQUIRE(static_cast<double>(length(shown(picture, x, y) - Vec3(uv.x, uv.y, 0))) < 5e-5);
+                if (!shown_image.hit(x, y).valid()) continue;
+                const Vec2 uv = surface_at(scene, view, {x + 0.5, y + 0.5}, shown_image.hit(x, y)).uv;
+                REQUIRE(static_cast<double>(length(shown(shown_image, x, y) - Vec3(uv.x, uv.y, 0))) < 5e-5);
             }
     }
 
-    TEST_CASE("a shader of one's own, its base colours of a texture, too") {
+    TEST_CASE("a shader of one's own, its base colors of a texture, too") {
         Scene scene = varied_scene(60);
         scene.textures.textures.push_back(CheckerTexture{Rgb(0.9f, 0.1f, 0.2f), Rgb(0.1f, 0.8f, 0.3f), 3, true});
         std::get<Diffuse>(scene.materials[0]).albedo.texture = 0;
@@ -247,18 +247,19 @@ TEST_SUITE("unit") {
         raster::RasterSettings settings = with_hits();
         settings.aovs.albedo = true;
         const View view = perspective();
-        const Rendering picture = raster::draw(raster::prepare(scene, settings), view, settings, Stripes{}, control);
+        const Rendering shown_image =
+            raster::draw(raster::prepare(scene, settings), view, settings, Stripes{}, control);
         int wrong = 0, above = 0, below = 0;
         for (int y = 0; y < view.height; ++y)
             for (int x = 0; x < view.width; ++x) {
-                const Hit& hit = picture.hit(x, y);
+                const Hit& hit = shown_image.hit(x, y);
                 if (!hit.valid()) continue;
                 const float height = surface_at(scene, view, {x + 0.5, y + 0.5}, hit).p.y;
                 if (std::abs(height - 0.5f) < 1e-5f) continue;
                 (height > 0.5f ? above : below) += 1;
-                const Rgb wanted = height > 0.5f ? picture.albedo(x, y) : Rgb(1.0f);
-                wrong += max_component(picture.radiance(x, y) - wanted) > 1e-6f ||
-                         max_component(wanted - picture.radiance(x, y)) > 1e-6f;
+                const Rgb wanted = height > 0.5f ? shown_image.albedo(x, y) : Rgb(1.0f);
+                wrong += max_component(shown_image.radiance(x, y) - wanted) > 1e-6f ||
+                         max_component(wanted - shown_image.radiance(x, y)) > 1e-6f;
             }
         CHECK(above > 3000);
         CHECK(below > 3000);
@@ -362,7 +363,8 @@ TEST_SUITE("unit") {
         CHECK(seen.statistics.invalid_samples == 0);
     }
 
-    TEST_CASE("normals that cancel each other out, and those that are none, are no direction in any shading, nor invalid") {
+    TEST_CASE("normals that cancel each other out, and those that are none, are no direction in any shading, nor "
+              "invalid") {
         for (const bool cancel : {false, true}) {
             Mesh mesh;
             mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
@@ -392,7 +394,8 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("lamps shine in every shading that shows light, in strips and alone, as materials and lights have them") {
+    TEST_CASE(
+        "lights shine in every shading that shows light, in strips and alone, as materials and lights have them") {
         Scene scene = varied_scene(60);
         scene.textures.textures.push_back(CheckerTexture{Rgb(0.9f, 0.1f, 0.2f), Rgb(0.1f, 0.8f, 0.3f), 3, true});
         for (Material& material : scene.materials)
@@ -422,15 +425,15 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("flat: a triangle has one colour; Gouraud and Phong agree where triangles are small") {
+    TEST_CASE("flat: a triangle has one color; Gouraud and Phong agree where triangles are small") {
         const Scene coarse = varied_scene(12), fine = varied_scene(400);
         const View view = perspective();
-        const auto picture = [&](const Scene& scene, raster::Shading shading) {
+        const auto shown_image = [&](const Scene& scene, raster::Shading shading) {
             raster::RasterSettings settings = with_hits();
             settings.shading = shading;
             return render(scene, view, settings);
         };
-        const Rendering flat = picture(coarse, raster::Shading::kFlat);
+        const Rendering flat = shown_image(coarse, raster::Shading::kFlat);
         int same = 0, pairs = 0;
         for (int y = 0; y < view.height; ++y)
             for (int x = 1; x < view.width; ++x) {
@@ -445,7 +448,8 @@ TEST_SUITE("unit") {
         CHECK(pairs > 20'000);
         CHECK(same == pairs);
         const auto mean_apart = [&](const Scene& scene) {
-            const Rendering a = picture(scene, raster::Shading::kGouraud), b = picture(scene, raster::Shading::kPhong);
+            const Rendering a = shown_image(scene, raster::Shading::kGouraud),
+                            b = shown_image(scene, raster::Shading::kPhong);
             double sum = 0;
             for (int y = 0; y < view.height; ++y)
                 for (int x = 0; x < view.width; ++x) // the two smooth meshes
@@ -470,7 +474,7 @@ TEST_SUITE("unit") {
         view.camera.height = 3;
         raster::RasterSettings settings;
         settings.shading = raster::Shading::kWireframe;
-        const Rendering picture = render(scene, view, settings);
+        const Rendering shown_image = render(scene, view, settings);
         // Follow the column through x = −0.5, which crosses the lower edge and the hypotenuse. Each shows the half
         // pixel that is inside the triangle. Along the edge's normal that is 1/2 for the lower edge, and √2/2 in the
         // column for the edge at 45°.
@@ -478,8 +482,8 @@ TEST_SUITE("unit") {
         double sum = 0;
         int dark = 0;
         for (int y = 0; y < 101; ++y) {
-            sum += static_cast<double>(picture.radiance(column, y).r);
-            dark += picture.radiance(column, y).r == 0;
+            sum += static_cast<double>(shown_image.radiance(column, y).r);
+            dark += shown_image.radiance(column, y).r == 0;
         }
         CHECK(dark >= 95);
         // Within the ramp's width samples hit 0, 1 or 2 of its steps. The coverage of the inner half is ½ + ⅛ of a
@@ -494,12 +498,12 @@ TEST_SUITE("unit") {
                 const double inside = std::min({px + 1, py + 1, -(px + py) / std::sqrt(2.0)}) * d;
                 if (std::abs(inside) < 0.02) continue;
                 const double wanted = inside < 0 ? 0 : std::clamp(1 - inside, 0.0, 1.0);
-                REQUIRE(static_cast<double>(picture.radiance(x, y).r) ==
+                REQUIRE(static_cast<double>(shown_image.radiance(x, y).r) ==
                         doctest::Approx(wanted).epsilon(0.001).scale(1));
             }
     }
 
-    TEST_CASE("toon: few colours, and no others but on borders") {
+    TEST_CASE("toon: few colors, and no others but on borders") {
         Scene scene;
         add(scene, Sphere{Vec3(0, 0, 0), 1}, Mat4(), Diffuse{{Rgb(0.5f)}});
         scene.lights = {SunLight{normalize(Vec3(-0.5f, -1, -0.7f)), Rgb(3.0f)}};
@@ -507,11 +511,11 @@ TEST_SUITE("unit") {
         const View view{look({0, 0, 4}, {0, 0, 0}, 35), 240, 240};
         raster::RasterSettings settings = with_hits();
         settings.shading = raster::Shading::kToon;
-        const Rendering picture = render(scene, view, settings);
+        const Rendering shown_image = render(scene, view, settings);
         std::vector<float> values;
         int seen = 0, between = 0;
-        for (std::size_t i = 0; i < picture.hit.size(); ++i)
-            if (picture.hit[i].valid()) values.push_back(picture.radiance[i].r);
+        for (std::size_t i = 0; i < shown_image.hit.size(); ++i)
+            if (shown_image.hit[i].valid()) values.push_back(shown_image.radiance[i].r);
         std::sort(values.begin(), values.end());
         std::vector<float> bands; // values that at least a hundred samples share
         for (std::size_t i = 0; i + 100 < values.size(); ++i)

@@ -123,7 +123,8 @@ private:
 
 TEST_SUITE("unit") {
 
-    TEST_CASE("under a roof the wall that it lies on is dark but for one and a half texels, which the tolerance for slopes hides") {
+    TEST_CASE("under a roof the wall that it lies on is dark but for one and a half texels, which the tolerance for "
+              "slopes hides") {
         for (const int side : {256, 400, 512})
             for (const Vec3 way : {Vec3(-0.5f, -0.75f, -0.4f), Vec3(-1, -0.5f, 0.2f), Vec3(-0.3f, -1, 0)}) {
                 Scene scene = with_sun(way);
@@ -218,7 +219,8 @@ TEST_SUITE("unit") {
 
     // The reference traces lines to the sun against the facets' profile. Positions whose filter covers a shadow
     // boundary are skipped.
-    TEST_CASE("a coarse trough under a sun that grazes it: lines along valleys and light past the rim at grazing angles alone") {
+    TEST_CASE("a coarse trough under a sun that grazes it: lines along valleys and light past the rim at grazing "
+              "angles alone") {
         for (const int facets : {5, 9, 40})
             // The values are the sun's angle from the zenith, in radians.
             for (const double turn : {0.3, 0.6, 0.75, 0.8, 0.85, 0.9, 1.05, 1.2}) {
@@ -275,12 +277,13 @@ TEST_SUITE("unit") {
     // The plate hides the lower part of the spherical light. Its lower edge occludes the light first, but the map
     // shows little of that edge because the surface behind it is not an occluder. The reference traces lines to
     // points uniformly distributed over the sphere's disk.
-    TEST_CASE("a plate that leans towards a lamp: its shadow begins without a large step and is about as deep as the part it hides") {
-        const Vec3d lamp(0, 3.9, -5.4), edge(0, 1.35, -2.6), lean(0, 0.4, -1.2);
+    TEST_CASE("a plate that leans towards a light: its shadow begins without a large step and is about as deep as the "
+              "part it hides") {
+        const Vec3d area_light(0, 3.9, -5.4), edge(0, 1.35, -2.6), lean(0, 0.4, -1.2);
         Scene scene;
         add(scene, QuadList{{{Vec3(-0.1f, 0, 1), Vec3(0.2f, 0, 0), Vec3(0, 0, -2)}}});
         add(scene, QuadList{{{Vec3(-9, 1.35f, -2.6f), Vec3(18, 0, 0), Vec3(lean)}}});
-        add(scene, Sphere{Vec3(lamp), 1}, Mat4(), Emissive{Rgb(5)});
+        add(scene, Sphere{Vec3(area_light), 1}, Mat4(), Emissive{Rgb(5)});
         scene.camera = from_above(0.3, 1.6);
         finish_scene(scene);
         constexpr int kRows = 200;
@@ -289,14 +292,14 @@ TEST_SUITE("unit") {
         int penumbra = 0;
         for (int y = 0; y < kRows; ++y) {
             const Vec3d p(0, 0, (y + 0.5) * 1.6 / kRows - 0.8);
-            const double distance = length(lamp - p), radius = 1 / std::sqrt(1 - 1 / sqr(distance));
-            const Vec3d up = normalize(cross(Vec3d(1, 0, 0), lamp - p));
+            const double distance = length(area_light - p), radius = 1 / std::sqrt(1 - 1 / sqr(distance));
+            const Vec3d up = normalize(cross(Vec3d(1, 0, 0), area_light - p));
             int hidden = 0, all = 0;
             for (int i = 0; i < 64; ++i)
                 for (int k = 0; k < 64; ++k) {
                     const double a = (i + 0.5) / 32 - 1, b = (k + 0.5) / 32 - 1;
                     if (a * a + b * b > 1) continue;
-                    const Vec3d way = lamp + Vec3d(a, 0, 0) * radius + up * (b * radius) - p,
+                    const Vec3d way = area_light + Vec3d(a, 0, 0) * radius + up * (b * radius) - p,
                                 n = cross(Vec3d(1, 0, 0), lean);
                     const double along = (p + way * (dot(n, edge - p) / dot(n, way)) - edge).z / lean.z;
                     hidden += along >= 0 && along <= 1;

@@ -59,7 +59,8 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("no acne but on a few pixels of silhouettes: flat and convex surfaces under steep and grazing light are lit as if shadows were off") {
+    TEST_CASE("no acne but on a few pixels of silhouettes: flat and convex surfaces under steep and grazing light are "
+              "lit as if shadows were off") {
         for (const float lift : {1.0f, 0.1f, 0.01f})
             for (const int side : {64, 2048}) {
                 Scene scene = floor_scene();
@@ -80,7 +81,8 @@ TEST_SUITE("unit") {
             }
     }
 
-    TEST_CASE("no leaks: a smooth mesh of coarse facets in the shade of a roof is dark, facets that are turned away, too") {
+    TEST_CASE("no leaks: a smooth mesh of coarse facets in the shade of a roof is dark, facets that are turned "
+              "away, too") {
         for (const float lift : {1.0f, 0.2f}) {
             Scene scene = floor_scene();
             Mesh ring = torus(24, 12);
@@ -128,7 +130,7 @@ TEST_SUITE("unit") {
         CHECK(dark > 1000);
     }
 
-    TEST_CASE("forty spots over what moves: their maps are coarser than asked for, fit in memory, and that is told") {
+    TEST_CASE("forty spots over what moves: their maps are coarser than requested, fit in memory, and that is told") {
         Scene scene = floor_scene();
         Object& box = add(scene, QuadList{box_quads(Vec3(-0.5f, 0, -0.5f), Vec3(0.5f, 1, 0.5f))});
         box.moving = true;
@@ -146,10 +148,10 @@ TEST_SUITE("unit") {
             CHECK(shadows.memory_bytes() > 100 << 20);
             CHECK(shadows.memory_bytes() <= 512 << 20); // with 2048 texels a side: 0.7 and 5.4 GB
             Control control;
-            const auto told =
+            const auto messages =
                 raster::render(prepared, {scene.camera, 8, 8}, settings, control).statistics.approximations;
-            CHECK(
-                std::ranges::any_of(told, [](const std::string& s) { return s.find("coarser") != std::string::npos; }));
+            CHECK(std::ranges::any_of(messages,
+                                      [](const std::string& s) { return s.find("coarser") != std::string::npos; }));
         }
     }
 

@@ -12,11 +12,13 @@ TEST_SUITE("unit") {
 
     // The square occluder and the square light are parallel to the floor. The lines through the occluder's corners
     // bound the hidden part of the light, so the irradiance has a closed form.
-    TEST_CASE("a square before a square lamp: the penumbra of the closed form, to 1.3 % in the mean") {
+    TEST_CASE("a square before a square light: the penumbra of the closed form, to 1.3 % in the mean") {
         Scene scene = floor_scene();
-        constexpr float kLamp = 0.5f, kHeight = 3, kSide = 0.6f, kAbove = 1;
-        add(scene, QuadList{{{Vec3(-kLamp, kHeight, -kLamp), Vec3(2 * kLamp, 0, 0), Vec3(0, 0, 2 * kLamp)}}}, Mat4(),
-            Emissive{Rgb(5)});
+        constexpr float kAreaLight = 0.5f, kHeight = 3, kSide = 0.6f, kAbove = 1;
+        add(scene,
+            QuadList{
+                {{Vec3(-kAreaLight, kHeight, -kAreaLight), Vec3(2 * kAreaLight, 0, 0), Vec3(0, 0, 2 * kAreaLight)}}},
+            Mat4(), Emissive{Rgb(5)});
         add(scene, QuadList{{{Vec3(-kSide, kAbove, kSide), Vec3(2 * kSide, 0, 0), Vec3(0, 0, -2 * kSide)}}});
         finish_scene(scene);
         for (const int cells : {1, 2, 4}) {
@@ -33,8 +35,8 @@ TEST_SUITE("unit") {
                         const double a = at +
                                          (-static_cast<double>(kSide) - at) * static_cast<double>(kHeight / kAbove),
                                      b = at + (static_cast<double>(kSide) - at) * static_cast<double>(kHeight / kAbove);
-                        const double lamp = static_cast<double>(kLamp);
-                        return Vec2d(std::clamp(a, -lamp, lamp), std::clamp(b, -lamp, lamp));
+                        const double area_light = static_cast<double>(kAreaLight);
+                        return Vec2d(std::clamp(a, -area_light, area_light), std::clamp(b, -area_light, area_light));
                     };
                     const Vec2d u = hidden(p.x), v = hidden(p.z);
                     const auto factor = [&](Vec2d a, Vec2d b) {
@@ -43,7 +45,8 @@ TEST_SUITE("unit") {
                                                        Vec3(Vec3d(a.y, h, b.y)), Vec3(Vec3d(a.x, h, b.y))};
                         return polygon_form_factor_times_pi(Vec3(p), Vec3(0, 1, 0), q);
                     };
-                    const double lamp = static_cast<double>(kLamp), all = factor({-lamp, lamp}, {-lamp, lamp});
+                    const double area_light = static_cast<double>(kAreaLight),
+                                 all = factor({-area_light, area_light}, {-area_light, area_light});
                     const double part = u.x < u.y && v.x < v.y ? 1 - factor(u, v) / all : 1;
                     sum += std::abs(static_cast<double>(found(x, y)) - part);
                     penumbra += part > 0.05 && part < 0.95;
@@ -56,26 +59,29 @@ TEST_SUITE("unit") {
     }
 
     // The fraction of a light of any shape that a square hides is estimated from points all over the light.
-    TEST_CASE("shadows of squares, slivers of 1 : 10,000, straight and slanting, and thin triangles, from a micrometre to 1000 km") {
-        struct Lamp {
+    TEST_CASE("shadows of squares, slivers of 1 : 10,000, straight and slanting, and thin triangles, from a micrometre "
+              "to 1000 km") {
+        struct AreaLight {
             Vec3 u, v;
             bool triangle;
         };
-        const std::array<Lamp, 4> lamps{
-            Lamp{Vec3(1, 0, 0), Vec3(0, 0, 1), false}, Lamp{Vec3(1, 0, 0), Vec3(0, 0, 1e-4f), false},
-            Lamp{Vec3(1, 0, 0), Vec3(1, 0, 1e-4f), false}, Lamp{Vec3(1, 0, 0), Vec3(1, 0, 1e-4f), true}};
+        const std::array<AreaLight, 4> area_lights{
+            AreaLight{Vec3(1, 0, 0), Vec3(0, 0, 1), false}, AreaLight{Vec3(1, 0, 0), Vec3(0, 0, 1e-4f), false},
+            AreaLight{Vec3(1, 0, 0), Vec3(1, 0, 1e-4f), false}, AreaLight{Vec3(1, 0, 0), Vec3(1, 0, 1e-4f), true}};
         constexpr double kHeight = 3, kSide = 0.6;
         for (const double size : {1e-6, 1.0, 1e6})
-            for (const Lamp& lamp : lamps) {
+            for (const AreaLight& area_light : area_lights) {
                 const float s = static_cast<float>(size);
                 Scene scene;
                 add(scene, QuadList{{{Vec3(-4, 0, 4) * s, Vec3(8, 0, 0) * s, Vec3(0, 0, -8) * s}}});
                 add(scene, QuadList{{{Vec3(-0.6f, 1, 0.6f) * s, Vec3(1.2f, 0, 0) * s, Vec3(0, 0, -1.2f) * s}}});
-                const Vec3 corner = (Vec3(0, 3, 0) - (lamp.u + lamp.v) * 0.5f) * s, u = lamp.u * s, v = lamp.v * s;
+                const Vec3 corner = (Vec3(0, 3, 0) - (area_light.u + area_light.v) * 0.5f) * s, u = area_light.u * s,
+                           v = area_light.v * s;
                 Mesh mesh;
                 mesh.positions = {corner, corner + u, corner + v};
                 mesh.triangles = {{0, 1, 2}};
-                add(scene, lamp.triangle ? Shape(mesh) : Shape(QuadList{{{corner, u, v}}}), Mat4(), Emissive{Rgb(5)});
+                add(scene, area_light.triangle ? Shape(mesh) : Shape(QuadList{{{corner, u, v}}}), Mat4(),
+                    Emissive{Rgb(5)});
                 View view = over_floor();
                 view.camera.eye *= size, view.camera.height *= size;
                 scene.camera = view.camera;
@@ -89,8 +95,9 @@ TEST_SUITE("unit") {
                     double all = 0, open = 0;
                     for (int i = 0; i < kSteps * kSteps; ++i) {
                         const double a = (i % kSteps + 0.5) / kSteps, b = (i / kSteps + 0.5) / kSteps;
-                        if (lamp.triangle && a + b > 1) continue;
-                        const Vec3d at = Vec3d(0, kHeight, 0) + Vec3d(lamp.u) * (a - 0.5) + Vec3d(lamp.v) * (b - 0.5),
+                        if (area_light.triangle && a + b > 1) continue;
+                        const Vec3d at = Vec3d(0, kHeight, 0) + Vec3d(area_light.u) * (a - 0.5) +
+                                         Vec3d(area_light.v) * (b - 0.5),
                                     way = at - p;
                         const Vec3d met = p + way / kHeight;
                         const double weight = 1 / sqr(dot(way, way));
@@ -108,14 +115,14 @@ TEST_SUITE("unit") {
                         dark += part == 0;
                     }
                 CAPTURE(size);
-                CAPTURE(lamp.v.x);
-                CAPTURE(lamp.triangle);
+                CAPTURE(area_light.v.x);
+                CAPTURE(area_light.triangle);
                 CHECK(dark > 50);
                 CHECK(sum / (kSize * kSize / 16) < 0.02);
             }
     }
 
-    TEST_CASE("a lamp too thin to have an outline, 1 : 10,000,000, still throws a shadow") {
+    TEST_CASE("a light too thin to have an outline, 1 : 10,000,000, still throws a shadow") {
         Scene scene = floor_scene();
         add(scene, QuadList{{{Vec3(-1, 3, -0.5e-7f), Vec3(1, 0, 0), Vec3(1, 0, 1e-7f)}}}, Mat4(), Emissive{Rgb(1e7f)});
         add(scene, QuadList{{{Vec3(-1, 1, 1), Vec3(2, 0, 0), Vec3(0, 0, -2)}}});
@@ -127,7 +134,7 @@ TEST_SUITE("unit") {
 
     // Near the contact point the sphere covers only a few shadow map texels between the floor's lit part and the
     // light.
-    TEST_CASE("no light in the umbra: a slanting lamp beside a ball that nearly touches the floor") {
+    TEST_CASE("no light in the umbra: a slanting light beside a ball that nearly touches the floor") {
         constexpr double kRadius = 0.86, kMiddle = 0.98;
         Scene scene;
         add(scene, QuadList{{{Vec3(-6, 0, 6), Vec3(12, 0, 0), Vec3(0, 0, -9)}}});
@@ -142,9 +149,9 @@ TEST_SUITE("unit") {
                 const Vec3d p = floor_point(x, y);
                 bool dark = true; // for all points of the light
                 for (int i = 0; i < 81 && dark; ++i) {
-                    const Vec3d lamp =
+                    const Vec3d area_light =
                         Vec3d(-3.2, 2, 0.3) + Vec3d(1.2, 1.6, 0) * (i % 9 / 8.0) + Vec3d(0, 0, 2) * (i / 9 / 8.0);
-                    const Vec3d way = normalize(lamp - p);
+                    const Vec3d way = normalize(area_light - p);
                     const Vec3d to = Vec3d(0, kMiddle, 0) - p;
                     dark = dot(to, way) > 0 && length(to - way * dot(to, way)) < 0.95 * kRadius;
                 }
@@ -155,7 +162,8 @@ TEST_SUITE("unit") {
         CHECK(lit == 0);
     }
 
-    TEST_CASE("no grain, no dots at contacts: soft shadows change from pixel to pixel as little as their penumbra is wide") {
+    TEST_CASE("no grain, no dots at contacts: soft shadows change from pixel to pixel as little as their penumbra "
+              "is wide") {
         Scene scene = floor_scene();
         add(scene, QuadList{{{Vec3(-0.5f, 3, -0.5f), Vec3(1, 0, 0), Vec3(0, 0, 1)}}}, Mat4(), Emissive{Rgb(5)});
         add(scene, Sphere{Vec3(0.9f, 0.3f, 0), 0.3f});

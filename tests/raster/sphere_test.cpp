@@ -146,7 +146,8 @@ TEST_SUITE("unit") {
         check_bounds({camera(Camera::Projection::kPerspective, 1e-4), {Vec3(0, 0, 4), 1}, Mat4d()}); // contains the eye
     }
 
-    TEST_CASE("camera rays side by side are those of each alone, and meet spheres where those do: near, far, of any size, from inside") {
+    TEST_CASE("camera rays side by side are those of each alone, and meet spheres where those do: near, far, of any "
+              "size, from inside") {
         Random random(3);
         int met = 0;
         for (int i = 0; i < 6000; ++i) {
@@ -183,7 +184,7 @@ TEST_SUITE("unit") {
         CHECK(met < 6000 * static_cast<int>(Doubles::size) - 2'000);
     }
 
-    TEST_CASE("what lies behind the eye or beside the picture has empty bounds") {
+    TEST_CASE("what lies behind the eye or beside the image has empty bounds") {
         const View view{camera(Camera::Projection::kPerspective, 1e-3), 64, 48};
         const Pinhole pinhole = CameraModel(view).pinhole();
         const Viewport viewport{64, 48, pinhole.near};

@@ -109,7 +109,7 @@ Scene textured_scene(const ImageTexture& texture, bool with_coordinates, bool to
     return scene;
 }
 
-/// Returns base colors that are looked up in batches or one by one.
+/// Returns base colors that are sampled in batches or one by one.
 ImageRgb base_colors(const ImageTexture& texture, bool with_coordinates, bool together) {
     const Scene scene = textured_scene(texture, with_coordinates, together);
     RasterSettings settings;
@@ -142,7 +142,7 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("base colours of strips: the same bits together and one by one") {
+    TEST_CASE("base colors of strips: the same bits together and one by one") {
         for (const TextureFilter filter : {TextureFilter::kTrilinear, TextureFilter::kAnisotropic})
             for (const bool with_coordinates : {true, false}) {
                 const ImageTexture texture{.image = 0, .scale = {1.7f, -0.6f}, .filter = filter};

@@ -31,7 +31,7 @@ SurfaceMaps half_open() {
     maps.opacity = {1, 0};
     return maps;
 }
-SurfaceMaps veil(float opacity) {
+SurfaceMaps sheet(float opacity) {
     SurfaceMaps maps;
     maps.opacity = opacity;
     return maps;
@@ -90,7 +90,7 @@ TEST_SUITE("statistical") {
 
     TEST_CASE("what is partly there stops its part of the rays") {
         for (const float opacity : {0.1f, 0.5f, 0.85f}) {
-            const Scene scene = two_squares(veil(opacity));
+            const Scene scene = two_squares(sheet(opacity));
             const Accelerator accelerator(scene, 1);
             std::mt19937 random(2);
             std::uniform_real_distribution<float> uniform(-0.99f, 0.99f);
@@ -103,16 +103,15 @@ TEST_SUITE("statistical") {
         }
     }
 
-    TEST_CASE("a lamp that shows a picture: light sampling finds the light that chance finds") {
+    TEST_CASE("a light that shows a image: light sampling finds the light that chance finds") {
         for (const int kind : {0, 1, 2}) { // quad, triangle, sphere
             SceneBuilder builder;
-            ImageRgb picture(8, 4);
-            for (std::size_t i = 0; i < 32; ++i)
-                picture[i] = Rgb(i % 5 == 0 ? 1.0f : 0.1f * static_cast<float>(i % 7));
-            builder.scene.textures = {{ImageTexture{0}}, {picture}};
-            Emissive lamp{Rgb(5.0f), true, {}};
-            lamp.radiance_texture = 0;
-            const std::uint32_t light = builder.material(lamp), grey = builder.material(Diffuse{});
+            ImageRgb image(8, 4);
+            for (std::size_t i = 0; i < 32; ++i) image[i] = Rgb(i % 5 == 0 ? 1.0f : 0.1f * static_cast<float>(i % 7));
+            builder.scene.textures = {{ImageTexture{0}}, {image}};
+            Emissive area_light{Rgb(5.0f), true, {}};
+            area_light.radiance_texture = 0;
+            const std::uint32_t light = builder.material(area_light), grey = builder.material(Diffuse{});
             if (kind == 0) builder.add(quad({-0.5f, 1, 0.5f}, {1, 0, 0}, {0, 0, -1}), light);
             if (kind == 1) {
                 Mesh mesh;

@@ -66,9 +66,9 @@ SceneBuilder floor_seen(Material material, double seen, double cosine = 1) {
 
 constexpr double kSpot = 1e-3; // so small that the irradiance is constant over it
 
-Known lit_spot(const std::string& name, const Shape& lamp) {
+Known lit_spot(const std::string& name, const Shape& area_light) {
     SceneBuilder builder = floor_seen(Diffuse{{Rgb(kAlbedo)}}, kSpot);
-    builder.add(lamp, builder.material(Emissive{Rgb(5.0f)}));
+    builder.add(area_light, builder.material(Emissive{Rgb(5.0f)}));
     Known known{name, builder.finish(), 0};
     for (const Light& light : known.scene.lights)
         known.radiance +=
@@ -100,9 +100,9 @@ std::vector<Known> form_factors() {
     std::vector<Known> all;
     for (const bool above : {true, false}) {
         SceneBuilder builder = floor_seen(Diffuse{{Rgb(kAlbedo)}}, 1);
-        const QuadList lamp =
+        const QuadList area_light =
             above ? quad({-0.5f, 1, -0.5f}, {1, 0, 0}, {0, 0, 1}) : quad({-0.5f, 0, -0.5f}, {1, 0, 0}, {0, 1, 0});
-        builder.add(lamp, builder.material(Emissive{Rgb(1.0f)}));
+        builder.add(area_light, builder.material(Emissive{Rgb(1.0f)}));
         all.push_back({above ? "parallel squares" : "squares at right angles", builder.finish(),
                        static_cast<double>(kAlbedo) * (above ? parallel : upright)});
     }

@@ -22,12 +22,12 @@ TEST_SUITE("unit") {
 
     // A light of width 1 moves 4 meters during the motion, so a point of its path is covered a quarter of the time.
     // Sobol's 1D points are stratified, so 256 samples give the fraction to better than 1/64.
-    TEST_CASE("a moving lamp is seen for the time that it is there, within the shutter") {
+    TEST_CASE("a moving light is seen for the time that it is there, within the shutter") {
         for (const double close : {1.0, 0.25}) {
             SceneBuilder builder;
-            const std::uint32_t lamp = builder.material(Emissive{Rgb(1.0f)});
+            const std::uint32_t area_light = builder.material(Emissive{Rgb(1.0f)});
             const std::uint32_t shape = builder.shape(quad({-0.5f, -1, 0}, {1, 0, 0}, {0, 2, 0}));
-            builder.place_moving(shape, lamp, translation(Vec3(-2, 0, 0)), translation(Vec3(2, 0, 0)));
+            builder.place_moving(shape, area_light, translation(Vec3(-2, 0, 0)), translation(Vec3(2, 0, 0)));
             Camera& camera = builder.scene.camera;
             camera.eye = {-1.2, 0, 5};
             camera.look_at = {-1.2, 0, 0};
@@ -46,8 +46,8 @@ TEST_SUITE("unit") {
     // so the covered area is a circular segment.
     TEST_CASE("an edge out of focus is blurred by the lens's disk") {
         SceneBuilder builder;
-        const std::uint32_t lamp = builder.material(Emissive{Rgb(1.0f)});
-        builder.add(quad({0.2f, -10, -2}, {10, 0, 0}, {0, 20, 0}), lamp);
+        const std::uint32_t area_light = builder.material(Emissive{Rgb(1.0f)});
+        builder.add(quad({0.2f, -10, -2}, {10, 0, 0}, {0, 20, 0}), area_light);
         Camera& camera = builder.scene.camera;
         camera.eye = {0, 0, 0};
         camera.look_at = {0, 0, -1};

@@ -23,10 +23,10 @@ Scene corner(Objects objects) {
     SceneBuilder builder;
     const std::uint32_t white = builder.material(Diffuse{{Rgb(0.7f)}});
     const std::uint32_t brushed = builder.material(Metal{{Rgb(0.9f, 0.8f, 0.7f)}, 0.5f});
-    const std::uint32_t lamp = builder.material(Emissive{Rgb(3.0f), false, {Rgb(0.2f)}});
+    const std::uint32_t area_light = builder.material(Emissive{Rgb(3.0f), false, {Rgb(0.2f)}});
     builder.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}), white);
     builder.add(quad({-2, 0, -2}, {4, 0, 0}, {0, 3, 0}), objects == Objects::kDiffuse ? white : brushed);
-    builder.add(quad({-0.6f, 2.5f, -1}, {1.2f, 0, 0}, {0, 0, 1.2f}), lamp);
+    builder.add(quad({-0.6f, 2.5f, -1}, {1.2f, 0, 0}, {0, 0, 1.2f}), area_light);
     builder.add(icosphere(2, 0.5f, {-0.2f, 0.5f, 0.6f}, true), white);
     if (objects == Objects::kAll) {
         builder.add(Sphere{{-1, 0.6f, -0.8f}, 0.6f}, builder.material(Metal{{Rgb(0.9f)}, 0}));
@@ -84,13 +84,13 @@ Estimate estimate_component(const Scene& scene, PathTracerSettings settings, con
 
 TEST_SUITE("unit") {
 
-    TEST_CASE("the parts add up to the path tracer's picture, sample by sample the same numbers") {
+    TEST_CASE("the parts add up to the path tracer's image, sample by sample the same numbers") {
         const Scene scene = corner(Objects::kAll);
         for (const bool environment : {true, false}) {
             PathTracerSettings settings = with(6);
             settings.environment = environment;
             settings.seed = 5;
-            const ImageRgb picture = render_scene(scene, kSize, settings).radiance;
+            const ImageRgb shown_image = render_scene(scene, kSize, settings).radiance;
             const ComponentTracer tracer(prepare(scene, settings), view_of(scene), settings);
             double largest = 0;
             for (int y = 0; y < kSize; ++y)
@@ -98,7 +98,7 @@ TEST_SUITE("unit") {
                     Rgbd sum;
                     for (std::uint32_t i = 0; i < 6; ++i) sum += Rgbd(tracer.sample(x, y, i).light.sum());
                     for (std::size_t c = 0; c < 3; ++c) {
-                        const double expected = static_cast<double>(picture(x, y)[c]);
+                        const double expected = static_cast<double>(shown_image(x, y)[c]);
                         largest = std::max(largest, std::abs(sum[c] / 6 - expected) / (expected + 1e-3));
                     }
                 }
@@ -142,7 +142,7 @@ TEST_SUITE("unit") {
             CHECK(part.g > 1);
     }
 
-    TEST_CASE("a moving lamp is no light of the scene: what it sends counts as indirect") {
+    TEST_CASE("a moving light is no light of the scene: what it sends counts as indirect") {
         SceneBuilder builder;
         builder.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}), builder.material(Diffuse{{Rgb(0.7f)}}));
         builder.place_moving(builder.shape(Sphere{{0, 0, 0}, 0.5f}), builder.material(Emissive{Rgb(8.0f)}),

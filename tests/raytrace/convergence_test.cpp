@@ -16,15 +16,16 @@ namespace {
 constexpr int kSide = 8; // pixels
 
 // The scene is a floor viewed straight from above and a light beside the visible part.
-constexpr double kAlbedo = 0.5, kLampRadiance = 4;
-constexpr std::array<Vec3d, 4> kLamp{Vec3d(-1.6, 0.2, 0.8), Vec3d(-1.6, 0.2, -0.8), Vec3d(-1.6, 1.2, -0.8),
-                                     Vec3d(-1.6, 1.2, 0.8)};
+constexpr double kAlbedo = 0.5, kLightRadiance = 4;
+constexpr std::array<Vec3d, 4> kAreaLight{Vec3d(-1.6, 0.2, 0.8), Vec3d(-1.6, 0.2, -0.8), Vec3d(-1.6, 1.2, -0.8),
+                                          Vec3d(-1.6, 1.2, 0.8)};
 
 Scene lit_floor() {
     SceneBuilder builder;
     builder.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}), builder.material(Diffuse{{Rgb(static_cast<float>(kAlbedo))}}));
-    const std::uint32_t lamp = builder.material(Emissive{Rgb(static_cast<float>(kLampRadiance))});
-    builder.add(quad(Vec3(kLamp[0]), Vec3(kLamp[1] - kLamp[0]), Vec3(kLamp[3] - kLamp[0])), lamp);
+    const std::uint32_t area_light = builder.material(Emissive{Rgb(static_cast<float>(kLightRadiance))});
+    builder.add(quad(Vec3(kAreaLight[0]), Vec3(kAreaLight[1] - kAreaLight[0]), Vec3(kAreaLight[3] - kAreaLight[0])),
+                area_light);
     Camera& camera = builder.scene.camera;
     camera.projection = Camera::Projection::kOrthographic;
     camera.eye = {0, 5, 0};
@@ -37,12 +38,12 @@ Scene lit_floor() {
 // Returns the irradiance at a point of the floor by Lambert's formula for a polygon above the horizon (1760).
 double irradiance(Vec3d p) {
     double sum = 0;
-    for (std::size_t i = 0; i < kLamp.size(); ++i) {
-        const Vec3d a = normalize(kLamp[i] - p), b = normalize(kLamp[(i + 1) % kLamp.size()] - p);
+    for (std::size_t i = 0; i < kAreaLight.size(); ++i) {
+        const Vec3d a = normalize(kAreaLight[i] - p), b = normalize(kAreaLight[(i + 1) % kAreaLight.size()] - p);
         const Vec3d normal = cross(a, b);
         sum += std::atan2(length(normal), dot(a, b)) * normalize(normal).y;
     }
-    return std::abs(sum) * kLampRadiance / 2;
+    return std::abs(sum) * kLightRadiance / 2;
 }
 
 // Returns the mean radiance of the floor over each pixel. Gauss-Legendre quadrature with 5 × 5 points is exact to
@@ -75,8 +76,8 @@ double squared_error(const PathTracerScene& prepared, const Scene& scene, const 
     for (int seed = 1; seed <= kSeeds; ++seed) {
         settings.seed = static_cast<std::uint64_t>(seed);
         Control control;
-        const ImageRgb picture = render(prepared, View{scene.camera, kSide, kSide}, settings, control).radiance;
-        for (std::size_t i = 0; i < truth.size(); ++i) sum += sqr(static_cast<double>(picture[i].g) - truth[i]);
+        const ImageRgb image = render(prepared, View{scene.camera, kSide, kSide}, settings, control).radiance;
+        for (std::size_t i = 0; i < truth.size(); ++i) sum += sqr(static_cast<double>(image[i].g) - truth[i]);
     }
     return sum / (kSeeds * static_cast<double>(truth.size()));
 }

@@ -37,14 +37,14 @@ TEST_SUITE("statistical") {
 
         const std::vector<CornellBlock> blocks = published_means();
         REQUIRE(blocks.size() > 50);
-        Rgbd ours, theirs, ours_without_lamp, theirs_without_lamp;
+        Rgbd ours, theirs, ours_without_area_light, theirs_without_area_light;
         for (const CornellBlock& block : blocks) {
             const Rgbd mean = block_mean(rendering.radiance, block.row, block.column);
             ours += mean;
             theirs += block.mean;
             if (!block.holds_light()) {
-                ours_without_lamp += mean;
-                theirs_without_lamp += block.mean;
+                ours_without_area_light += mean;
+                theirs_without_area_light += block.mean;
             }
             for (std::size_t channel = 0; channel < 3; ++channel) {
                 if (block.mean[channel] <= 0.005) continue;
@@ -57,10 +57,10 @@ TEST_SUITE("statistical") {
         for (std::size_t channel = 0; channel < 3; ++channel) {
             INFO("channel ", channel);
             MESSAGE("channel ", channel, ": whole ", ours[channel] / 256, " of ", published[channel],
-                    ", without lamp ratio ", ours_without_lamp[channel] / theirs_without_lamp[channel]);
+                    ", without light ratio ", ours_without_area_light[channel] / theirs_without_area_light[channel]);
             CHECK(std::abs(ours[channel] / 256 / published[channel] - 1) <= 0.001);
             CHECK(std::abs(ours[channel] / theirs[channel] - 1) <= 0.001);
-            CHECK(std::abs(ours_without_lamp[channel] / theirs_without_lamp[channel] - 1) <= 0.001);
+            CHECK(std::abs(ours_without_area_light[channel] / theirs_without_area_light[channel] - 1) <= 0.001);
         }
         Rgbd outside;
         for (const Rgb& pixel : rendering.radiance) outside += Rgbd(pixel);

@@ -97,19 +97,20 @@ TEST_SUITE("unit") {
                 CAPTURE(scale);
                 CAPTURE(kind);
                 SceneBuilder builder = floor_scene(scale);
-                const std::uint32_t lamp = builder.material(Emissive{Rgb(1.0f)});
+                const std::uint32_t area_light = builder.material(Emissive{Rgb(1.0f)});
                 switch (kind) {
                 case 0:
-                    builder.add(quad(Vec3(-1, 1, -1) * scale, Vec3(2, 0, 0) * scale, Vec3(0, 0, 2) * scale), lamp);
+                    builder.add(quad(Vec3(-1, 1, -1) * scale, Vec3(2, 0, 0) * scale, Vec3(0, 0, 2) * scale),
+                                area_light);
                     break;
                 case 1:
-                    builder.add(Sphere{Vec3(0.5f, 2, 0) * scale, scale}, lamp);
+                    builder.add(Sphere{Vec3(0.5f, 2, 0) * scale, scale}, area_light);
                     break;
                 case 2:
-                    builder.add(icosphere(1, scale, Vec3(0.5f, 2, 0) * scale), lamp);
+                    builder.add(icosphere(1, scale, Vec3(0.5f, 2, 0) * scale), area_light);
                     break;
                 default: // a transform with rounding
-                    builder.place(builder.shape(box_quads({-1, -1, -1}, {1, 1, 1})), lamp,
+                    builder.place(builder.shape(box_quads({-1, -1, -1}, {1, 1, 1})), area_light,
                                   translation(Vec3(0.4f, 2, 0.1f) * scale) * rotation(normalize(Vec3(1, 2, 3)), 0.7f) *
                                       scaling(Vec3(0.3f, 0.3f, 0.3f) * scale));
                 }
@@ -121,17 +122,17 @@ TEST_SUITE("unit") {
             }
     }
 
-    TEST_CASE("a lamp and a panel in one place: light samples and hits agree on which is in front") {
-        for (const bool lamp_first : {true, false}) {
+    TEST_CASE("a light and a panel in one place: light samples and hits agree on which is in front") {
+        for (const bool area_light_first : {true, false}) {
             SceneBuilder builder = floor_scene();
-            const std::uint32_t lamp = builder.material(Emissive{Rgb(1.0f)});
-            builder.add(quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}), lamp_first ? lamp : 0);
-            builder.add(quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}), lamp_first ? 0 : lamp);
+            const std::uint32_t area_light = builder.material(Emissive{Rgb(1.0f)});
+            builder.add(quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}), area_light_first ? area_light : 0);
+            builder.add(quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}), area_light_first ? 0 : area_light);
             const Scene scene = builder.finish();
             const Estimate seen = estimate(scene, 4, with(Integrator::kNaive, 64), 4);
             const Estimate sampled = estimate(scene, 4, with(Integrator::kDirect, 64), 4);
-            CHECK((seen.mean > 0) == lamp_first);
-            CHECK(sampled.mean == doctest::Approx(lamp_first ? closed_form(scene) : 0).epsilon(0.02));
+            CHECK((seen.mean > 0) == area_light_first);
+            CHECK(sampled.mean == doctest::Approx(area_light_first ? closed_form(scene) : 0).epsilon(0.02));
         }
     }
 
@@ -166,22 +167,22 @@ TEST_SUITE("statistical") {
                 CAPTURE(kind);
                 CAPTURE(static_cast<int>(integrator));
                 SceneBuilder builder = floor_scene();
-                const std::uint32_t lamp = builder.material(Emissive{Rgb(5.0f)});
+                const std::uint32_t area_light = builder.material(Emissive{Rgb(5.0f)});
                 switch (kind) {
                 case 0:
-                    builder.add(quad({-1, 1, -0.5f}, {2, 0.2f, 0}, {0, 0, 1}), lamp);
+                    builder.add(quad({-1, 1, -0.5f}, {2, 0.2f, 0}, {0, 0, 1}), area_light);
                     break;
                 case 1: // partly below the floor's horizon
-                    builder.add(quad({1, -0.5f, -0.5f}, {0, 0, 1}, {0, 2, 0}), lamp);
+                    builder.add(quad({1, -0.5f, -0.5f}, {0, 0, 1}, {0, 2, 0}), area_light);
                     break;
                 case 2:
-                    builder.add(Sphere{{1, 0.3f, 0}, 0.7f}, lamp);
+                    builder.add(Sphere{{1, 0.3f, 0}, 0.7f}, area_light);
                     break;
                 default: {
                     Mesh mesh;
                     mesh.positions = {{-1, 1, -1}, {1, 1.5f, -1}, {0, 2, 1}};
                     mesh.triangles = {{0, 1, 2}};
-                    builder.add(mesh, lamp);
+                    builder.add(mesh, area_light);
                 }
                 }
                 const Scene scene = builder.finish();
@@ -192,7 +193,7 @@ TEST_SUITE("statistical") {
             }
     }
 
-    TEST_CASE("irradiance from the sky is that of the closed form; so is that from a bright patch of a picture") {
+    TEST_CASE("irradiance from the sky is that of the closed form; so is that from a bright patch of a image") {
         for (const bool sky : {true, false}) {
             SceneBuilder builder = floor_scene();
             double expected = 0;

@@ -12,7 +12,7 @@ namespace {
 
 // Returns a floor and a wall below forty lights of all shapes, sizes and powers, on both sides of the surfaces that
 // they illuminate.
-Scene many_lamps() {
+Scene many_area_lights() {
     SceneBuilder builder;
     const std::uint32_t white = builder.material(Diffuse{{Rgb(0.7f)}});
     const std::uint32_t brushed = builder.material(Metal{{Rgb(0.9f, 0.8f, 0.7f)}, 0.5f});
@@ -23,10 +23,12 @@ Scene many_lamps() {
         s.start(0, 0, i);
         const auto u = s.get_block(), v = s.get_block();
         const Vec3 p(4 * u[0] - 2, 0.4f + 2 * u[1], 4 * u[2] - 2);
-        const std::uint32_t lamp = builder.material(Emissive{Rgb(0.5f + 8 * u[3] * u[3]), u[4] < 0.4f});
+        const std::uint32_t area_light = builder.material(Emissive{Rgb(0.5f + 8 * u[3] * u[3]), u[4] < 0.4f});
         const Vec3 a = Vec3(u[5] - 0.5f, u[6] - 0.5f, u[7] - 0.5f), b = Vec3(v[0] - 0.5f, v[1] - 0.5f, v[2] - 0.5f);
-        if (i % 3 == 0) builder.add(Sphere{p, 0.05f + 0.2f * v[3]}, lamp);
-        else builder.add(quad(p, a, b), lamp);
+        if (i % 3 == 0)
+            builder.add(Sphere{p, 0.05f + 0.2f * v[3]}, area_light);
+        else
+            builder.add(quad(p, a, b), area_light);
     }
     builder.scene.camera.eye = {0.5f, 2, 6};
     builder.scene.camera.look_at = {0, 0.8f, 0};
@@ -35,7 +37,7 @@ Scene many_lamps() {
 }
 
 // Returns a sphere on a floor under a sky with a sun of a few pixels and little else above the mean.
-Scene under_a_picture() {
+Scene under_a_image() {
     SceneBuilder builder;
     builder.add(quad({-3, 0, 3}, {6, 0, 0}, {0, 0, -6}), builder.material(Diffuse{{Rgb(0.6f)}}));
     builder.add(Sphere{{0, 0.7f, 0}, 0.7f}, builder.material(Metal{{Rgb(0.9f)}, 0.6f}));
@@ -52,26 +54,26 @@ Scene under_a_picture() {
 } // namespace
 
 TEST_SUITE("unit") {
-    TEST_CASE("an even sky has no shadow rays, a picture with a sun has") {
+    TEST_CASE("an even sky has no shadow rays, a image with a sun has") {
         PathTracerSettings settings;
         settings.samples_per_pixel = 4;
-        const Rendering picture = render_scene(under_a_picture(), 16, settings);
-        CHECK(picture.statistics.shadow_rays > 100);
+        const Rendering image = render_scene(under_a_image(), 16, settings);
+        CHECK(image.statistics.shadow_rays > 100);
         SceneBuilder builder;
         builder.add(Sphere{{0, 0, 0}, 1}, builder.material(Diffuse{{Rgb(0.6f)}}));
         builder.scene.environment = SkyEnvironment{};
         const Scene plain = builder.finish();
         const Rendering even = render_scene(plain, 16, settings);
         CHECK(even.statistics.shadow_rays == 0);
-        bool told = false;
-        for (const SkippedWork& s : even.statistics.skipped) told |= s.what == "light samples";
-        CHECK(told);
+        bool messages = false;
+        for (const SkippedWork& s : even.statistics.skipped) messages |= s.what == "light samples";
+        CHECK(messages);
     }
 
     TEST_CASE("a wider filter sees what lies beside its pixel") {
         SceneBuilder builder;
-        const std::uint32_t lamp = builder.material(Emissive{Rgb(1.0f), true});
-        builder.add(quad({0, -5, 0}, {5, 0, 0}, {0, 10, 0}), lamp); // the right half
+        const std::uint32_t area_light = builder.material(Emissive{Rgb(1.0f), true});
+        builder.add(quad({0, -5, 0}, {5, 0, 0}, {0, 10, 0}), area_light); // the right half
         builder.scene.camera.eye = {0, 0, 2};
         builder.scene.camera.look_at = {0, 0, 0};
         const Scene scene = builder.finish();
@@ -96,8 +98,8 @@ TEST_SUITE("unit") {
 TEST_SUITE("statistical") {
     // The bound is six standard errors of the difference over ten seeds each, which is exceeded by chance once in
     // 90,000 times.
-    TEST_CASE("light samples of many lamps, and of an environment's peaks, give what chance finds") {
-        const std::pair<Scene, int> scenes[] = {{many_lamps(), 128}, {under_a_picture(), 256}};
+    TEST_CASE("light samples of many lights, and of an environment's peaks, give what chance finds") {
+        const std::pair<Scene, int> scenes[] = {{many_area_lights(), 128}, {under_a_image(), 256}};
         for (const auto& [scene, naive_samples] : scenes) {
             PathTracerSettings settings;
             settings.samples_per_pixel = 32;
@@ -114,7 +116,7 @@ TEST_SUITE("statistical") {
     }
 
     TEST_CASE("blue noise estimates what other samplers do") {
-        const Scene scene = many_lamps();
+        const Scene scene = many_area_lights();
         PathTracerSettings settings;
         settings.samples_per_pixel = 16;
         settings.max_depth = 4;

@@ -172,10 +172,10 @@ TEST_SUITE("unit") {
         settings.seed = 1;
         const StoredFilm other = film_of(scene, settings, folder / "other.exr", 40, 50);
         const std::string error = error_of([&] { merge_films({{"a", a}, {"other", other}}); });
-        CHECK(error == Containing("other: a film of another picture: seed: found 1, expected 0"));
+        CHECK(error == Containing("other: a film of another image: seed: found 1, expected 0"));
     }
 
-    TEST_CASE("a film of another picture, or none at all, is not continued") {
+    TEST_CASE("a film of another image, or none at all, is not continued") {
         const Scene scene = small_scene();
         const ScratchFolder folder;
         PathTracerSettings settings;

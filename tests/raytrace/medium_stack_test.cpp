@@ -77,7 +77,8 @@ private:
 
 TEST_SUITE("unit") {
 
-    TEST_CASE("nested dielectrics: the higher priority fills the place, boundaries in it are none, indices are relative") {
+    TEST_CASE("nested dielectrics: the higher priority fills the place, boundaries in it are none, indices are "
+              "relative") {
         {
             const Spheres spheres(glass(1.5f, 1), glass(1.33f, 2)); // a drop in glass
             PathWalk walk(spheres.scene);
@@ -127,7 +128,7 @@ TEST_SUITE("unit") {
         PathTracerSettings settings;
         settings.sampler = SamplerKind::kCenter;
         settings.samples_per_pixel = 1;
-        const Rendering picture = render_scene(scene, 32, settings);
+        const Rendering image = render_scene(scene, 32, settings);
         const CameraModel camera(View{scene.camera, 32, 32});
         for (int y = 0; y < 32; ++y)
             for (int x = 0; x < 32; ++x) {
@@ -135,7 +136,7 @@ TEST_SUITE("unit") {
                 const double b = dot(Vec3d(ray.origin), Vec3d(ray.direction)),
                              c = length_squared(Vec3d(ray.origin)) - 1;
                 const double chord = b * b > c ? 2 * std::sqrt(b * b - c) : 0;
-                CHECK(static_cast<double>(picture.radiance(x, y).g) ==
+                CHECK(static_cast<double>(image.radiance(x, y).g) ==
                       doctest::Approx(std::exp(-0.8 * chord)).epsilon(1e-3));
             }
     }
@@ -154,7 +155,8 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("more dielectrics within each other than are remembered: those entered last fill nothing, the rest is kept") {
+    TEST_CASE("more dielectrics within each other than are remembered: those entered last fill nothing, the rest "
+              "is kept") {
         const Spheres spheres(glass(1.5f, 1, Rgb(1.0f)), glass(1.33f, 2));
         PathWalk walk(spheres.scene);
         walk.arrive();

@@ -13,22 +13,22 @@ namespace {
 
 // Returns a corner with a large light, a small bright light that moves (light sampling cannot find it), a dim sky,
 // and a material of every kind.
-Scene corner(bool moving_lamp) {
+Scene corner(bool moving_area_light) {
     SceneBuilder builder;
     const std::uint32_t white = builder.material(Diffuse{{Rgb(0.8f)}});
     const std::uint32_t brushed = builder.material(Metal{{Rgb(0.9f, 0.8f, 0.7f)}, 0.4f});
     const std::uint32_t mirror = builder.material(Metal{{Rgb(0.9f)}, 0});
     const std::uint32_t glass = builder.material(Dielectric{1.5f, {Rgb(0.95f)}});
-    const std::uint32_t lamp = builder.material(Emissive{Rgb(3.0f)});
+    const std::uint32_t area_light = builder.material(Emissive{Rgb(3.0f)});
     const std::uint32_t glow = builder.material(Emissive{Rgb(8.0f), true, {Rgb(0.3f)}});
     builder.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}), white);
     builder.add(quad({-2, 0, -2}, {4, 0, 0}, {0, 3, 0}), brushed);
     builder.add(quad({-2, 0, 2}, {0, 0, -4}, {0, 3, 0}), white);
-    builder.add(quad({-1, 2.5f, -1.5f}, {2, 0, 0}, {0, 0, 2}), lamp);
+    builder.add(quad({-1, 2.5f, -1.5f}, {2, 0, 0}, {0, 0, 2}), area_light);
     builder.add(Sphere{{-1, 0.6f, -0.8f}, 0.6f}, mirror);
     builder.add(Sphere{{0.8f, 0.5f, 0.2f}, 0.5f}, glass);
     builder.add(icosphere(2, 0.5f, {-0.2f, 0.5f, 0.6f}, true), brushed);
-    if (moving_lamp) {
+    if (moving_area_light) {
         const std::uint32_t ball = builder.shape(Sphere{{0, 0, 0}, 0.3f});
         builder.place_moving(ball, glow, translation(Vec3(1.2f, 1.5f, -1)), translation(Vec3(1.2f, 1.0f, -0.5f)));
     } else {
@@ -104,7 +104,7 @@ TEST_SUITE("statistical") {
 
     // The bound is six standard errors of the difference over ten seeds each, which is exceeded by chance once in
     // 90,000 times.
-    TEST_CASE("path tracing with light samples gives what it gives without, moving lamps included") {
+    TEST_CASE("path tracing with light samples gives what it gives without, moving lights included") {
         for (const bool moving : {false, true}) {
             CAPTURE(moving);
             const Scene scene = corner(moving);

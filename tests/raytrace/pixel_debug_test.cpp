@@ -20,10 +20,10 @@ Scene lit_room() {
     SceneBuilder builder;
     const std::uint32_t grey = builder.material(Diffuse{{Rgb(0.5f, 0.6f, 0.7f)}});
     const std::uint32_t glass = builder.material(Dielectric{});
-    const std::uint32_t lamp = builder.material(Emissive{Rgb(4.0f)});
+    const std::uint32_t area_light = builder.material(Emissive{Rgb(4.0f)});
     builder.add(quad({-3, -1, 3}, {6, 0, 0}, {0, 0, -6}), grey);
     builder.add(Sphere{{-0.7f, 0, 0}, 1}, glass);
-    builder.add(quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}), lamp);
+    builder.add(quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}), area_light);
     builder.scene.environment = SkyEnvironment{};
     return builder.finish();
 }
@@ -73,7 +73,7 @@ TEST_SUITE("unit") {
         CHECK_FALSE(render(prepare(sound, settings), view, settings, control).statistics.first_invalid);
     }
 
-    TEST_CASE("the sample that is told is the one that the picture has, to the bit") {
+    TEST_CASE("the sample that is told is the one that the image has, to the bit") {
         const Scene scene = lit_room();
         const View view{scene.camera, 24, 16};
         for (const Integrator integrator : {Integrator::kPath, Integrator::kNaive, Integrator::kNormal}) {

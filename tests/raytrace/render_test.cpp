@@ -17,11 +17,11 @@ Scene small_scene() {
     SceneBuilder builder;
     const std::uint32_t grey = builder.material(Diffuse{{Rgb(0.5f, 0.6f, 0.7f)}});
     const std::uint32_t metal = builder.material(Metal{{Rgb(0.9f)}, 0.3f});
-    const std::uint32_t lamp = builder.material(Emissive{Rgb(4.0f)});
+    const std::uint32_t area_light = builder.material(Emissive{Rgb(4.0f)});
     builder.add(quad({-3, -1, 3}, {6, 0, 0}, {0, 0, -6}), grey);
     builder.add(Sphere{{-0.7f, 0, 0}, 1}, metal);
     builder.add(icosphere(2, 0.7f, {1, -0.3f, 0.3f}, true), grey);
-    builder.add(quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}), lamp);
+    builder.add(quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}), area_light);
     builder.scene.environment = SkyEnvironment{};
     builder.scene.camera.aperture_radius = 0.02;
     return builder.finish();
@@ -152,7 +152,7 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("auxiliary pictures show what the camera's rays hit") {
+    TEST_CASE("auxiliary images show what the camera's rays hit") {
         SceneBuilder builder;
         builder.add(quad({-5, -5, -3}, {10, 0, 0}, {0, 10, 0}), builder.material(Diffuse{{Rgb(0.2f, 0.4f, 0.6f)}}));
         builder.add(quad({-5, -5, -4}, {0, 10, 0}, {10, 0, 0}), 0); // hidden
@@ -209,7 +209,7 @@ TEST_SUITE("unit") {
         for (const Rgb& pixel : render_scene(scene, 8, settings).radiance) CHECK(pixel.g == 2);
     }
 
-    TEST_CASE("colours of surfaces: normals and albedos") {
+    TEST_CASE("colors of surfaces: normals and albedos") {
         SceneBuilder builder;
         builder.add(quad({-5, -5, -1}, {10, 0, 0}, {0, 10, 0}), builder.material(Diffuse{{Rgb(0.2f, 0.4f, 0.6f)}}));
         builder.scene.camera.eye = {0, 0, 1};
@@ -232,11 +232,11 @@ TEST_SUITE("unit") {
         const Scene lit = builder.finish();
         PathTracerSettings settings;
         settings.samples_per_pixel = 4;
-        const Rendering with_lamp = render_scene(lit, 16, settings);
+        const Rendering with_area_light = render_scene(lit, 16, settings);
         for (const auto* what : {"textures", "lens samples", "time samples", "environment", "instance transforms"})
-            CHECK_MESSAGE(has(with_lamp.statistics.skipped, what), what);
+            CHECK_MESSAGE(has(with_area_light.statistics.skipped, what), what);
         settings.environment = false;
-        CHECK(with_lamp.radiance.pixels() == render_scene(lit, 16, settings).radiance.pixels());
+        CHECK(with_area_light.radiance.pixels() == render_scene(lit, 16, settings).radiance.pixels());
 
         // Light samples cannot contribute at mirrors, so skipping them must not change the result.
         builder = {};

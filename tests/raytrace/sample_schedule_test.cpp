@@ -41,9 +41,9 @@ void set_all_targets(Film& film, std::uint32_t samples) {
 Scene light_scene(float radiance = 10) {
     SceneBuilder builder;
     const std::uint32_t grey = builder.material(Diffuse{{Rgb(0.5f)}});
-    const std::uint32_t lamp = builder.material(Emissive{Rgb(radiance)});
+    const std::uint32_t area_light = builder.material(Emissive{Rgb(radiance)});
     builder.add(quad({-3, -1, 3}, {6, 0, 0}, {0, 0, -6}), grey);
-    builder.add(quad({-0.5f, 0.4f, 0.2f}, {0.6f, 0.1f, 0}, {0, 0.4f, 0}), lamp);
+    builder.add(quad({-0.5f, 0.4f, 0.2f}, {0.6f, 0.1f, 0}, {0, 0.4f, 0}), area_light);
     return builder.finish();
 }
 
@@ -54,13 +54,13 @@ Rendering rendered(const Scene& scene, const PathTracerSettings& settings, int s
     return render(prepare(scene, settings), View{scene.camera, scale * kWidth, scale * kHeight}, settings, control);
 }
 
-double relmse(const ImageRgb& picture, const ImageRgb& truth) {
+double relmse(const ImageRgb& image, const ImageRgb& truth) {
     double sum = 0;
-    for (std::size_t i = 0; i < picture.size(); ++i)
+    for (std::size_t i = 0; i < image.size(); ++i)
         for (std::size_t c = 0; c < 3; ++c)
-            sum += sqr(static_cast<double>(picture[i][c]) - static_cast<double>(truth[i][c])) /
+            sum += sqr(static_cast<double>(image[i][c]) - static_cast<double>(truth[i][c])) /
                    (sqr(static_cast<double>(truth[i][c])) + 0.01);
-    return sum / (3.0 * static_cast<double>(picture.size()));
+    return sum / (3.0 * static_cast<double>(image.size()));
 }
 
 ImageRgb reference(const Scene& scene, int scale = 1) {
@@ -86,7 +86,7 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("passes grow, stop at the limits, and end at the samples asked for") {
+    TEST_CASE("passes grow, stop at the limits, and end at the samples requested") {
         PathTracerSettings settings;
         settings.samples_per_pixel = 100;
         CHECK(planned(settings, 0) == 16);
@@ -158,7 +158,7 @@ TEST_SUITE("unit") {
         CHECK(planned(settings, 32) == 40);
     }
 
-    TEST_CASE("an adaptive render has the samples asked for in the mean, the same bits for any threads, and goes on") {
+    TEST_CASE("an adaptive render has the samples requested in the mean, the same bits for any threads, and goes on") {
         const Scene scene = light_scene();
         PathTracerSettings settings;
         settings.adaptive = true;
@@ -192,11 +192,11 @@ TEST_SUITE("statistical") {
             settings.seed = static_cast<std::uint64_t>(seed);
             even += relmse(rendered(scene, settings).radiance, truth);
             settings.adaptive = true;
-            const ImageRgb picture = rendered(scene, settings).radiance;
-            spread += relmse(picture, truth);
-            for (std::size_t i = 0; i < picture.size(); ++i) {
-                sum[i] += Rgbd(picture[i]);
-                squares[i] += Rgbd(picture[i]) * Rgbd(picture[i]);
+            const ImageRgb image = rendered(scene, settings).radiance;
+            spread += relmse(image, truth);
+            for (std::size_t i = 0; i < image.size(); ++i) {
+                sum[i] += Rgbd(image[i]);
+                squares[i] += Rgbd(image[i]) * Rgbd(image[i]);
             }
         }
         MESSAGE("error of even over spread samples: ", even / spread);
@@ -215,7 +215,7 @@ TEST_SUITE("statistical") {
     // A few pixels on the light's silhouette have most of the error. It scatters by more than a factor of ten, with a
     // median far below its mean, so the render ends near the target but not exactly there. The command compare stop
     // tests the scenes of models/.
-    TEST_CASE("the error got is no more than the error asked for, and not much less") {
+    TEST_CASE("the error got is no more than the error requested, and not much less") {
         const Scene scene = light_scene(1);
         constexpr int kScale = 3;
         const ImageRgb truth = reference(scene, kScale);

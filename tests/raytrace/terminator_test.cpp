@@ -38,7 +38,7 @@ TEST_SUITE("unit") {
             const PathTracerScene prepared = prepare(scene, settings);
             const View view{scene.camera, 128, 128};
             Control control;
-            const Rendering picture = render(prepared, view, settings, control);
+            const Rendering image = render(prepared, view, settings, control);
             const CameraModel camera(view);
             const Vec3 to_sun = -std::get<SunLight>(scene.lights[0]).direction;
             int seen = 0, below_facet = 0, wrong = 0;
@@ -51,7 +51,7 @@ TEST_SUITE("unit") {
                     const float expected = max(0.0f, dot(point.ns, to_sun));
                     ++seen;
                     below_facet += dot(point.ng, to_sun) <= 0 && expected > 0.02f;
-                    wrong += std::abs(picture.radiance(x, y).g - expected) > 1e-3f;
+                    wrong += std::abs(image.radiance(x, y).g - expected) > 1e-3f;
                 }
             CHECK(seen > 3000);
             // These facets face away from the sun although the smooth surface does not. They would cause steps.

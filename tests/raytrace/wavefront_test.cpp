@@ -238,7 +238,7 @@ TEST_SUITE("unit") {
             }
     }
 
-    TEST_CASE("and whatever paths are asked for") {
+    TEST_CASE("and whatever paths are requested") {
         const Scene scene = room(RoomLight::kRectangle, ObjectCount::kFew, {});
         const auto check_with = [&](const auto& change) {
             PathTracerSettings settings;

@@ -158,7 +158,7 @@ std::vector<std::uint32_t> add_obj_materials(const std::filesystem::path& file, 
             scene.textures.textures.push_back(
                 ImageTexture{images.load(texture.file, texture.selection), texture.scale});
         } catch (const Error& error) {
-            throw Error(message(file.string(), ": a picture of its MTL file: ", error.what()));
+            throw Error(message(file.string(), ": a image of its MTL file: ", error.what()));
         }
     }
     std::vector<std::uint32_t> indices;

@@ -16,7 +16,11 @@ const shapes = [
   "M0-7L2-2L7-2L3 1.5L4.5 7L0 3.5L-4.5 7L-3 1.5L-7-2L-2-2z",
 ];
 const dashes = ["", "7 4", "2 4", "10 4 2 4"];
-const style = index => ({ color: `var(--s${index % 7})`, shape: shapes[index % shapes.length], dash: dashes[Math.floor(index / 7) % dashes.length] });
+const style = index => ({
+  color: `var(--s${index % 7})`,
+  shape: shapes[index % shapes.length],
+  dash: dashes[Math.floor(index / 7) % dashes.length]
+});
 
 const legendMark = index => {
   const { color, shape } = style(index);
@@ -65,15 +69,20 @@ function plot({ curves, xName, yName, xTicks, label }) {
   const groups = curves.map(curve => drawCurve(svg, curve, x, y));
   nameCurves(svg, curves, groups, x, y);
   svg.append(
-    svgNode("text", { x: (x.from + x.to) / 2, y: frame.height - 10, "text-anchor": "middle", class: "axis-name" }, [xName]),
-    svgNode("text", { transform: `translate(16 ${(y.from + y.to) / 2}) rotate(-90)`, "text-anchor": "middle", class: "axis-name" }, [yName]));
+      svgNode(
+          "text", {x: (x.from + x.to) / 2, y: frame.height - 10, "text-anchor": "middle", class: "axis-name"}, [xName]),
+      svgNode(
+          "text",
+          {transform: `translate(16 ${(y.from + y.to) / 2}) rotate(-90)`, "text-anchor": "middle", class: "axis-name"},
+          [yName]));
   steerByKeys(groups.map(g => g.points));
   return svg;
 }
 
 function drawGrid(svg, x, y, xTicks) {
   const vertical = xTicks ? { whole: xTicks.map(v => ({ value: v, label: String(v) })), fine: [] } : x.ticks();
-  const line = (fine, x1, y1, x2, y2) => svg.append(svgNode("line", { class: fine ? "grid fine" : "grid", x1, y1, x2, y2 }));
+  const line = (fine, x1, y1, x2, y2) =>
+      svg.append(svgNode("line", {class: fine ? "grid fine" : "grid", x1, y1, x2, y2}));
   for (const [list, fine] of [[vertical.fine, true], [vertical.whole, false]])
     for (const tick of list) {
       const at = x.at(tick.value);
@@ -92,26 +101,46 @@ function drawGrid(svg, x, y, xTicks) {
 // Draws dotted lines of constant error × cost. Independent samples follow them.
 function drawGuides(svg, x, y) {
   const clip = `plot-${document.querySelectorAll("clipPath").length}-${Math.random().toString(36).slice(2)}`;
-  svg.append(svgNode("clipPath", { id: clip }, [svgNode("rect", { x: x.from, y: y.to, width: x.to - x.from, height: y.from - y.to })]));
+  svg.append(svgNode(
+      "clipPath", {id: clip}, [svgNode("rect", {x: x.from, y: y.to, width: x.to - x.from, height: y.from - y.to})]));
   const group = svgNode("g", { "clip-path": `url(#${clip})` });
   for (let c = Math.floor(x.low + y.low); c <= Math.ceil(x.high + y.high); ++c)
-    group.append(svgNode("line", { class: "guide", x1: x.at(10 ** x.low), y1: y.at(10 ** (c - x.low)), x2: x.at(10 ** x.high), y2: y.at(10 ** (c - x.high)) }));
+    group.append(svgNode("line", {
+      class: "guide",
+      x1: x.at(10 ** x.low),
+      y1: y.at(10 ** (c - x.low)),
+      x2: x.at(10 ** x.high),
+      y2: y.at(10 ** (c - x.high))
+    }));
   svg.append(group);
 }
 
 function drawCurve(svg, curve, x, y) {
   const { color, shape, dash } = style(curve.index);
   const group = svgNode("g", { class: "series" });
-  const along = key => curve.points.map(p => `${x.at(p.x).toFixed(1)} ${y.at(Math.max(p[key], 10 ** y.low)).toFixed(1)}`);
+  const along = key =>
+      curve.points.map(p => `${x.at(p.x).toFixed(1)} ${y.at(Math.max(p[key], 10 ** y.low)).toFixed(1)}`);
   group.append(
-    svgNode("path", { class: "band", fill: color, d: `M${along("high").join("L")}L${along("low").reverse().join("L")}z` }),
-    svgNode("path", { class: "curve", stroke: color, "stroke-dasharray": dash, d: `M${along("y").join("L")}` }));
+      svgNode(
+          "path", {class: "band", fill: color, d: `M${along("high").join("L")}L${along("low").reverse().join("L")}z`}),
+      svgNode("path", {class: "curve", stroke: color, "stroke-dasharray": dash, d: `M${along("y").join("L")}`}));
   const points = curve.points.map(p => {
     const px = x.at(p.x), py = y.at(p.y);
-    group.append(svgNode("line", { class: "bar", stroke: color, x1: px, x2: px, y1: y.at(Math.max(p.low, 10 ** y.low)), y2: y.at(p.high) }));
-    const node = svgNode("g", { class: "point", transform: `translate(${px} ${py})`, tabindex: -1, role: "img", "aria-label": p.text.replaceAll("\n", ", ") }, [
-      svgNode("circle", { class: "target", r: 13 }), svgNode("circle", { class: "ring", r: 11 }),
-      svgNode("path", { class: "shape", d: shape, stroke: color })]);
+    group.append(svgNode(
+        "line",
+        {class: "bar", stroke: color, x1: px, x2: px, y1: y.at(Math.max(p.low, 10 ** y.low)), y2: y.at(p.high)}));
+    const node = svgNode(
+        "g", {
+          class: "point",
+          transform: `translate(${px} ${py})`,
+          tabindex: -1,
+          role: "img",
+          "aria-label": p.text.replaceAll("\n", ", ")
+        },
+        [
+          svgNode("circle", {class: "target", r: 13}), svgNode("circle", {class: "ring", r: 11}),
+          svgNode("path", {class: "shape", d: shape, stroke: color})
+        ]);
     node.addEventListener("pointerenter", () => showTip(node, p.text));
     node.addEventListener("pointerleave", hideTip);
     node.addEventListener("focus", () => showTip(node, p.text));
@@ -125,15 +154,20 @@ function drawCurve(svg, curve, x, y) {
 
 // Places each curve's name at its last point, moved apart where names would overlap. A name highlights its curve.
 function nameCurves(svg, curves, groups, x, y) {
-  const names = curves.map((curve, i) => ({ curve, i, at: y.at(curve.points[curve.points.length - 1].y) })).sort((a, b) => a.at - b.at);
+  const names = curves.map((curve, i) => ({curve, i, at: y.at(curve.points[curve.points.length - 1].y)}))
+                    .sort((a, b) => a.at - b.at);
   const gap = 17;
   for (let k = 1; k < names.length; ++k) names[k].at = Math.max(names[k].at, names[k - 1].at + gap);
   const over = names.length ? names[names.length - 1].at - y.from : 0;
-  if (over > 0) for (let k = names.length - 1; k >= 0; --k) names[k].at = Math.min(names[k].at - (k === names.length - 1 ? over : 0), k + 1 < names.length ? names[k + 1].at - gap : Infinity);
+  if (over > 0)
+    for (let k = names.length - 1; k >= 0; --k)
+      names[k].at = Math.min(
+          names[k].at - (k === names.length - 1 ? over : 0), k + 1 < names.length ? names[k + 1].at - gap : Infinity);
   for (const { curve, i, at } of names) {
     const last = curve.points[curve.points.length - 1];
     svg.append(svgNode("line", { class: "grid", x1: x.at(last.x) + 9, y1: y.at(last.y), x2: x.to + 8, y2: at }));
-    const name = svgNode("text", { class: "name", x: x.to + 11, y: at + 4.5, style: `fill: ${style(curve.index).color}` }, [curve.name]);
+    const name = svgNode(
+        "text", {class: "name", x: x.to + 11, y: at + 4.5, style: `fill: ${style(curve.index).color}`}, [curve.name]);
     name.addEventListener("pointerenter", () => groups.forEach((g, k) => g.group.classList.toggle("faded", k !== i)));
     name.addEventListener("pointerleave", () => groups.forEach(g => g.group.classList.remove("faded")));
     svg.append(name);
@@ -145,8 +179,11 @@ function steerByKeys(rows) {
   const all = rows.flat();
   if (all.length) all[0].setAttribute("tabindex", 0);
   rows.forEach((row, r) => row.forEach((node, i) => node.addEventListener("keydown", event => {
-    const [dr, di] = { ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [-1, 0], ArrowDown: [1, 0] }[event.key] || [0, 0];
-    if (event.key === "Escape") { hideTip(); return; }
+    const [dr, di] = {ArrowLeft: [0, -1], ArrowRight: [0, 1], ArrowUp: [-1, 0], ArrowDown: [1, 0]}[event.key] || [0, 0];
+    if (event.key === "Escape") {
+      hideTip();
+      return;
+    }
     if (!dr && !di) return;
     event.preventDefault();
     const next = rows[(r + dr + rows.length) % rows.length];
@@ -161,7 +198,9 @@ function showTip(node, text) {
   const tip = document.getElementById("tip"), box = node.getBoundingClientRect();
   tip.textContent = text;
   tip.hidden = false;
-  const left = Math.min(Math.max(box.left + box.width / 2 - tip.offsetWidth / 2, 8), document.documentElement.clientWidth - tip.offsetWidth - 8);
+  const left = Math.min(
+      Math.max(box.left + box.width / 2 - tip.offsetWidth / 2, 8),
+      document.documentElement.clientWidth - tip.offsetWidth - 8);
   const above = box.top - tip.offsetHeight - 6;
   tip.style.left = `${left + scrollX}px`;
   tip.style.top = `${(above > 4 ? above : box.bottom + 6) + scrollY}px`;

@@ -68,7 +68,8 @@ class CauseView {
 
 async function showCauses() {
   const view = new CauseView(...await Promise.all([decodePlane(data.cause, 1), decodePlane(data.steps, 1)]));
-  const buttons = causeNames.map((name, i) => make("button", { type: "button", "aria-pressed": "false" }, swatch(i), name));
+  const buttons =
+      causeNames.map((name, i) => make("button", {type: "button", "aria-pressed": "false"}, swatch(i), name));
   buttons.forEach((button, i) => button.addEventListener("click", () => {
     view.show(i);
     buttons.forEach((b, k) => b.setAttribute("aria-pressed", String(k === view.alone)));

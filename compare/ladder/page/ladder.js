@@ -1,7 +1,9 @@
 // ---- ladder.js: the tables, the images of the ladder, and the rungs.
 
 const report = data.report;
-const shareText = share => share === null ? "none" : Math.abs(share) < 5e-5 ? "0 %" : minus((100 * share).toFixed(2)) + " %";
+const shareText = share => share === null ? "none" :
+    Math.abs(share) < 5e-5                ? "0 %" :
+                                            minus((100 * share).toFixed(2)) + " %";
 const row = (...cells) => make("tr", {}, ...cells);
 const head = (text, kind = {}) => make("th", { scope: "col", ...kind }, text);
 const cell = (...content) => make("td", {}, ...content);
@@ -10,44 +12,72 @@ const countOf = (n, word) => `${countText(n)} ${word}${n === 1 ? "" : "s"}`;
 
 function lede() {
   const spp = report.samples_per_pixel;
-  const setting = `${report.width} × ${report.height} pixels, ${countOf(spp.raster, "sample")} a pixel rasterized, ${spp.raytrace} path-traced.`;
-  if (report.nothing_to_explain) return ["The two pictures are ", make("strong", {}, "equal but for rounding"), ": there is nothing to explain. ", setting];
-  const [first, second] = report.shares.slice(0, -1).sort((a, b) => b.share - a.share), noise = report.shares.at(-1).share;
-  const noisy = noise > 0.3 ? `Noise of the path tracer makes up ${shareText(noise)}: more samples (--spp) would tell more. ` : "";
-  return ["The pictures differ by a relative mean squared error of ", make("strong", {}, radianceText(report.metrics.relmse)),
-    ". The largest cause is ", make("strong", {}, first.title), ` (${shareText(first.share)} of the squared difference), then ` +
-    `${second.title} (${shareText(second.share)}). ${noisy}${setting}`];
+  const setting = `${report.width} × ${report.height} pixels, ${countOf(spp.raster, "sample")} a pixel rasterized, ${
+      spp.raytrace} path-traced.`;
+  if (report.nothing_to_explain)
+    return [
+      "The two pictures are ", make("strong", {}, "equal but for rounding"), ": there is nothing to explain. ", setting
+    ];
+  const [first, second] = report.shares.slice(0, -1).sort((a, b) => b.share - a.share),
+                noise = report.shares.at(-1).share;
+  const noisy = noise > 0.3 ?
+      `Noise of the path tracer makes up ${shareText(noise)}: more samples (--spp) would tell more. ` :
+      "";
+  return [
+    "The pictures differ by a relative mean squared error of ", make("strong", {}, radianceText(report.metrics.relmse)),
+    ". The largest cause is ", make("strong", {}, first.title),
+    ` (${shareText(first.share)} of the squared difference), then ` +
+        `${second.title} (${shareText(second.share)}). ${noisy}${setting}`
+  ];
 }
 
 // Draws a bar from zero to the share. All bars have the same scale.
 function bar(share, color, low, high) {
   const at = v => 100 * (v - low) / (high - low);
   const left = at(Math.min(share, 0)), right = at(Math.max(share, 0));
-  return make("div", { class: "bar" },
-    make("i", { style: `left:${left}%;width:${right - left}%;background:rgb(${color.join(",")})` }), make("b", { style: `left:${at(0)}%` }));
+  return make(
+      "div", {class: "bar"},
+      make("i", {style: `left:${left}%;width:${right - left}%;background:rgb(${color.join(",")})`}),
+      make("b", {style: `left:${at(0)}%`}));
 }
 
 function sharesTable() {
   const values = report.shares.map(s => s.share ?? 0);
   const low = Math.min(0, ...values), high = Math.max(0.05, ...values);
-  const body = report.shares.map((s, i) => row(
-    make("th", { scope: "row" }, swatch(i), `${i < report.rungs.length ? i + 1 : "–"} ${s.title}`),
-    cell(bar(s.share ?? 0, data.colors[i], low, high)), figureCell(shareText(s.share)), figureCell(shareText(s.largest_in))));
-  fill("shares", make("thead", {}, row(head("Cause"), head("Share of the squared difference", { colspan: 2 }), head("Largest in, of the visible pixels", { class: "number" }))),
-    make("tbody", {}, ...body),
-    make("tfoot", {}, row(make("th", { scope: "row" }, "Sum, as computed"),
-      make("td", { class: "number", colspan: 2 }, report.shares_sum === null ? "none" : report.shares_sum.toFixed(12)), cell())));
+  const body = report.shares.map(
+      (s, i) =>
+          row(make("th", {scope: "row"}, swatch(i), `${i < report.rungs.length ? i + 1 : "–"} ${s.title}`),
+              cell(bar(s.share ?? 0, data.colors[i], low, high)), figureCell(shareText(s.share)),
+              figureCell(shareText(s.largest_in))));
+  fill(
+      "shares",
+      make(
+          "thead", {},
+          row(head("Cause"), head("Share of the squared difference", {colspan: 2}),
+              head("Largest in, of the visible pixels", {class: "number"}))),
+      make("tbody", {}, ...body),
+      make(
+          "tfoot", {},
+          row(make("th", {scope: "row"}, "Sum, as computed"),
+              make(
+                  "td", {class: "number", colspan: 2},
+                  report.shares_sum === null ? "none" : report.shares_sum.toFixed(12)),
+              cell())));
 }
 
 // Shows the image at step k and what that step changed.
 function showStep(k, buttons) {
   buttons.forEach((b, i) => b.setAttribute("aria-pressed", String(i === k)));
-  const caption = k === 0 ? "the rasterizer's picture" : k === report.rungs.length ? "all replaced: the path tracer's picture"
-    : `replaced so far: ${report.shares.slice(0, k).map(s => s.title).join("; ")}`;
-  const figure = (url, name, text) => make("figure", {}, make("img", { src: url, alt: text }), make("figcaption", {}, make("b", {}, name), " ", text));
+  const caption = k === 0       ? "the rasterizer's picture" :
+      k === report.rungs.length ? "all replaced: the path tracer's picture" :
+                                  `replaced so far: ${report.shares.slice(0, k).map(s => s.title).join("; ")}`;
+  const figure = (url, name, text) =>
+      make("figure", {}, make("img", {src: url, alt: text}), make("figcaption", {}, make("b", {}, name), " ", text));
   const share = report.shares[k - 1];
-  fill("step", figure(data.pictures[k], `Picture ${k}:`, caption),
-    ...(k === 0 ? [] : [figure(data.changes[k - 1], `Picture ${k - 1} − picture ${k}:`, `${share.title}, share ${shareText(share.share)}`)]));
+  fill("step", figure(data.pictures[k], `Picture ${k}:`, caption), ...(k === 0 ? [] : [
+         figure(
+             data.changes[k - 1], `Picture ${k - 1} − picture ${k}:`, `${share.title}, share ${shareText(share.share)}`)
+       ]));
 }
 
 function ladderSection() {
@@ -68,14 +98,20 @@ function ladderSection() {
 }
 
 function figures(q) {
-  const error = q.hits
-    ? `${countText(q.hits.same)} of ${countText(q.hits.pixels)} pixels see the same primitive; ${countText(q.hits.edge)} differ at edges, ` +
-      `${countText(q.hits.depth_tie)} by depth ties, ${countText(q.hits.unexplained)} without explanation`
-    : q.metrics === null ? "no pixel is finite in both" : `RMSE ${figure(q.metrics.rmse)}, relMSE ${figure(q.metrics.relmse)}, ` +
-      `mean signed error ${q.metrics.mean_signed_error.map(v => (v > 0 ? "+" : "") + figure(v)).join(", ")} (red, green, blue)`;
-  const time = (side, how) => make("span", { class: side },
-    `${side === "raster" ? "▲" : "●"} ${secondsText(q.seconds[side])} ${how} (${countOf(q.samples_per_pixel[side], "sample")} a pixel)`);
-  return make("p", { class: "figures" }, `${error} · `, time("raster", "rasterized"), " · ", time("raytrace", "traced"));
+  const error = q.hits ?
+      `${countText(q.hits.same)} of ${countText(q.hits.pixels)} pixels see the same primitive; ${
+          countText(q.hits.edge)} differ at edges, ` +
+          `${countText(q.hits.depth_tie)} by depth ties, ${countText(q.hits.unexplained)} without explanation` :
+      q.metrics === null ?
+      "no pixel is finite in both" :
+      `RMSE ${figure(q.metrics.rmse)}, relMSE ${figure(q.metrics.relmse)}, ` +
+          `mean signed error ${
+              q.metrics.mean_signed_error.map(v => (v > 0 ? "+" : "") + figure(v)).join(", ")} (red, green, blue)`;
+  const time = (side, how) => make(
+      "span", {class: side},
+      `${side === "raster" ? "▲" : "●"} ${secondsText(q.seconds[side])} ${how} (${
+          countOf(q.samples_per_pixel[side], "sample")} a pixel)`);
+  return make("p", {class: "figures"}, `${error} · `, time("raster", "rasterized"), " · ", time("raytrace", "traced"));
 }
 
 function rung(r, k) {
@@ -83,30 +119,46 @@ function rung(r, k) {
     const side = (key, mark, title) => make("figure", {},
       make("img", { loading: "lazy", src: data.rungs[k][i][key], alt: `${title}: ${q.name}` }),
       make("figcaption", {}, make("b", { class: key }, `${mark} ${title}`), ` (${q.name}). ${r.ways[key]}`));
-    return [make("div", { class: "pair" }, side("raster", "▲", "Rasterizer"), side("raytrace", "●", "Path tracer")), figures(q)];
+    return [
+      make("div", {class: "pair"}, side("raster", "▲", "Rasterizer"), side("raytrace", "●", "Path tracer")), figures(q)
+    ];
   });
-  return make("article", { class: "rung" }, make("h3", {}, `${r.rung} ${r.title}`), ...(r.note ? [make("p", { class: "note" }, r.note)] : []), ...pictures);
+  return make(
+      "article", {class: "rung"}, make("h3", {}, `${r.rung} ${r.title}`),
+      ...(r.note ? [make("p", {class: "note"}, r.note)] : []), ...pictures);
 }
 
 function codeTable() {
-  const sides = ["raster", "raytrace", "both"], all = [{ rung: "–", title: "Frame: settings, loops, film", code: report.frame }, ...report.rungs];
+  const sides = ["raster", "raytrace", "both"],
+        all = [{rung: "–", title: "Frame: settings, loops, film", code: report.frame}, ...report.rungs];
   const files = side => cell(side.lines === 0 ? "0" : make("details", {}, make("summary", {}, countText(side.lines)),
     make("ul", {}, ...Object.entries(side.files).map(([file, lines]) => make("li", {}, `${file}: ${lines}`)))));
   const total = side => cell(countText(all.reduce((sum, r) => sum + r.code[side].lines, 0)));
-  fill("code", make("thead", {}, row(...["Rung", "▲ Rasterizer", "● Path tracer", "Shared by both"].map(text => head(text)))),
-    make("tbody", {}, ...all.map(r => row(make("th", { scope: "row" }, `${r.rung} ${r.title}`), ...sides.map(side => files(r.code[side]))))),
-    make("tfoot", {}, row(make("th", { scope: "row" }, "Together"), ...sides.map(total))));
+  fill(
+      "code",
+      make("thead", {}, row(...["Rung", "▲ Rasterizer", "● Path tracer", "Shared by both"].map(text => head(text)))),
+      make(
+          "tbody", {},
+          ...all.map(
+              r => row(make("th", {scope: "row"}, `${r.rung} ${r.title}`), ...sides.map(side => files(r.code[side]))))),
+      make("tfoot", {}, row(make("th", {scope: "row"}, "Together"), ...sides.map(total))));
 }
 
 startTheme();
 fill("title", data.title);
 fill("lede", ...lede());
-fill("cause-text", `Something is to be seen in ${shareText(report.visible_pixels)} of the pixels: there the 8-bit pictures differ by ` +
-  `${data.visible_steps} steps or more; the other pixels are dark. The cause is that of a pixel and its neighbours together; grey: noise is larger than any.`);
+fill(
+    "cause-text",
+    `Something is to be seen in ${
+        shareText(report.visible_pixels)} of the pixels: there the 8-bit pictures differ by ` +
+        `${data.visible_steps} steps or more; the other pixels are dark. The cause is that of a pixel and its ` +
+        `neighbours together; grey: noise is larger than any.`);
 sharesTable();
 ladderSection();
 element("rungs").append(...report.rungs.map(rung));
 codeTable();
 if (report.invalid_samples > 0)
-  element("rungs").before(make("p", { class: "note" }, `${countOf(report.invalid_samples, "sample")} were NaN, infinite or negative, and were dropped.`));
+  element("rungs").before(make(
+      "p", {class: "note"},
+      `${countOf(report.invalid_samples, "sample")} were NaN, infinite or negative, and were dropped.`));
 showCauses();

@@ -31,7 +31,8 @@ let knownHash = location.hash;
 // fragment that the user has just entered is still unread, because its hashchange event comes later.
 function setAddress(pairs) {
   if (location.hash !== knownHash) return;
-  const parts = [...pairs, ...(themeNow() === "auto" ? [] : [["theme", themeNow()]])].map(([key, value]) => `${key}=${encodeURIComponent(value)}`);
+  const parts = [...pairs, ...(themeNow() === "auto" ? [] : [["theme", themeNow()]])].map(
+      ([key, value]) => `${key}=${encodeURIComponent(value)}`);
   history.replaceState(null, "", parts.length ? "#" + parts.join("&") : location.pathname + location.search);
   knownHash = location.hash;
 }
@@ -71,7 +72,19 @@ function radianceText(v) {
 }
 const signedText = v => (v > 0 ? "+" : "") + radianceText(v);
 
-const superscripts = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
+const superscripts = {
+  "-": "⁻",
+  0: "⁰",
+  1: "¹",
+  2: "²",
+  3: "³",
+  4: "⁴",
+  5: "⁵",
+  6: "⁶",
+  7: "⁷",
+  8: "⁸",
+  9: "⁹"
+};
 const powerText = exponent => `10${[...String(exponent)].map(d => superscripts[d]).join("")}`;
 
 // Formats a metric with three or four digits; small and large values get a power of ten.
@@ -82,7 +95,13 @@ function figure(v) {
     const [factor, exponent] = v.toExponential(2).split("e");
     return (factor === "1.00" ? "" : `${minus(factor)}\u00a0·\u00a0`) + powerText(Number(exponent));
   }
-  return minus(size === 0 ? "0" : size >= 100 ? v.toFixed(1) : size >= 10 ? v.toFixed(2) : size >= 1 ? v.toFixed(3) : size >= 0.01 ? v.toFixed(4) : v.toPrecision(3));
+  return minus(
+      size === 0       ? "0" :
+          size >= 100  ? v.toFixed(1) :
+          size >= 10   ? v.toFixed(2) :
+          size >= 1    ? v.toFixed(3) :
+          size >= 0.01 ? v.toFixed(4) :
+                         v.toPrecision(3));
 }
 
 // Formats a round number exactly: 0.5, −1, 10⁻⁵.
@@ -92,7 +111,8 @@ const roundText = v => v !== 0 && Math.abs(v) < 0.001 ? figure(v) : minus(String
 function percentText(share) {
   if (share === 0 || share === 1) return `${share * 100} %`;
   if (share > 0 && share < 0.0001) return "< 0.01 %";
-  return minus(share > 0.999 && share < 1 ? `${(Math.floor(share * 1e5) / 1e3).toFixed(3)} %` : `${(share * 100).toFixed(2)} %`);
+  return minus(
+      share > 0.999 && share < 1 ? `${(Math.floor(share * 1e5) / 1e3).toFixed(3)} %` : `${(share * 100).toFixed(2)} %`);
 }
 
 function secondsText(s) {

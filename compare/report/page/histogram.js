@@ -11,7 +11,8 @@ const evenly = (low, high, bins) => Array.from({ length: bins + 1 }, (_, k) => l
 
 // Returns the differences of luminance over √(reference² + 0.01). Their mean square is a relMSE.
 function relativeDifferences() {
-  const difference = channelOf(decoded.difference, "luminance"), reference = channelOf(decoded.pictures[1], "luminance");
+  const difference = channelOf(decoded.difference, "luminance"),
+        reference = channelOf(decoded.pictures[1], "luminance");
   return difference.map((d, i) => d / Math.sqrt(reference[i] ** 2 + 0.01));
 }
 
@@ -24,15 +25,22 @@ function quantile(values, share) {
 const quantities = {
   signed: {
     title: "signed relative difference",
-    text: "(A − B) / √(B² + 0.01) of luminance: left of the middle A is darker, right of it brighter. The outermost bins hold all that lies beyond.",
+    text:
+        "(A − B) / √(B² + 0.01) of luminance: left of the middle A is darker, right of it brighter. The outermost " +
+        "bins hold all that lies beyond.",
     values: relativeDifferences,
-    edges: values => { const range = roundUp(Math.max(quantile(values, 0.995), 1e-3)); return evenly(-range, range, 61); },
+    edges: values => {
+      const range = roundUp(Math.max(quantile(values, 0.995), 1e-3));
+      return evenly(-range, range, 61);
+    },
     ticks: edges => [-1, -0.5, 0, 0.5, 1].map(f => f * edges[edges.length - 1]),
     color: (v, edges) => signedColor(v / edges[edges.length - 1]),
   },
   absolute: {
     title: "size of the difference",
-    text: "|A − B| of luminance, each bin 1.58 times the one before it (five a decade). The first holds all smaller ones, 0 too.",
+    text:
+        "|A − B| of luminance, each bin 1.58 times the one before it (five a decade). The first holds all smaller " +
+        "ones, 0 too.",
     values: () => channelOf(decoded.difference, "luminance").map(Math.abs),
     edges: values => {
       const decades = Math.ceil(Math.log10(Math.max(quantile(values, 1), 1e-3)) + 5);
@@ -80,29 +88,45 @@ function positionOf(v) {
 function binRange(k) {
   const { edges, counts } = histogram, text = v => (state.histogram === "signed" && v > 0 ? "+" : "") + roundText(v);
   if (k === 0 && state.histogram !== "flip") return `below ${text(edges[1])}`;
-  return k === counts.length - 1 && state.histogram === "signed" ? `${text(edges[k])} and above` : `${text(edges[k])} to ${text(edges[k + 1])}`;
+  return k === counts.length - 1 && state.histogram === "signed" ? `${text(edges[k])} and above` :
+                                                                   `${text(edges[k])} to ${text(edges[k + 1])}`;
 }
 
 function binText(k) {
   const n = histogram.counts[k];
-  return `${histogram.quantity.title} ${binRange(k)}: ${countText(n)} ${n === 1 ? "pixel" : "pixels"}, ${percentText(n / pixelCount)}`;
+  return `${histogram.quantity.title} ${binRange(k)}: ${countText(n)} ${n === 1 ? "pixel" : "pixels"}, ${
+      percentText(n / pixelCount)}`;
 }
 
 // Draws bars on a logarithmic scale from 1/2 (an empty bin has no bar) to the next power of ten.
 function showHistogram() {
   const { edges, counts, quantity, finite } = histogram, bins = counts.length;
-  const top = 10 ** Math.ceil(Math.log10(Math.max(...counts, 2))), heightOf = n => n > 0 ? Math.log(2 * n) / Math.log(2 * top) * 100 : 0;
+  const top = 10 ** Math.ceil(Math.log10(Math.max(...counts, 2))),
+        heightOf = n => n > 0 ? Math.log(2 * n) / Math.log(2 * top) * 100 : 0;
   element("quantity").value = state.histogram;
-  fill("histogram-text", quantity.text, finite < pixelCount ? ` ${countText(pixelCount - finite)} pixels are not finite and not counted.` : "");
+  fill(
+      "histogram-text", quantity.text,
+      finite < pixelCount ? ` ${countText(pixelCount - finite)} pixels are not finite and not counted.` : "");
   fill("bins", ...counts.map((n, k) => {
     const color = quantity.color((edges[k] + edges[k + 1]) / 2, edges);
-    return make("div", { class: "bin", "data-count": n }, make("i", { style: `height:${heightOf(n).toFixed(2)}%${color ? `;background:${css(color)}` : ""}` }));
+    return make(
+        "div", {class: "bin", "data-count": n},
+        make("i", {style: `height:${heightOf(n).toFixed(2)}%${color ? `;background:${css(color)}` : ""}`}));
   }));
   const lines = [];
-  for (let n = 1; n <= top; n *= 10) lines.push(make("span", { style: `bottom:${heightOf(n).toFixed(2)}%` }, n < 1000 ? String(n) : powerText(Math.round(Math.log10(n)))));
+  for (let n = 1; n <= top; n *= 10)
+    lines.push(make(
+        "span", {style: `bottom:${heightOf(n).toFixed(2)}%`},
+        n < 1000 ? String(n) : powerText(Math.round(Math.log10(n)))));
   fill("count-lines", ...lines);
-  fill("bin-ticks", ...quantity.ticks(edges).map(v => make("span", { style: `left:${100 * positionOf(v) / bins}%` }, roundText(v))));
-  fill("bin-rows", ...counts.map((n, k) => make("tr", {}, make("th", { scope: "row" }, binRange(k)), make("td", { class: "number" }, countText(n)))));
+  fill(
+      "bin-ticks",
+      ...quantity.ticks(edges).map(v => make("span", {style: `left:${100 * positionOf(v) / bins}%`}, roundText(v))));
+  fill(
+      "bin-rows",
+      ...counts.map(
+          (n, k) =>
+              make("tr", {}, make("th", {scope: "row"}, binRange(k)), make("td", {class: "number"}, countText(n)))));
   showBin();
 }
 
@@ -115,7 +139,8 @@ function showBin() {
   bars.setAttribute("aria-valuenow", Math.max(k, 0));
   const text = k < 0 ? "No bin is chosen" : binText(k);
   bars.setAttribute("aria-valuetext", text);
-  element("bin-text").textContent = k < 0 ? "Point at a bar for its numbers; choose one (click, tap or arrow keys) to see its pixels." : text;
+  element("bin-text").textContent =
+      k < 0 ? "Point at a bar for its numbers; choose one (click, tap or arrow keys) to see its pixels." : text;
   lit = [];
   if (k >= 0) {
     for (let i = 0; i < pixelCount; ++i) if (histogram.binOf[i] === k) lit.push(i);
@@ -141,19 +166,31 @@ function setQuantity(key) {
 }
 
 function wireHistogram() {
-  fill("quantity", ...Object.entries(quantities).map(([key, quantity]) => make("option", { value: key }, quantity.title)));
+  fill(
+      "quantity", ...Object.entries(quantities).map(([key, quantity]) => make("option", {value: key}, quantity.title)));
   element("quantity").addEventListener("change", event => setQuantity(event.target.value));
   const bars = element("bins");
   const binAt = event => {
     const box = bars.getBoundingClientRect();
-    return clamp(Math.floor((event.clientX - box.left) / box.width * histogram.counts.length), 0, histogram.counts.length - 1);
+    return clamp(
+        Math.floor((event.clientX - box.left) / box.width * histogram.counts.length), 0, histogram.counts.length - 1);
   };
   bars.addEventListener("pointermove", event => { element("bin-text").textContent = binText(binAt(event)); });
-  bars.addEventListener("pointerleave", () => { if (histogram) element("bin-text").textContent = state.bin < 0 ? "" : binText(state.bin); });
+  bars.addEventListener("pointerleave", () => {
+    if (histogram) element("bin-text").textContent = state.bin < 0 ? "" : binText(state.bin);
+  });
   bars.addEventListener("click", event => { const k = binAt(event); chooseBin(k === state.bin ? -1 : k); });
   bars.addEventListener("keydown", event => {
     const last = histogram.counts.length - 1, from = state.bin < 0 ? -1 : state.bin;
-    const to = { ArrowLeft: Math.max(from - 1, 0), ArrowDown: Math.max(from - 1, 0), ArrowRight: Math.min(from + 1, last), ArrowUp: Math.min(from + 1, last), Home: 0, End: last, Escape: -1 }[event.key];
+    const to = {
+      ArrowLeft: Math.max(from - 1, 0),
+      ArrowDown: Math.max(from - 1, 0),
+      ArrowRight: Math.min(from + 1, last),
+      ArrowUp: Math.min(from + 1, last),
+      Home: 0,
+      End: last,
+      Escape: -1
+    }[event.key];
     if (to === undefined) return;
     event.preventDefault();
     chooseBin(to);

@@ -73,7 +73,16 @@ function wheel(event) {
 }
 
 function handleKey(event) {
-  const by = { ArrowLeft: -0.02, ArrowDown: -0.02, ArrowRight: 0.02, ArrowUp: 0.02, PageDown: -0.1, PageUp: 0.1, Home: -1, End: 1 }[event.key];
+  const by = {
+    ArrowLeft: -0.02,
+    ArrowDown: -0.02,
+    ArrowRight: 0.02,
+    ArrowUp: 0.02,
+    PageDown: -0.1,
+    PageUp: 0.1,
+    Home: -1,
+    End: 1
+  }[event.key];
   if (by === undefined) return;
   event.preventDefault();
   setSplit(state.split + by);
@@ -97,9 +106,14 @@ function wireStage() {
   canvas.addEventListener("pointercancel", pointerUp);
   canvas.addEventListener("wheel", wheel, { passive: false });
   canvas.addEventListener("keydown", stageKey);
-  handle.addEventListener("pointerdown", event => { handle.setPointerCapture(event.pointerId); event.preventDefault(); handle.focus({ preventScroll: true }); });
+  handle.addEventListener("pointerdown", event => {
+    handle.setPointerCapture(event.pointerId);
+    event.preventDefault();
+    handle.focus({preventScroll: true});
+  });
   handle.addEventListener("pointermove", event => {
-    if (handle.hasPointerCapture(event.pointerId)) setSplit((event.clientX - stage.getBoundingClientRect().left) / stageWidth);
+    if (handle.hasPointerCapture(event.pointerId))
+      setSplit((event.clientX - stage.getBoundingClientRect().left) / stageWidth);
   });
   handle.addEventListener("keydown", handleKey);
 }

@@ -25,18 +25,23 @@ function showChips() {
 }
 
 const captions = {
-  split: () => `Drag the line. Left of it ${sides[0].symbol} ${sides[0].name}, right of it ${sides[1].symbol} ${sides[1].name}.`,
+  split: () =>
+      `Drag the line. Left of it ${sides[0].symbol} ${sides[0].name}, right of it ${sides[1].symbol} ${sides[1].name}.`,
   flicker: () => "One picture after the other: what moves or changes shade differs.",
   side: () => "Both pictures move and zoom together.",
   difference: () => "",
-  flip: () => `How visible the difference is to someone who alternates between the pictures (Andersson et al. ${data.eight_bit ? "2020" : "2021"}).`,
-  hits: () => disagreeing.length ? "Marked: pixels where the two see different primitives." : "Both pipelines see the same primitive in every pixel.",
+  flip: () => `How visible the difference is to someone who alternates between the pictures (Andersson et al. ${
+      data.eight_bit ? "2020" : "2021"}).`,
+  hits: () => disagreeing.length ? "Marked: pixels where the two see different primitives." :
+                                   "Both pipelines see the same primitive in every pixel.",
 };
 
 function setMode(mode) {
   state.mode = mode;
-  for (const button of element("modes").children) button.setAttribute("aria-pressed", String(button.dataset.mode === mode));
-  for (const field of document.querySelectorAll("[data-for]")) field.hidden = !field.dataset.for.split(" ").includes(mode);
+  for (const button of element("modes").children)
+    button.setAttribute("aria-pressed", String(button.dataset.mode === mode));
+  for (const field of document.querySelectorAll("[data-for]"))
+    field.hidden = !field.dataset.for.split(" ").includes(mode);
   element("caption").textContent = captions[mode]();
   layoutStage();
   if (mode === "difference") updateDifference();
@@ -52,7 +57,9 @@ function showSteps() {
   element("steps").hidden = state.bin < 0 && !list.length;
   element("previous").hidden = element("next").hidden = !list.length;
   element("show-all").hidden = state.bin < 0;
-  element("steps-text").textContent = state.bin < 0 ? "" : list.length === 1 ? "Lit: 1 pixel" : `Lit: ${countText(list.length)} pixels`;
+  element("steps-text").textContent = state.bin < 0 ? "" :
+      list.length === 1                             ? "Lit: 1 pixel" :
+                                                      `Lit: ${countText(list.length)} pixels`;
 }
 
 // ---- Exposure, difference, FLIP, flicker.
@@ -73,7 +80,8 @@ function drawScale(color, ticks, ends) {
   fill("ticks", ...ticks.map(text => make("span", {}, text)));
   fill("ends", ...ends.map(text => make("span", {}, text)));
   element("palette").value = state.palette;
-  element("palette").options[0].textContent = state.mode === "flip" ? "dark violet – pale yellow" : "blue – white – orange";
+  element("palette").options[0].textContent =
+      state.mode === "flip" ? "dark violet – pale yellow" : "blue – white – orange";
 }
 
 function updateDifference() {
@@ -81,10 +89,15 @@ function updateDifference() {
   element("range").value = Math.log10(state.range);
   element("range-value").textContent = radianceText(state.range);
   element("channel").value = state.channel;
-  drawScale(f => signedColor(2 * f - 1), [-1, -0.5, 0, 0.5, 1].map(f => f === 0 ? "0" : minus((f > 0 ? "+" : "") + Number((f * state.range).toPrecision(2)))),
-    [`${sides[1].symbol} ${sides[1].name} brighter`, `${sides[0].name} brighter ${sides[0].symbol}`]);
-  element("caption").textContent = `${sides[0].name} minus ${sides[1].name}, ${element("channel").selectedOptions[0].textContent}, linear. `
-    + (beyond > 0 ? `${percentText(beyond / pixelCount)} of the pixels lie beyond the scale's ends.` : "No pixel lies beyond the scale's ends.");
+  drawScale(
+      f => signedColor(2 * f - 1),
+      [-1, -0.5, 0, 0.5,
+       1].map(f => f === 0 ? "0" : minus((f > 0 ? "+" : "") + Number((f * state.range).toPrecision(2)))),
+      [`${sides[1].symbol} ${sides[1].name} brighter`, `${sides[0].name} brighter ${sides[0].symbol}`]);
+  element("caption").textContent =
+      `${sides[0].name} minus ${sides[1].name}, ${element("channel").selectedOptions[0].textContent}, linear. ` +
+      (beyond > 0 ? `${percentText(beyond / pixelCount)} of the pixels lie beyond the scale's ends.` :
+                    "No pixel lies beyond the scale's ends.");
   showInspector();
 }
 
@@ -111,16 +124,28 @@ function updateFlicker() {
 function showWorst() {
   const values = state.mode === "flip" ? decoded.flip : difference;
   let worst = -1;
-  for (let i = 0; i < pixelCount; ++i) if (Number.isFinite(values[i]) && (worst < 0 || Math.abs(values[i]) > Math.abs(values[worst]))) worst = i;
+  for (let i = 0; i < pixelCount; ++i)
+    if (Number.isFinite(values[i]) && (worst < 0 || Math.abs(values[i]) > Math.abs(values[worst]))) worst = i;
   if (worst >= 0) moveTo(worst % width, Math.floor(worst / width), 24);
 }
 
 // ---- Event handlers.
 
 function setExposure(ev) { state.ev = clamp(Math.round(ev * 10) / 10, -8, 8); updateExposure(); changed(); }
-function setChannel(channel) { state.channel = channel; difference = channelOf(decoded.difference, channel); updateDifference(); changed(); }
+function setChannel(channel) {
+  state.channel = channel;
+  difference = channelOf(decoded.difference, channel);
+  updateDifference();
+  changed();
+}
 function setPalette(palette) { state.palette = palette; setMode(state.mode); showHistogram(); }
-function swapByHand() { state.play = false; updateFlicker(); if (state.mode !== "flicker") setMode("flicker"); swap(); writeAddress(); }
+function swapByHand() {
+  state.play = false;
+  updateFlicker();
+  if (state.mode !== "flicker") setMode("flicker");
+  swap();
+  writeAddress();
+}
 function zoomBy(factor) { zoomAt(factor); changed(); }
 function fitAgain() { state.zoom = 0; changed(); }
 
@@ -170,8 +195,14 @@ function pageKey(event) {
 
 // Fills in the content that depends on the page's data but not on its state.
 function fillIn() {
-  fill("modes", ...modes.map((mode, k) => make("button", { type: "button", "data-mode": mode.key, "aria-keyshortcuts": k + 1, "aria-pressed": "false" }, mode.title)));
-  ["chip-a", "chip-b"].forEach((id, k) => fill(id, make("i", { "aria-hidden": "true" }, sides[k].symbol), ` ${sides[k].name}`));
+  fill(
+      "modes",
+      ...modes.map(
+          (mode, k) => make(
+              "button", {type: "button", "data-mode": mode.key, "aria-keyshortcuts": k + 1, "aria-pressed": "false"},
+              mode.title)));
+  ["chip-a", "chip-b"].forEach(
+      (id, k) => fill(id, make("i", {"aria-hidden": "true"}, sides[k].symbol), ` ${sides[k].name}`));
   element("mode-keys").textContent = `1 – ${modes.length}`;
   element("mode-names").textContent = modes.map(mode => mode.title.toLowerCase()).join(", ");
   showSections();
@@ -182,7 +213,9 @@ function fillIn() {
     fill("marks", ...[1, 2, 3].map(kind => {
       const box = make("input", { type: "checkbox", checked: "" });
       box.addEventListener("change", () => { shown[kind] = box.checked; redraw(); });
-      return make("label", {}, box, symbolOf(kind), `${verdicts[kind].title} ${countText(data.hits.figures[verdicts[kind].key])}`);
+      return make(
+          "label", {}, box, symbolOf(kind),
+          `${verdicts[kind].title} ${countText(data.hits.figures[verdicts[kind].key])}`);
     }));
   }
   if (rendered) {
@@ -208,7 +241,10 @@ function showBeyond() {
   let count = 0;
   for (let i = 0; i < pixelCount; ++i) count += decoded.pictures.some(picture => picture.isBeyond(i));
   element("beyond").hidden = count === 0;
-  element("beyond").textContent = `${countText(count)} ${count === 1 ? "pixel holds" : "pixels hold"} values of ${countText(largestHalf)} or more, the largest number that this page keeps (half precision): they stand on it as that. The figures are of the values themselves.`;
+  element("beyond").textContent = `${countText(count)} ${count === 1 ? "pixel holds" : "pixels hold"} values of ${
+      countText(
+          largestHalf)} or more, the largest number that this page keeps (half precision):
+              they stand on it as that. The figures are of the values themselves.`;
 }
 
 async function start() {
@@ -219,7 +255,8 @@ async function start() {
   try {
     decoded = await decodeAll();
   } catch (error) {
-    element("loading").textContent = `The pictures could not be unpacked: ${error.message}. A browser from 2023 or later is needed.`;
+    element("loading").textContent =
+        `The pictures could not be unpacked: ${error.message}. A browser from 2023 or later is needed.`;
     return;
   }
   if (decoded.hits) {

@@ -11,7 +11,9 @@ const metricTexts = {
   relmse_trimmed: ["relMSE, trimmed", "the same without the worst 0.1 % of the pixels"],
   smape: ["SMAPE", "mean of |difference| / (|A| + |B| + 0.01): 0 equal, 1 the most"],
   ssim: ["SSIM", "structural similarity: 1 equal, 0 unrelated"],
-  flip: [data.flip.name, "how visible the difference is to who alternates between the pictures: 0 not at all, 1 the most"],
+  flip: [
+    data.flip.name, "how visible the difference is to who alternates between the pictures: 0 not at all, 1 the most"
+  ],
   mean_signed_error: ["Mean signed error", `red, green, blue; positive: ${data.sides[0].name} is brighter`],
   worst: ["Worst pixel", "largest difference of a channel"],
   z_test: ["z-test", "p: how likely the pictures' noise alone would differ so; below 0.01 there is more than noise"],
@@ -43,18 +45,27 @@ function pixelLink([x, y], mode) {
 
 // Formats any value as text: a number, three numbers per channel, or several named values.
 function valueText(value, key) {
-  if (typeof value === "number") return Number.isInteger(value) && Math.abs(value) > 1 ? countText(value) : figure(value);
+  if (typeof value === "number")
+    return Number.isInteger(value) && Math.abs(value) > 1 ? countText(value) : figure(value);
   if (value === null) return key === "psnr" && data.metrics.mse === 0 ? "∞" : "none"; // JSON has no infinity
   if (Array.isArray(value)) return value.map(v => valueText(v)).join(", ");
-  if (typeof value === "object") return Object.entries(value).map(([name, v]) => `${plainName(name)} ${valueText(v, name)}`).join(", ");
+  if (typeof value === "object")
+    return Object.entries(value).map(([name, v]) => `${plainName(name)} ${valueText(v, name)}`).join(", ");
   return typeof value === "boolean" ? (value ? "yes" : "no") : String(value);
 }
 
 // Formats a value in large type and its details in small type: [value, …lines].
 const metricCells = {
-  mean_signed_error: value => [make("span", { class: "lines" }, ...value.map((v, c) => make("span", {}, `${"RGB"[c]} ${v === null ? "none" : (v > 0 ? "+" : "") + figure(v)}`)))],
-  z_test: ({ p, ...others }) => [`p = ${figure(p)}`, ...Object.entries(others).map(([name, v]) => `${plainName(name)} ${valueText(v)}`)],
-  non_finite: countsOfSides, nan: countsOfSides, infinite: countsOfSides,
+  mean_signed_error: value => [make(
+      "span", {class: "lines"},
+      ...value.map((v, c) => make("span", {}, `${"RGB"[c]} ${v === null ? "none" : (v > 0 ? "+" : "") + figure(v)}`)))],
+  z_test: ({
+    p,
+    ...others
+  }) => [`p = ${figure(p)}`, ...Object.entries(others).map(([name, v]) => `${plainName(name)} ${valueText(v)}`)],
+  non_finite: countsOfSides,
+  nan: countsOfSides,
+  infinite: countsOfSides,
 };
 function countsOfSides(counts) {
   const sum = Object.values(counts).reduce((total, n) => total + n, 0);
@@ -64,9 +75,12 @@ function countsOfSides(counts) {
 function metricRow(key) {
   const value = data.metrics[key], [name, meaning] = metricTexts[key] || [plainName(key), ""];
   const [cell, ...below] = key in metricCells ? metricCells[key](value) : [valueText(value, key)];
-  for (const part of partsOf(key)) below.push(`${plainName(part.slice(key.length + 1))} ${valueText(data.metrics[part])}`);
+  for (const part of partsOf(key))
+    below.push(`${plainName(part.slice(key.length + 1))} ${valueText(data.metrics[part])}`);
   const bad = key === "non_finite" && cell !== "0";
-  const explanation = key === "worst" && data.metrics.worst_pixel ? make("span", {}, `${meaning}, at `, pixelLink(data.metrics.worst_pixel, "difference")) : meaning;
+  const explanation = key === "worst" && data.metrics.worst_pixel ?
+      make("span", {}, `${meaning}, at `, pixelLink(data.metrics.worst_pixel, "difference")) :
+      meaning;
   return row(name, explanation, cell, { bad, below });
 }
 
@@ -74,7 +88,9 @@ const listed = key => key in metricTexts;
 // Parts that are not in this list follow after it.
 const partOrder = ["flip_min", "flip_first_quartile", "flip_weighted_median", "flip_third_quartile", "flip_max"];
 const rank = part => partOrder.includes(part) ? partOrder.indexOf(part) : partOrder.length;
-const partsOf = key => Object.keys(data.metrics).filter(part => part.startsWith(key + "_") && !listed(part) && part !== "worst_pixel").sort((a, b) => rank(a) - rank(b));
+const partsOf = key => Object.keys(data.metrics)
+                           .filter(part => part.startsWith(key + "_") && !listed(part) && part !== "worst_pixel")
+                           .sort((a, b) => rank(a) - rank(b));
 const hasRow = key => key === "nan" || key === "infinite" ? Object.values(data.metrics[key]).some(n => n > 0) : true;
 
 function showMetrics() {
@@ -82,7 +98,10 @@ function showMetrics() {
     ? "8-bit files: relMSE, SMAPE and the mean signed error compare linear radiance, all else the stored values."
     : "over linear radiance.");
   const known = Object.keys(metricTexts).filter(key => key in data.metrics && hasRow(key));
-  const parts = known.flatMap(partsOf), others = Object.keys(data.metrics).filter(key =>
-    !listed(key) && !parts.includes(key) && key !== "worst_pixel" && (key !== "pixels" || data.metrics.pixels < pixelCount));
+  const parts = known.flatMap(partsOf),
+        others = Object.keys(data.metrics)
+                     .filter(
+                         key => !listed(key) && !parts.includes(key) && key !== "worst_pixel" &&
+                             (key !== "pixels" || data.metrics.pixels < pixelCount));
   fill("metrics-table", make("tbody", {}, ...[...known, ...others].map(metricRow)));
 }

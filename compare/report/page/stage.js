@@ -1,7 +1,13 @@
 // ---- stage.js: drawing of the stage.
 
 const sides = data.sides.map((side, k) => ({ ...side, symbol: "▲●"[k], style: ["side-a", "side-b"][k] }));
-const layers = { pictures: [newCanvas(), newCanvas()], difference: newCanvas(), flip: newCanvas(), ground: newCanvas(), veil: newCanvas() };
+const layers = {
+  pictures: [newCanvas(), newCanvas()],
+  difference: newCanvas(),
+  flip: newCanvas(),
+  ground: newCanvas(),
+  veil: newCanvas()
+};
 let decoded = null, difference = null, disagreeing = [];
 let lit = []; // pixels of the histogram's selected bin, largest error first
 
@@ -23,7 +29,8 @@ function draw() {
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
   context.clearRect(0, 0, stageWidth, stageHeight);
   const [first, second] = panes(), shownSide = state.show === "a" ? 0 : 1;
-  const picture = (k, pane, window) => drawLayer(context, layers.pictures[k], pane, window, i => decoded.pictures[k].rgb(i).map(pixelText));
+  const picture = (k, pane, window) =>
+      drawLayer(context, layers.pictures[k], pane, window, i => decoded.pictures[k].rgb(i).map(pixelText));
   if (state.mode === "split") {
     const at = state.split * stageWidth;
     picture(1, first, { x: at, y: 0, w: stageWidth - at, h: stageHeight });
@@ -32,7 +39,8 @@ function draw() {
     picture(0, first, first);
     picture(1, second, second);
   } else if (state.mode === "flicker") picture(shownSide, first, first);
-  else if (state.mode === "difference") drawLayer(context, layers.difference, first, first, i => [signedText(difference[i])]);
+  else if (state.mode === "difference")
+    drawLayer(context, layers.difference, first, first, i => [signedText(difference[i])]);
   else if (state.mode === "flip") drawLayer(context, layers.flip, first, first, i => [radianceText(decoded.flip[i])]);
   else {
     drawLayer(context, layers.ground, first, first, hitTexts);
@@ -77,15 +85,24 @@ function drawGrid(context, pane, z) {
   context.strokeStyle = `rgb(128 128 128 / ${clamp((z - 6) / 30, 0.12, 0.5)})`;
   context.lineWidth = 1;
   context.beginPath();
-  for (let x = x0; x <= x1; ++x) { const [sx] = toStage(pane, x, 0); context.moveTo(Math.round(sx) + 0.5, pane.y); context.lineTo(Math.round(sx) + 0.5, pane.y + pane.h); }
-  for (let y = y0; y <= y1; ++y) { const [, sy] = toStage(pane, 0, y); context.moveTo(pane.x, Math.round(sy) + 0.5); context.lineTo(pane.x + pane.w, Math.round(sy) + 0.5); }
+  for (let x = x0; x <= x1; ++x) {
+    const [sx] = toStage(pane, x, 0);
+    context.moveTo(Math.round(sx) + 0.5, pane.y);
+    context.lineTo(Math.round(sx) + 0.5, pane.y + pane.h);
+  }
+  for (let y = y0; y <= y1; ++y) {
+    const [, sy] = toStage(pane, 0, y);
+    context.moveTo(pane.x, Math.round(sy) + 0.5);
+    context.lineTo(pane.x + pane.w, Math.round(sy) + 0.5);
+  }
   context.stroke();
 }
 
 // The relative luminance above which black text has more contrast than white text: √(1.05 · 0.05) − 0.05 (WCAG
 // 2.1).
 const middleLuminance = 0.179;
-const relativeLuminance = (r, g, b) => luminance([r, g, b].map(byte => byte <= 10 ? byte / 255 / 12.92 : ((byte / 255 + 0.055) / 1.055) ** 2.4));
+const relativeLuminance = (r, g, b) =>
+    luminance([r, g, b].map(byte => byte <= 10 ? byte / 255 / 12.92 : ((byte / 255 + 0.055) / 1.055) ** 2.4));
 
 function drawTexts(context, layer, pane, z, texts) {
   const { x0, x1, y0, y1 } = visiblePixels(pane), size = clamp(z / 6.4, 10, 16);
@@ -95,7 +112,8 @@ function drawTexts(context, layer, pane, z, texts) {
   context.textBaseline = "middle";
   for (let y = y0, at = 0; y < y1; ++y) for (let x = x0; x < x1; ++x, at += 4) {
     const [sx, sy] = toStage(pane, x + 0.5, y + 0.5), lines = texts(y * width + x);
-    context.fillStyle = relativeLuminance(colors[at], colors[at + 1], colors[at + 2]) > middleLuminance ? "#000" : "#fff";
+    context.fillStyle =
+        relativeLuminance(colors[at], colors[at + 1], colors[at + 2]) > middleLuminance ? "#000" : "#fff";
     lines.forEach((line, k) => context.fillText(line, sx, sy + (k - (lines.length - 1) / 2) * size * 1.3, z - 4));
   }
 }
@@ -121,7 +139,12 @@ function drawMark(context, kind, x, y, size) {
     context.beginPath();
     if (shape === "circle") context.arc(x, y, r * 0.9, 0, 2 * Math.PI);
     else if (shape === "square") context.rect(x - r, y - r, size, size);
-    else { context.moveTo(x - r, y - r); context.lineTo(x + r, y + r); context.moveTo(x - r, y + r); context.lineTo(x + r, y - r); }
+    else {
+      context.moveTo(x - r, y - r);
+      context.lineTo(x + r, y + r);
+      context.moveTo(x - r, y + r);
+      context.lineTo(x + r, y - r);
+    }
   };
   if (size < 6) { context.fillStyle = color; path(); context.fill(); return; }
   const line = clamp(size / 8, 1.5, 4);

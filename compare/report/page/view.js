@@ -12,8 +12,22 @@ const modes = [
 // The state that a link can contain, besides the theme. Zoom is in screen pixels per image pixel; 0 fits the
 // image to the pane. `bin` is the histogram's selected bin; −1 means none.
 const state = {
-  mode: "split", split: 0.5, zoom: 0, x: width / 2, y: height / 2, ev: 0, range: data.difference_range, channel: "luminance",
-  palette: "hue", show: "a", play: !matchMedia("(prefers-reduced-motion: reduce)").matches, period: 700, px: -1, py: -1, histogram: "signed", bin: -1,
+  mode: "split",
+  split: 0.5,
+  zoom: 0,
+  x: width / 2,
+  y: height / 2,
+  ev: 0,
+  range: data.difference_range,
+  channel: "luminance",
+  palette: "hue",
+  show: "a",
+  play: !matchMedia("(prefers-reduced-motion: reduce)").matches,
+  period: 700,
+  px: -1,
+  py: -1,
+  histogram: "signed",
+  bin: -1,
 };
 const defaults = { ...state };
 

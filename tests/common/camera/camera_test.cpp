@@ -104,7 +104,7 @@ TEST_SUITE("unit") {
         CHECK(length(at_depth({0.99, 0.5}, 6) - at_depth({0.01, 0.5}, 6)) > 0.3);
     }
 
-    TEST_CASE("conventions: row 0 is the top, x runs right, the picture spans the vertical field of view") {
+    TEST_CASE("conventions: row 0 is the top, x runs right, the image spans the vertical field of view") {
         View view;
         view.camera.eye = {0, 0, 5};
         view.camera.look_at = {0, 0, 0};
@@ -119,7 +119,7 @@ TEST_SUITE("unit") {
         CHECK(pinhole.ray({20, 10}).t_min == doctest::Approx(5e-6));
     }
 
-    TEST_CASE("looking straight along up still gives a picture") {
+    TEST_CASE("looking straight along up still gives a image") {
         View view;
         view.camera.eye = {0, 5, 0};
         view.camera.look_at = {0, 0, 0};

@@ -30,7 +30,8 @@ TEST_SUITE("unit") {
         CHECK(is_black(film.mean(1, 0)));
     }
 
-    TEST_CASE("a rare bright sample does not hide itself in the estimate of relMSE; what both replicates find counts in full") {
+    TEST_CASE("a rare bright sample does not hide itself in the estimate of relMSE; what both replicates find counts "
+              "in full") {
         const auto estimate = [](float first, float second) { // the center of 3 × 3 pixels; the others are 1 and exact
             Film film(3, 3);
             for (int y = 0; y < 3; ++y)

@@ -21,7 +21,7 @@ using duet::test::error_of;
 namespace {
 
 // The pixels have values of all magnitudes, a few of them special.
-ImageRgb radiance_picture(int width, int height) {
+ImageRgb radiance_image(int width, int height) {
     std::mt19937 random(7);
     std::uniform_real_distribution<float> exponent(-20, 20), sign(-0.2f, 1);
     ImageRgb image(width, height);
@@ -35,7 +35,7 @@ ImageRgb radiance_picture(int width, int height) {
 
 // Each pixel is the linear value of one of the 256 codes. The top left one is red, the top right green, the bottom
 // left blue.
-ImageRgb encoded_picture(int width, int height) {
+ImageRgb encoded_image(int width, int height) {
     std::mt19937 random(8);
     ImageRgb image(width, height);
     for (std::size_t i = 0; i < image.size(); ++i)
@@ -52,7 +52,7 @@ TEST_SUITE("unit") {
     TEST_CASE("8-bit files keep each code: PNG, TGA, PPM in bytes and in text") {
         const test::ScratchFolder folder;
         for (const auto& size : {std::pair{37, 23}, {1, 1}, {300, 2}, {1, 129}}) {
-            const ImageRgb image = encoded_picture(size.first, size.second);
+            const ImageRgb image = encoded_image(size.first, size.second);
             for (const char* name : {"a.png", "a.tga", "a.ppm", "A.PNG"}) {
                 CAPTURE(name);
                 CAPTURE(size.first);
@@ -67,7 +67,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("8-bit files hold runs too") { // TGA run lengths and PNG matches
         const test::ScratchFolder folder;
-        ImageRgb image = encoded_picture(500, 9);
+        ImageRgb image = encoded_image(500, 9);
         for (int y = 0; y < 9; ++y)
             for (int x = 20; x < 480; ++x)
                 if (x % 150 > 3) image(x, y) = image(20, y);
@@ -80,7 +80,7 @@ TEST_SUITE("unit") {
     TEST_CASE("PFM and EXR keep every bit: infinity, NaN, negative zero") {
         const test::ScratchFolder folder;
         for (const auto& size : {std::pair{37, 23}, {2, 1}, {300, 40}}) {
-            const ImageRgb image = radiance_picture(size.first, size.second);
+            const ImageRgb image = radiance_image(size.first, size.second);
             for (const char* name : {"a.pfm", "a.exr"}) {
                 CAPTURE(name);
                 write_image(folder / name, image);
@@ -170,7 +170,7 @@ TEST_SUITE("unit") {
         CHECK(read_image(folder / "a.png")[0] == Rgb(0, 1, 0));
     }
 
-    TEST_CASE("grey is spread and alpha dropped") {
+    TEST_CASE("gray is spread and alpha dropped") {
         StoredImage grey{2, 1, 2, StoredImage::Encoding::kLinear, {0.5f, 0.1f, 0.75f, 0.2f}};
         CHECK(to_linear(grey)[0] == Rgb(0.5f));
         CHECK(to_linear(grey)[1] == Rgb(0.75f));
@@ -194,7 +194,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("a file that cannot be written is an Error with exit code 1, and leaves nothing behind") {
         const test::ScratchFolder folder;
-        const ImageRgb image = radiance_picture(200, 200);
+        const ImageRgb image = radiance_image(200, 200);
         for (const char* ending : {"png", "jpg", "tga", "ppm", "pfm", "hdr", "exr"}) {
             CAPTURE(ending);
             CHECK(error_of([&] {
@@ -252,7 +252,7 @@ TEST_SUITE("unit") {
         CHECK(!std::filesystem::exists(folder / "b.exr"));
     }
 
-    TEST_CASE("EXR: grey, alpha and integer channels make a picture; others are named in the Error") {
+    TEST_CASE("EXR: gray, alpha and integer channels make a image; others are named in the Error") {
         const test::ScratchFolder folder;
         const std::vector<float> one{0.25f}, two{0.5f}, three{4.0f}, four{0.75f};
         write_exr(folder / "grey.exr", 1, 1, {{"Y", one, {}}, {"A", four, {}}});

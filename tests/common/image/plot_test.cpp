@@ -86,7 +86,7 @@ TEST_SUITE("unit") {
         CHECK(plot_svg("again", two_lines()) == svg);
     }
 
-    TEST_CASE("names at the ends of lines that end together don't overlap, and stay in the picture") {
+    TEST_CASE("names at the ends of lines that end together don't overlap, and stay in the image") {
         Plot plot{.series = {}};
         for (int i = 0; i < 7; ++i) plot.series.push_back({"line", {{0, 0}, {1, 1e-3 * i}}});
         const std::string svg = plot_svg("lines", plot);

@@ -47,7 +47,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE(
-        "8-bit encoding rounds to nearest: at each change of code, its neighbouring floats, and all over the range") {
+        "8-bit encoding rounds to nearest: at each change of code, its neighboring floats, and all over the range") {
         for (int k = 0; k < 255; ++k) {
             const auto change = static_cast<float>(srgb_decode((k + 0.5) / 255));
             float x = change;
@@ -83,7 +83,7 @@ TEST_SUITE("unit") {
         CHECK(srgb_encode_8bit(infinity) == 255);
     }
 
-    TEST_CASE("a whole picture is encoded pixel by pixel, whatever the number of threads") {
+    TEST_CASE("a whole image is encoded pixel by pixel, whatever the number of threads") {
         ImageRgb image(701, 307); // the size is no multiple of the bands' height
         for (std::size_t i = 0; i < image.size(); ++i) {
             const float x = static_cast<float>(i) / static_cast<float>(image.size());

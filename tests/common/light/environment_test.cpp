@@ -18,7 +18,7 @@ using namespace duet;
 namespace {
 
 /// Returns an image with smooth variation, a black region, a bright sun and a bright pixel at the seam.
-ImageRgb picture(int width, int height) {
+ImageRgb shown_image(int width, int height) {
     ImageRgb image(width, height);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
@@ -44,8 +44,8 @@ std::vector<Named> environments() {
     all.push_back({"sky", SkyEnvironment{}, false});
     all.push_back({"sky, black below", SkyEnvironment{Rgb(0.0f), Rgb(0.1f, 0.2f, 5)}, false});
     all.push_back({"sky, black above", SkyEnvironment{Rgb(3.0f), Rgb(0.0f)}, false});
-    all.push_back({"picture", make_image_environment(picture(32, 16), 2, 0)});
-    all.push_back({"picture, turned", make_image_environment(picture(24, 9), 0.5f, 1.1f)});
+    all.push_back({"picture", make_image_environment(shown_image(32, 16), 2, 0)});
+    all.push_back({"image, turned", make_image_environment(shown_image(24, 9), 0.5f, 1.1f)});
     all.push_back({"one pixel", make_image_environment(ImageRgb(1, 1, Rgb(0.25f)), 4, 2), false});
     return all;
 }
@@ -107,7 +107,7 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("the picture: row 0 on top, its middle column at −z, counter-clockwise turns, no seam") {
+    TEST_CASE("the image: row 0 on top, its middle column at −z, counter-clockwise turns, no seam") {
         ImageRgb image(8, 4, Rgb(0.0f));
         image(4, 0) = Rgb(1.0f); // just right of the center, in the top row
         image(6, 2) = Rgb(2.0f);
@@ -136,7 +136,7 @@ TEST_SUITE("unit") {
         CHECK(radiance(seam, {0, 0, 1}).r == doctest::Approx(8.5));
     }
 
-    TEST_CASE("black environments give no samples; a bad picture is refused") {
+    TEST_CASE("black environments give no samples; a bad image is refused") {
         const Environment dark[] = {ConstantEnvironment{}, SkyEnvironment{Rgb(0.0f), Rgb(0.0f)},
                                     make_image_environment(ImageRgb(4, 2), 1, 0),
                                     make_image_environment(ImageRgb(4, 2, Rgb(1.0f)), 0, 0), ImageEnvironment{}};

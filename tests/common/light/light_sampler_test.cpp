@@ -143,7 +143,7 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("a near lamp is chosen before a far one, and none behind the receiver") {
+    TEST_CASE("a near light is chosen before a far one, and none behind the receiver") {
         const std::vector<Light> lights{PointLight{{1, 0, 0}, Rgb(1.0f)}, PointLight{{10, 0, 0}, Rgb(1.0f)},
                                         PointLight{{-1, 0, 0}, Rgb(100.0f)}, PointLight{{1, 1, 0}, Rgb(0.0f)}};
         const LightSampler chooser(lights, 0);
@@ -157,7 +157,7 @@ TEST_SUITE("unit") {
         CHECK_FALSE(chooser.sample({{20, 0, 0}, {1, 0, 0}}, 0.5f).has_value());
     }
 
-    TEST_CASE("suns, the environment and all lamps together share half of the samples evenly") {
+    TEST_CASE("suns, the environment and all lights together share half of the samples evenly") {
         const std::vector<Light> lights{SunLight{{0, -1, 0}, Rgb(900.0f)}, PointLight{{0, 1, 0}, Rgb(1.0f)},
                                         SunLight{{0, 1, 0}, Rgb(5.0f)}};
         const LightSampler chooser(lights, 99);

@@ -18,7 +18,7 @@ using Triangle = SurfaceLight::Triangle;
 
 namespace {
 
-SurfaceLight lamp(std::variant<Triangle, Quad, Sphere> shape, bool two_sided = false) {
+SurfaceLight area_light(std::variant<Triangle, Quad, Sphere> shape, bool two_sided = false) {
     SurfaceLight light;
     light.shape = shape;
     light.two_sided = two_sided;
@@ -40,19 +40,19 @@ std::vector<Setting> settings() {
     const Quad slanted{{-1, 1, -1}, {2, 0.3f, 0}, {0.7f, 0, 2}};
     const Sphere ball{{0.3f, 2, -0.4f}, 0.7f};
     const Vec3 up{0, 1, 0}, tilted = normalize(Vec3(0.9f, 0.3f, -0.2f));
-    return {{"triangle", lamp(triangle), {0, 0, 0}, up},
-            {"triangle, near", lamp(triangle), {0.1f, 1.9f, -0.1f}, up},
-            {"triangle, tilted", lamp(triangle), {0, 1, 0}, tilted},
-            {"square", lamp(square), {0, 0, 0}, up},
-            {"square, corner", lamp(square), {0.5f, 0.8f, 0.5f}, tilted},
-            {"square, far", lamp(square), {3, -20, 1}, up},
-            {"square, aside", lamp(square), {3, 0.9f, 0}, normalize(Vec3(-1, 0.2f, 0))},
-            {"parallelogram", lamp(slanted), {0.2f, 0.3f, 0}, tilted},
-            {"parallelogram, near", lamp(slanted), {0.2f, 1.0f, 0}, up},
-            {"sphere", lamp(ball), {0, 0, 0}, up},
-            {"sphere, near", lamp(ball), {0.3f, 1.299f, -0.4f}, tilted},
-            {"sphere, dips below", lamp(ball), {0, 1.9f, 0.8f}, up},
-            {"sphere, far", lamp(ball), {100, -300, 20}, up}};
+    return {{"triangle", area_light(triangle), {0, 0, 0}, up},
+            {"triangle, near", area_light(triangle), {0.1f, 1.9f, -0.1f}, up},
+            {"triangle, tilted", area_light(triangle), {0, 1, 0}, tilted},
+            {"square", area_light(square), {0, 0, 0}, up},
+            {"square, corner", area_light(square), {0.5f, 0.8f, 0.5f}, tilted},
+            {"square, far", area_light(square), {3, -20, 1}, up},
+            {"square, aside", area_light(square), {3, 0.9f, 0}, normalize(Vec3(-1, 0.2f, 0))},
+            {"parallelogram", area_light(slanted), {0.2f, 0.3f, 0}, tilted},
+            {"parallelogram, near", area_light(slanted), {0.2f, 1.0f, 0}, up},
+            {"sphere", area_light(ball), {0, 0, 0}, up},
+            {"sphere, near", area_light(ball), {0.3f, 1.299f, -0.4f}, tilted},
+            {"sphere, dips below", area_light(ball), {0, 1.9f, 0.8f}, up},
+            {"sphere, far", area_light(ball), {100, -300, 20}, up}};
 }
 
 /// Returns where a ray from p meets the shape's plane or surface, computed independently of the code under test.
@@ -125,10 +125,10 @@ TEST_SUITE("unit") {
     TEST_CASE("power: flux in watts") {
         CHECK(light_power(PointLight{{}, Rgb(1, 2, 3)}, 1) == doctest::Approx(4 * kPiDouble * 2));
         CHECK(light_power(SunLight{{0, -1, 0}, Rgb(2.0f)}, 10) == doctest::Approx(200 * kPiDouble));
-        CHECK(light_power(lamp(Quad{{}, {2, 0, 0}, {1, 3, 0}}), 1) == doctest::Approx(kPiDouble * 6 * 3.5 / 3));
-        CHECK(light_power(lamp(Triangle{{}, {2, 0, 0}, {1, 3, 0}}, true), 1) ==
+        CHECK(light_power(area_light(Quad{{}, {2, 0, 0}, {1, 3, 0}}), 1) == doctest::Approx(kPiDouble * 6 * 3.5 / 3));
+        CHECK(light_power(area_light(Triangle{{}, {2, 0, 0}, {1, 3, 0}}, true), 1) ==
               doctest::Approx(kPiDouble * 6 * 3.5 / 3));
-        CHECK(light_power(lamp(Sphere{{}, 2}), 1) == doctest::Approx(kPiDouble * 16 * kPiDouble * 3.5 / 3));
+        CHECK(light_power(area_light(Sphere{{}, 2}), 1) == doctest::Approx(kPiDouble * 16 * kPiDouble * 3.5 / 3));
         // The power of a spot light must equal the integral of its intensity.
         const SpotLight spot{{}, {0, 0, 1}, Rgb(2.0f), 0.9f, 0.4f};
         double sum = 0;
@@ -179,7 +179,7 @@ TEST_SUITE("unit") {
         const Quad quad{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}; // emits toward +z
         const Triangle triangle{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
         const Vec2 u{0.3f, 0.4f};
-        for (const SurfaceLight& one : {lamp(quad), lamp(triangle)}) {
+        for (const SurfaceLight& one : {area_light(quad), area_light(triangle)}) {
             SurfaceLight both = one;
             both.two_sided = true;
             const Vec3 front{0.2f, 0.2f, 1}, back{0.2f, 0.2f, -1}, beside{3, 0.2f, 0};
@@ -191,7 +191,7 @@ TEST_SUITE("unit") {
             CHECK(is_black(surface_light_irradiance(both, beside, {-1, 0, 0})));
             CHECK(is_black(surface_light_irradiance(one, back, {0, 0, 1})));
         }
-        const SurfaceLight ball = lamp(Sphere{{}, 1});
+        const SurfaceLight ball = area_light(Sphere{{}, 1});
         SurfaceLight inwards = ball;
         inwards.two_sided = true;
         CHECK(sample_light(ball, {0, 0, 2}, u).has_value());
@@ -199,9 +199,9 @@ TEST_SUITE("unit") {
         CHECK(sample_light(inwards, {0, 0, 0.5f}, u).has_value());
         CHECK(sample_light(inwards, {0, 0, 0.5f}, u)->pdf == doctest::Approx(1 / (4 * kPiDouble)));
         CHECK(surface_light_irradiance(inwards, {0, 0, 0.5f}, {0, 1, 0}).r == doctest::Approx(2 * kPiDouble));
-        CHECK_FALSE(sample_light(lamp(Sphere{{}, 0}, true), {0, 0, 2}, u).has_value());
-        CHECK_FALSE(sample_light(lamp(Quad{{}, {1, 0, 0}, {2, 0, 0}}, true), {0, 0, 2}, u).has_value());
-        CHECK_FALSE(sample_light(lamp(Triangle{}, true), {0, 0, 2}, u).has_value());
+        CHECK_FALSE(sample_light(area_light(Sphere{{}, 0}, true), {0, 0, 2}, u).has_value());
+        CHECK_FALSE(sample_light(area_light(Quad{{}, {1, 0, 0}, {2, 0, 0}}, true), {0, 0, 2}, u).has_value());
+        CHECK_FALSE(sample_light(area_light(Triangle{}, true), {0, 0, 2}, u).has_value());
     }
 }
 

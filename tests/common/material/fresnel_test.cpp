@@ -34,7 +34,8 @@ TEST_SUITE("unit") {
         CHECK(fresnel_schlick(Rgb(1.0f), 0.37f) == Rgb(1.0f));
     }
 
-    TEST_CASE("conductors: Fresnel's curve is that of a dielectric without absorption, and a mirror's with much; SIMD") {
+    TEST_CASE("conductors: Fresnel's curve is that of a dielectric without absorption, and a mirror's with "
+              "much; SIMD") {
         for (const double z : {1.0, 0.7, 0.3, 0.01}) {
             CHECK(fresnel_conductor(z, 1.5, 0.0) == doctest::Approx(fresnel_dielectric(z, 1.5)).epsilon(1e-9));
             CHECK(fresnel_conductor(z, 0.01, 1000.0) > 0.9999);
@@ -50,7 +51,7 @@ TEST_SUITE("unit") {
         for (std::size_t i = 0; i < kSimdLanes; ++i) CHECK(together[i] == fresnel_conductor(cosines[i], 0.3f, 3.1f));
     }
 
-    TEST_CASE("named conductors: colours known from elsewhere, and a curve near the measured spectrum's at all angles") {
+    TEST_CASE("named conductors: colors known from elsewhere, and a curve near the measured spectrum's at all angles") {
         for (const std::string_view name : conductor_names()) {
             CAPTURE(name);
             const auto metal = find_conductor(name);

@@ -132,7 +132,7 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("descriptions become scattering functions; colours stay within [0, 1]; emission knows its side") {
+    TEST_CASE("descriptions become scattering functions; colors stay within [0, 1]; emission knows its side") {
         const TextureSet none;
         SurfacePoint point{};
         point.ng = {0, 0, 1};
@@ -144,12 +144,12 @@ TEST_SUITE("unit") {
         CHECK_FALSE(is_specular(bsdf_at(Dielectric{1.01f, {Rgb(1.0f)}, {0.5f}}, none, point)));
         CHECK(is_specular(bsdf_at(Dielectric{1.000001f, {Rgb(1.0f)}, {0.5f}}, none, point))); // does not refract
         CHECK_FALSE(is_specular(bsdf_at(Diffuse{}, none, point)));
-        const Material lamp = Emissive{Rgb(3.0f), false, {Rgb(0.25f)}};
-        CHECK(emitted(lamp, none, point, {0, 0.6f, 0.8f}) == Rgb(3.0f));
-        CHECK(is_black(emitted(lamp, none, point, {0, 0.6f, -0.8f})));
+        const Material area_light = Emissive{Rgb(3.0f), false, {Rgb(0.25f)}};
+        CHECK(emitted(area_light, none, point, {0, 0.6f, 0.8f}) == Rgb(3.0f));
+        CHECK(is_black(emitted(area_light, none, point, {0, 0.6f, -0.8f})));
         CHECK(emitted(Emissive{Rgb(3.0f), true, {}}, none, point, {0, 0.6f, -0.8f}) == Rgb(3.0f));
         CHECK(is_black(emitted(Diffuse{}, none, point, {0, 0, 1})));
-        CHECK(base_color(lamp, none, point) == Rgb(0.25f));
+        CHECK(base_color(area_light, none, point) == Rgb(0.25f));
         CHECK(base_color(Dielectric{1.5f, {Rgb(0.5f)}}, none, point) == Rgb(0.5f));
     }
 }

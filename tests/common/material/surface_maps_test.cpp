@@ -103,7 +103,8 @@ TEST_SUITE("unit") {
         CHECK(bent > 1000); // otherwise the test covers nothing
     }
 
-    TEST_CASE("near silhouettes, where smooth normals lean away from the viewer, an even map changes nothing, another little") {
+    TEST_CASE("near silhouettes, where smooth normals lean away from the viewer, an even map changes nothing, another "
+              "little") {
         const Vec3 to_viewer = normalize(Vec3(1, 0, 0.03f));
         const auto bent = [&](Vec3 smooth, Rgb color) {
             SurfacePoint point = flat();

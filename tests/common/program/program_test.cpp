@@ -10,7 +10,7 @@ using namespace duet;
 
 TEST_SUITE("unit") {
 
-    TEST_CASE("picture sizes are parsed whole or refused") {
+    TEST_CASE("image sizes are parsed whole or refused") {
         const ImageSize size = parse_image_size("640x480");
         CHECK(size.width == 640);
         CHECK(size.height == 480);
@@ -19,7 +19,7 @@ TEST_SUITE("unit") {
             CHECK_THROWS_AS(parse_image_size(bad), Error);
     }
 
-    TEST_CASE("lists of auxiliary pictures") {
+    TEST_CASE("lists of auxiliary images") {
         const AovSet set = parse_aovs("depth,hit,samples");
         CHECK((set.depth && set.hit && set.samples));
         CHECK_FALSE((set.normal || set.albedo || set.variance));

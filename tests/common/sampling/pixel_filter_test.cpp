@@ -31,7 +31,7 @@ Moments moments(const PixelFilter& filter, int n) {
 } // namespace
 
 TEST_SUITE("unit") {
-    TEST_CASE("the middle of the square is the pixel's centre, its borders the filter's") {
+    TEST_CASE("the middle of the square is the pixel's center, its borders the filter's") {
         for (const FilterKind kind : {FilterKind::kBox, FilterKind::kBlackmanHarris}) {
             const PixelFilter filter(kind);
             CHECK(filter.sample({0.5f, 0.5f}) == Vec2d(0, 0));

@@ -179,7 +179,7 @@ TEST_SUITE("statistical") {
             }
     }
 
-    TEST_CASE("two numbers of neighbouring seeds, pixels, samples, replicates or dimensions are independent") {
+    TEST_CASE("two numbers of neighboring seeds, pixels, samples, replicates or dimensions are independent") {
         struct Key {
             std::uint64_t seed = 0;
             int x = 0;

@@ -198,9 +198,9 @@ TEST_SUITE("unit") {
         CHECK(baked >= 1);
     }
 
-    TEST_CASE("A mirrored lamp shines on the mirror image of its front side") {
+    TEST_CASE("A mirrored light shines on the mirror image of its front side") {
         // In object space the front side is +z. The transform (x, y, −z) makes it −z, and (−x, y, z) leaves it at +z.
-        const Emissive lamp{Rgb(2.0f)};
+        const Emissive area_light{Rgb(2.0f)};
         Mesh triangle;
         triangle.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
         triangle.triangles = {{0, 1, 2}};
@@ -213,7 +213,7 @@ TEST_SUITE("unit") {
                       std::pair(Vec3d(-1, 1, 1), 1.0f)}) {
                     const Vec3d scale = stretch;
                     const float front = side_of_front;
-                    Scene scene = scene_of(shape, scaling(scale), lamp);
+                    Scene scene = scene_of(shape, scaling(scale), area_light);
                     if (!baked)
                         scene.objects.push_back(
                             // This object moves, so it is not a light.
@@ -235,13 +235,13 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("Spheres emit outwards under any similarity; as ellipsoids they are no light") {
-        const Emissive lamp{Rgb(2.0f)};
-        const Scene mirrored = finished(scene_of(Sphere{{1, 0, 0}, 0.5f}, scaling(Vec3d(-2, 2, 2)), lamp));
+        const Emissive area_light{Rgb(2.0f)};
+        const Scene mirrored = finished(scene_of(Sphere{{1, 0, 0}, 0.5f}, scaling(Vec3d(-2, 2, 2)), area_light));
         const SurfaceLight& light = only_light(mirrored);
         CHECK(std::get<Sphere>(light.shape).center == Vec3(-2, 0, 0));
         CHECK(std::get<Sphere>(light.shape).radius == 1);
         CHECK(emits_towards(light, {5, 0, 0}));
-        CHECK(finished(scene_of(Sphere{{1, 0, 0}, 0.5f}, scaling(Vec3d(1, 2, 1)), lamp)).lights.empty());
+        CHECK(finished(scene_of(Sphere{{1, 0, 0}, 0.5f}, scaling(Vec3d(1, 2, 1)), area_light)).lights.empty());
     }
 
     TEST_CASE("Surface lights follow the described ones, sorted, and are found again") {

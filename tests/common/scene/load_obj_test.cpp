@@ -173,9 +173,9 @@ TEST_SUITE("unit") {
         CHECK(std::get<Diffuse>(material_of("Kd 0.1 0.2 0.3\nillum 2\nKs 1 1 1\n")).albedo.value ==
               Rgb(0.1f, 0.2f, 0.3f));
         CHECK(std::get<Diffuse>(material_of("Kd 2 255 0.3\n")).albedo.value == Rgb(1, 1, 0.3f));
-        const auto lamp = std::get<Emissive>(material_of("Kd 0.5 0.5 0.5\nKe 17 12 4\n"));
-        CHECK(lamp.radiance == Rgb(17, 12, 4));
-        CHECK(lamp.albedo.value == Rgb(0.5f));
+        const auto area_light = std::get<Emissive>(material_of("Kd 0.5 0.5 0.5\nKe 17 12 4\n"));
+        CHECK(area_light.radiance == Rgb(17, 12, 4));
+        CHECK(area_light.albedo.value == Rgb(0.5f));
         CHECK(std::get<Dielectric>(material_of("d 0.5\nNi 1.33\n")).ior == 1.33f);
         CHECK(std::get<Dielectric>(material_of("Tr 0.5\nNi 1.33\n")).ior == 1.33f);
         CHECK(std::holds_alternative<Diffuse>(material_of("d 0.5\nNi 1\n")));
@@ -206,7 +206,7 @@ TEST_SUITE("unit") {
         CHECK(std::holds_alternative<Diffuse>(material_of("illum 3\nKs 0 0 0\n")));
     }
 
-    TEST_CASE("MTL pictures of all kinds arrive, each with what is taken of it") {
+    TEST_CASE("MTL images of all kinds arrive, each with what is taken of it") {
         const ScratchFolder folder;
         folder.write(
             "m.mtl",
@@ -236,9 +236,9 @@ TEST_SUITE("unit") {
         CHECK(texture(maps.opacity.texture).file == folder / "e.png");
         CHECK(texture(maps.opacity.texture).selection.channel == ChannelSelection::Channel::kOpacity);
         CHECK(maps.opacity.value == 0.75f);
-        const auto lamp = std::get<Emissive>(file.materials[1].material);
-        CHECK(lamp.radiance == Rgb(1.0f));
-        CHECK(texture(lamp.radiance_texture).file == folder / "f.png");
+        const auto area_light = std::get<Emissive>(file.materials[1].material);
+        CHECK(area_light.radiance == Rgb(1.0f));
+        CHECK(texture(area_light.radiance_texture).file == folder / "f.png");
         CHECK(file.materials[1].maps.opacity.constant()); // emitters have no alpha mask
     }
 

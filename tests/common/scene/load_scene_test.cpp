@@ -66,12 +66,14 @@ const char* const kWhole = R"({
   "objects": [
     {"name": "floor", "type": "quad", "corner": [-1, 0, 1], "u": [2, 0, 0], "v": [0, 0, -2], "material": "tiled"},
     {"type": "sphere", "center": [0, 1, 0], "radius": 0.5, "material": "glass"},
-    {"type": "box", "low": [-1, 0, -1], "high": [1, 2, 1], "material": "gold", "transform": [{"translate": [0, 0, -3]}]},
+    {"type": "box", "low": [-1, 0, -1], "high": [1, 2, 1], "material": "gold", "transform": [{"translate": [0, 0,
+     -3]}]},
     {"name": "light", "type": "quad", "corner": [0, 2, 0], "u": [1, 0, 0], "v": [0, 0, 1], "material": "lamp"}
   ],
   "lights": [
     {"type": "point", "position": [0, 3, 0], "intensity": 10},
-    {"type": "spot", "position": [0, 3, 0], "direction": [0, -2, 0], "intensity": [1, 2, 3], "inner_degrees": 20, "outer_degrees": 60},
+    {"type": "spot", "position": [0, 3, 0], "direction": [0, -2, 0], "intensity": [1, 2, 3], "inner_degrees": 20,
+     "outer_degrees": 60},
     {"type": "sun", "direction": [0, -3, 4], "irradiance": 3}
   ],
   "environment": {"type": "sky", "down": 0.5, "up": [0.1, 0.2, 0.4]}
@@ -131,9 +133,11 @@ TEST_SUITE("unit") {
         parts.materials = R"({
             "a": {"type": "diffuse", "roughness": 0.7},
             "b": {"type": "metal", "conductor": "copper", "roughness": 0.3},
-            "c": {"type": "dielectric", "roughness": 0.4, "priority": 3, "absorption": {"color": [0.5, 1, 0], "distance": 2}},
+            "c": {"type": "dielectric", "roughness": 0.4, "priority": 3, "absorption": {"color": [0.5, 1, 0],
+             "distance": 2}},
             "d": {"type": "dielectric", "thin": true},
-            "e": {"type": "principled", "base_color": [0.1, 0.2, 0.3], "metallic": 0.25, "roughness": {"texture": "t", "scale": 0.5},
+            "e": {"type": "principled", "base_color": [0.1, 0.2, 0.3], "metallic": 0.25,
+             "roughness": {"texture": "t", "scale": 0.5},
                   "ior": 1.4, "clearcoat": 0.8, "clearcoat_roughness": 0.1},
             "m": {"type": "coated", "albedo": 0.3, "roughness": 0.2, "ior": 1.6}})";
         parts.more = R"(, "textures": {"t": {"type": "checker"}})";
@@ -249,7 +253,8 @@ TEST_SUITE("unit") {
             {with(R"("lights": [{"type": "sun", "direction": [0, 0, 0], "irradiance": 1}])"),
              "$.lights[0].direction: a direction must not be the zero vector"},
             {with(
-                 R"("lights": [{"type": "spot", "position": [0, 0, 0], "direction": [0, 0, 1], "intensity": 1, "inner_degrees": 40}])"),
+                 R"("lights": [{"type": "spot", "position": [0, 0, 0], "direction": [0, 0, 1], "intensity": 1,
+                  "inner_degrees": 40}])"),
              "$.lights[0]: \"inner_degrees\" must be below"},
             {with(R"("environment": {"type": "constant", "radiance": 1e300})"), "$.environment.radiance: found 1e+300"},
             {with(R"("environment": {"type": "image", "file": "gone.hdr"})"), "gone.hdr: no such file"},
@@ -319,7 +324,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("Other files are refused by name, before they are read") {
         CHECK(says(error_of([] { load_scene("picture.png"); }),
-                   "picture.png: expected a scene file (.json) or a mesh (.obj)"));
+                   "image.png: expected a scene file (.json) or a mesh (.obj)"));
         CHECK(says(error_of([] { load_scene("gone.json"); }), "gone.json: no such file"));
         CHECK(says(error_of([] { load_scene("gone.obj"); }), "gone.obj: no such file"));
     }

@@ -17,7 +17,8 @@ Scene load(const std::string& objects) {
     const ScratchFolder folder;
     return load_scene(folder.write(
         "scene.json",
-        R"({"camera": {"eye": [0, 0, 50], "look_at": [0, 0, 0]}, "materials": {"m": {"type": "diffuse"}}, "objects": )" +
+        R"({"camera": {"eye": [0, 0, 50], "look_at": [0, 0, 0]}, "materials": {"m": {"type": "diffuse"}},
+         "objects": )" +
             objects + "}"));
 }
 std::string refusal(const std::string& objects) {
@@ -48,7 +49,8 @@ TEST_SUITE("unit") {
     TEST_CASE("Steps are applied in order, groups around them last") {
         const Scene scene = load(
             R"([{"type": "group", "name": "g", "transform": [{"rotate_degrees": 90, "axis": [0, 0, 1]}], "objects": [
-        {"type": "sphere", "center": [1, 0, 0], "radius": 1, "material": "m", "transform": [{"scale": 2}, {"translate": [1, 0, 0]}]}]}])");
+        {"type": "sphere", "center": [1, 0, 0], "radius": 1, "material": "m", "transform": [{"scale": 2},
+         {"translate": [1, 0, 0]}]}]}])");
         REQUIRE(names(scene) == std::vector<std::string>{"g/sphere-0"});
         check_near(center(scene, 0), Vec3(0, 3, 0));
         CHECK(scene.objects[0].identity);
@@ -57,10 +59,12 @@ TEST_SUITE("unit") {
 
     TEST_CASE("Instances share the shape, under the group's transform and their own") {
         const Scene scene = load(
-            R"([{"type": "group", "name": "tree", "hidden": true, "transform": [{"translate": [0, 1, 0]}], "objects": [)" +
+            R"([{"type": "group", "name": "tree", "hidden": true, "transform": [{"translate": [0, 1, 0]}],
+             "objects": [)" +
             kBall +
             R"(]}, {"type": "instance", "of": "tree", "transform": [{"scale": 10}]},
-                {"type": "instance", "of": "tree", "name": "other", "transform": [{"rotate_degrees": -90, "axis": [0, 0, 5]}]}])");
+                {"type": "instance", "of": "tree", "name": "other", "transform": [{"rotate_degrees": -90, "axis": [0,
+                 0, 5]}]}])");
         REQUIRE(names(scene) == std::vector<std::string>{"tree/ball", "other/ball"});
         CHECK(scene.shapes.size() == 1);
         check_near(center(scene, 0), Vec3(10, 10, 0));

@@ -58,7 +58,7 @@ TEST_SUITE("unit") {
         CHECK(look_up(image, true, {0.25f, 0.25f}) == Rgb(2));
     }
 
-    TEST_CASE("image: bilinear is exact at texel centres, nearest on all of a texel, in each period") {
+    TEST_CASE("image: bilinear is exact at texel centers, nearest on all of a texel, in each period") {
         const ImageRgb image = numbered_image(8, 4);
         for (int period = -3; period <= 3; ++period)
             for (int y = 0; y < 4; ++y)
@@ -74,7 +74,7 @@ TEST_SUITE("unit") {
                 }
     }
 
-    TEST_CASE("image: bilinear interpolates between centres, and across the seam") {
+    TEST_CASE("image: bilinear interpolates between centers, and across the seam") {
         const ImageRgb image = numbered_image(8, 4);
         CHECK(look_up(image, true, {3.25f / 8, 2.0f / 4}) == Rgb(2.75f, 1.5f, 1));
         // Between the last column and the first, the value is their average at the border, on both sides and in each
@@ -112,14 +112,14 @@ TEST_SUITE("unit") {
         CHECK(worst > 0x1p-26); // the arithmetic is in float
     }
 
-    TEST_CASE("image: scale repeats the picture") {
+    TEST_CASE("image: scale repeats the image") {
         const ImageRgb image = numbered_image(8, 4);
         CHECK(look_up(image, false, {0.30f, 0.55f}, {3, 2}) == look_up(image, false, {0.90f, 0.10f}));
         CHECK(look_up(image, true, {0.5f, 0.5f}, {-1, 1}).r == doctest::Approx(3.5f));
         CHECK(look_up(image, false, {0.1f, 0.1f}, {-1, 1}).r == 7.0f);
     }
 
-    TEST_CASE("image: one texel, and uv of any size, give texels of the picture") {
+    TEST_CASE("image: one texel, and uv of any size, give texels of the image") {
         const ImageRgb one(1, 1, Rgb(0.25f, 0.5f, 4)), image = numbered_image(7, 5);
         constexpr float infinity = std::numeric_limits<float>::infinity(),
                         nan = std::numeric_limits<float>::quiet_NaN();
@@ -151,7 +151,7 @@ TEST_SUITE("unit") {
             for (const float v : kFar) CHECK((at_uv(checker, {u, v}) == Rgb(1) || at_uv(checker, {u, v}) == Rgb(0)));
     }
 
-    TEST_CASE("checker in space: cubes of side 1/scale, and one colour on a face along their border") {
+    TEST_CASE("checker in space: cubes of side 1/scale, and one color on a face along their border") {
         const CheckerTexture checker{Rgb(1), Rgb(0), 2, true};
         for (int k = -3; k < 3; ++k)
             for (int j = -3; j < 3; ++j)
@@ -166,7 +166,7 @@ TEST_SUITE("unit") {
         for (const float x : kFar) CHECK(is_finite(at_object(checker, {x, -x, 1})));
     }
 
-    TEST_CASE("noise: colours between low and high, of any size of point, all octaves") {
+    TEST_CASE("noise: colors between low and high, of any size of point, all octaves") {
         std::mt19937 random(3);
         std::uniform_real_distribution<float> place(-50, 50);
         for (const bool marble : {false, true})
@@ -191,7 +191,7 @@ TEST_SUITE("unit") {
             }
     }
 
-    TEST_CASE("noise: scale is the number of cycles a metre") {
+    TEST_CASE("noise: scale is the number of cycles a meter") {
         const NoiseTexture coarse{Rgb(0), Rgb(1), 1, 3, false}, fine{Rgb(0), Rgb(1), 8, 3, false};
         for (const float x : {0.1f, 3.7f, -12.3f})
             CHECK(at_object(coarse, {x, 2 * x, 0}) == at_object(fine, {x / 8, x / 4, 0}));

@@ -285,7 +285,7 @@ TEST_SUITE("unit") {
         for (std::size_t i = 0; i < 4; ++i) CHECK(again["scenes"][0]["rows"][i]["mse"] == scene["rows"][i]["mse"]);
     }
 
-    TEST_CASE("a wrong picture of the independent estimator fails the bench") {
+    TEST_CASE("a wrong image of the independent estimator fails the bench") {
         const ScratchFolder scratch;
         BenchOptions options = small_bench(scratch);
         REQUIRE(bench(options) == 0);

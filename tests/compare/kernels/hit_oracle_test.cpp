@@ -168,9 +168,9 @@ TEST_SUITE("unit") {
         const Scene scene = squares();
         const HitOracle oracle(scene);
         const Ray ray = down(0.7f, 0.3f);
-        const Hit lamp{0, 2, 0, 0, 2};                                      // on the lower square
-        CHECK(oracle.occluded(ray, lamp, true) == AnswerVerdict::kCorrect); // occluded by the upper square
-        CHECK(oracle.occluded(ray, lamp, false) == AnswerVerdict::kWrong);
+        const Hit area_light{0, 2, 0, 0, 2};                                      // on the lower square
+        CHECK(oracle.occluded(ray, area_light, true) == AnswerVerdict::kCorrect); // occluded by the upper square
+        CHECK(oracle.occluded(ray, area_light, false) == AnswerVerdict::kWrong);
         Ray below = ray;
         below.origin.z = -0.5f;
         CHECK(oracle.occluded(below, Hit{0, 2, 0, 0, 0.5f}, false) == AnswerVerdict::kCorrect);

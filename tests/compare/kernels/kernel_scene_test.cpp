@@ -92,19 +92,19 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("a scene file's lamps are triangles of the flattened mesh") {
+    TEST_CASE("a scene file's lights are triangles of the flattened mesh") {
         const KernelScene flat = load_kernel_scene(kModels / "cornell.json", Arrangement::kAlone);
         const ReferenceTracer exact(*flat.scene, 0);
-        int lamps = 0;
+        int area_lights = 0;
         for (const Light& light : flat.lights) {
             const auto* surface = std::get_if<SurfaceLight>(&light);
             if (surface == nullptr || surface->object == kNoObject) continue;
-            ++lamps;
+            ++area_lights;
             const auto p = exact.corners(surface->object, surface->primitive);
             const auto expected = corners(std::get<Quad>(surface->shape));
             for (std::size_t k = 0; k < 3; ++k) CHECK(length(p[k] - Vec3d(expected[k])) < 1e-6);
         }
-        CHECK(lamps > 0);
+        CHECK(area_lights > 0);
     }
 
     TEST_CASE("spheres are counted as left out; a scene of nothing else is refused, and so is its clutter") {

@@ -49,7 +49,7 @@ TEST_SUITE("unit") {
         CHECK(range.max == 8);
     }
 
-    TEST_CASE("ours runs beside every peer's measurement, and ratios are of neighbours") {
+    TEST_CASE("ours runs beside every peer's measurement, and ratios are of neighbors") {
         std::string order;
         double pace = 1; // the CPU becomes slower, which must hardly affect the ratios
         const auto timed = [&](char name, double seconds) -> TimedWork {
@@ -74,7 +74,7 @@ TEST_SUITE("unit") {
         CHECK(interleave(timed('o', 1), {}, 4, 1e9, Control{}).peers.empty());
     }
 
-    TEST_CASE("a subset is whole groups, spread over the set, of about the length asked for") {
+    TEST_CASE("a subset is whole groups, spread over the set, of about the length requested") {
         constexpr std::size_t kGroupRays = kBlock * RaySubset::kGroup;
         for (const std::size_t rays : {std::size_t{1}, kGroupRays - 1, kGroupRays, 100 * kGroupRays + 17}) {
             const RaySubset all = choose_ray_subset(rays, 1e9, 1e-3 * static_cast<double>(rays) / 1e6);
@@ -132,7 +132,8 @@ TEST_SUITE("unit") {
         CHECK(found.faults.edge > 0); // at the rim of the missing triangle, where the surface continues
     }
 
-    TEST_CASE("rooms and instances are watertight, too; a kernel that slips through edges is caught though none escape") {
+    TEST_CASE("rooms and instances are watertight, too; a kernel that slips through edges is caught though none "
+              "escape") {
         for (const Arrangement arrangement : {Arrangement::kRoom, Arrangement::kInstances}) {
             const KernelScene scene = arrangement == Arrangement::kRoom
                                           ? lump(arrangement)

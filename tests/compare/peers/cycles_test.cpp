@@ -62,7 +62,7 @@ void make_exportable(json& value, const fs::path& folder) {
 TEST_SUITE("image") {
 
     // A false alarm has odds of 1 in 1000 (BiasCheck::kSignificance); the seeds are fixed.
-    TEST_CASE("the Cornell box: both pictures agree within their noise") {
+    TEST_CASE("the Cornell box: both images agree within their noise") {
         if (!blender_is_installed()) return;
         const BiasCheck check = against_cycles(fs::path(DUET_SOURCE_DIR) / "models" / "cornell.json", 48, 48, 512);
         CHECK(check.consistent());
@@ -71,7 +71,7 @@ TEST_SUITE("image") {
 
     // The scene has all materials and lights, all textures except noise, an environment image, a thin lens, and
     // mirrored and instanced meshes.
-    TEST_CASE("everything that can be exported: both pictures agree within their noise") {
+    TEST_CASE("everything that can be exported: both images agree within their noise") {
         if (!blender_is_installed()) return;
         const ScratchFolder scratch;
         const fs::path models = fs::path(DUET_SOURCE_DIR) / "models";

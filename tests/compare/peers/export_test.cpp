@@ -110,13 +110,13 @@ TEST_SUITE("unit") {
         CHECK(file["render"] == json{{"width", 40}, {"height", 30}, {"depth", 8}, {"threads", 2}});
         CHECK(file["camera"]["matrix"][0] == json{1.0, 0.0, 0.0, 0.0});
         CHECK(file["camera"]["matrix"][2][3].get<double>() == doctest::Approx(6.8));
-        const json& lamp = file["objects"][7];
-        CHECK(lamp["name"] == "lamp");
-        const json& material = file["materials"][lamp["materials"][0].get<std::size_t>()];
+        const json& area_light = file["objects"][7];
+        CHECK(area_light["name"] == "lamp");
+        const json& material = file["materials"][area_light["materials"][0].get<std::size_t>()];
         CHECK(material["type"] == "emissive");
         CHECK(material["two_sided"] == false);
         CHECK(material["radiance"] == json{17.0, 12.0, 4.0});
-        const json& mesh = file["meshes"][lamp["mesh"].get<std::size_t>()];
+        const json& mesh = file["meshes"][area_light["mesh"].get<std::size_t>()];
         const auto positions = numbers<float>(scratch, mesh["positions"]);
         REQUIRE(positions.size() == 12);
         CHECK(positions[0] == -0.24f);
@@ -124,7 +124,7 @@ TEST_SUITE("unit") {
         CHECK(numbers<std::int32_t>(scratch, mesh["triangles"]) == std::vector<std::int32_t>{0, 1, 2, 0, 2, 3});
     }
 
-    TEST_CASE("all spheres share one mesh; an environment's picture is turned as Cycles sees it") {
+    TEST_CASE("all spheres share one mesh; an environment's image is turned as Cycles sees it") {
         const ScratchFolder scratch;
         SceneBuilder builder;
         const std::uint32_t grey = builder.material(Diffuse{});

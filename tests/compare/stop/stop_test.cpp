@@ -25,7 +25,7 @@ StopTrial trial(double samples, double relmse, double mse, double uniform_relmse
     return t;
 }
 
-Scene lamp_over_floor(bool with_mirror) {
+Scene area_light_over_floor(bool with_mirror) {
     raytrace::SceneBuilder builder;
     builder.add(raytrace::quad({-3, -1, 3}, {6, 0, 0}, {0, 0, -6}), builder.material(Diffuse{{Rgb(0.5f)}}));
     builder.add(raytrace::quad({-1, 1.4f, -1}, {2, 0, 0}, {0, 0, 2}), builder.material(Emissive{Rgb(1.0f)}));
@@ -50,15 +50,15 @@ TEST_SUITE("unit") {
         CHECK(result.stopped_at_minimum()); // half of the trials ended with the minimum number of samples
     }
 
-    TEST_CASE("mirrors and lamps together make caustics") {
-        CHECK_FALSE(has_caustics(lamp_over_floor(false)));
-        CHECK(has_caustics(lamp_over_floor(true)));
+    TEST_CASE("mirrors and lights together make caustics") {
+        CHECK_FALSE(has_caustics(area_light_over_floor(false)));
+        CHECK(has_caustics(area_light_over_floor(true)));
     }
 }
 
 TEST_SUITE("statistical") {
 
-    TEST_CASE("the error that is measured is the one asked for, and a stopped measurement is none") {
+    TEST_CASE("the error that is measured is the one requested, and a stopped measurement is none") {
         const Scene scene = load_scene(std::filesystem::path(DUET_SOURCE_DIR) / "models/cornell.json");
         const View view{scene.camera, 64, 64};
         raytrace::PathTracerSettings settings;

@@ -119,7 +119,8 @@ TEST_SUITE("unit") {
         CHECK(tight > 10000);
     }
 
-    TEST_CASE("a spatial tree: every point of every item in a leaf of it, within the budget, for any number of threads") {
+    TEST_CASE("a spatial tree: every point of every item in a leaf of it, within the budget, for any number of "
+              "threads") {
         Random random(22);
         PolygonItems polygons(thicket(random, 6000));
         for (int i = 0; i < 200; ++i) { // quads and primitives that cannot be split

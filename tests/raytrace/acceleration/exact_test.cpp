@@ -131,7 +131,7 @@ std::vector<Primitive> primitives_of(const Scene& scene, float time) {
 }
 
 struct Verdicts {
-    int rays = 0, hits = 0, mismatches = 0, ties = 0, edges = 0, wrong_shadows = 0, twins = 0;
+    int rays = 0, hits = 0, mismatches = 0, ties = 0, edges = 0, wrong_shadows = 0, shown_duplicates = 0;
     std::string first;
 };
 
@@ -161,9 +161,10 @@ public:
             const bool same = meetings_[i].t == meetings_[answer].t &&
                               primitives_[i].corners == primitives_[answer].corners &&
                               primitives_[i].center == primitives_[answer].center && surely_hit(answer);
-            verdicts.twins += same;
+            verdicts.shown_duplicates += same;
             const auto name = [&](std::size_t k) { return std::pair(primitives_[k].object, primitives_[k].number); };
-            if (same && name(i) < name(answer)) return mismatch(hit, "its twin is lower: " + described(i), verdicts);
+            if (same && name(i) < name(answer))
+                return mismatch(hit, "its duplicate is lower: " + described(i), verdicts);
         }
         verdicts.edges += edge;
         verdicts.ties += tie;
@@ -288,13 +289,13 @@ TEST_SUITE("unit") {
                         CHECK_MESSAGE(found.mismatches == 0, found.first);
                         CHECK(found.wrong_shadows == 0);
                         CHECK(found.hits > 150);
-                        CHECK(found.twins > 0);
+                        CHECK(found.shown_duplicates > 0);
                         // Rays that pass so close to a silhouette that rounding decides are no evidence. They are few
                         // unless the rays aim at vertices.
                         const double share = shift < 100 ? 0.02 : instances ? 0.4 : 0.25;
                         if (kind != Kind::kParallelToVertices) CHECK(found.edges < share * found.hits);
                         // Ties are rare except among duplicates.
-                        if (shift < 100) CHECK(found.ties - found.twins <= 0.03 * found.hits);
+                        if (shift < 100) CHECK(found.ties - found.shown_duplicates <= 0.03 * found.hits);
                     }
     }
 

@@ -39,7 +39,9 @@ template <typename Visit> void visit_pixels(const Triangle& t, int width, int he
             for (std::size_t i = 0; i < 3; ++i) w[i] = edges[i].at(256 * x + 128, 256 * y + 128);
             if (w[0] < 0 || w[1] < 0 || w[2] < 0) continue;
             if (area < 0) std::swap(w[1], w[2]);
-            const auto weight = [&](std::size_t i) { return static_cast<float>(w[i]) / static_cast<float>(std::abs(area)); };
+            const auto weight = [&](std::size_t i) {
+                return static_cast<float>(w[i]) / static_cast<float>(std::abs(area));
+            };
             visit(x, y, Vec3{weight(0), weight(1), weight(2)});
         }
 }
