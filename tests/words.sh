@@ -10,23 +10,28 @@ import subprocess
 import sys
 
 COLUMNS = 120
-# Words in identifiers, and what to call the thing. They are compared with the parts of a name, divided at _ and capitals.
+# Words in identifiers, and what to call the thing. They are compared with the parts of a name, divided at _ and
+# capitals.
 IDENTIFIERS = {
-    'nearness': 'reversed depth', 'looker': 'G-buffer pass', 'surroundings': 'screen-space tracer', 'scenery': 'reflection source',
+    'nearness': 'reversed depth', 'looker': 'G-buffer pass', 'surroundings': 'screen-space tracer',
+    'scenery': 'reflection source',
     'arrival': 'light sample', 'insides': 'medium stack', 'told': 'log, messages',
     'gatherer': 'BVH input', 'twin': 'duplicate', 'sabotage': 'mutation', 'sabotaged': 'mutation', 'picture': 'image',
     'lamp': 'light, area light, emitter', 'sixteen': 'packet, lanes', 'veil': 'alpha blend',
 }
 # Phrases in comments, messages and titles.
 PHRASES = {
-    r'nearness': 'reversed depth', r'set-ups?\b': 'setup', r'left on the way': 'transmittance', r'worked out': 'computed',
+    r'nearness': 'reversed depth', r'set-ups?\b': 'setup', r'left on the way': 'transmittance',
+    r'worked out': 'computed',
     r'looked up in\b': 'sampled', r'asked (for|of)\b': 'requested, queried', r'side by side in lanes': 'SIMD',
     r'insides\b': 'medium stack', r'\btwins?\b': 'duplicates', r'sabotag': 'mutation', r'\blamps?\b': 'light, emitter',
     r'\barrivals?\b': 'light sample', r'\bveils?\b': 'alpha blend',
 }
 BRITISH = {
-    'colour': 'color', 'centre': 'center', 'normalis': 'normaliz', 'neighbour': 'neighbor', 'behaviour': 'behavior', 'metre': 'meter',
-    'grey': 'gray', 'optimis': 'optimiz', 'initialis': 'initializ', 'rasteris': 'rasteriz', 'modelled': 'modeled', 'labelled': 'labeled',
+    'colour': 'color', 'centre': 'center', 'normalis': 'normaliz', 'neighbour': 'neighbor', 'behaviour': 'behavior',
+    'metre': 'meter',
+    'grey': 'gray', 'optimis': 'optimiz', 'initialis': 'initializ', 'rasteris': 'rasteriz', 'modelled': 'modeled',
+    'labelled': 'labeled',
 }
 SOURCES = ('.h', '.cpp', '.py', '.sh', '.js', '.css', '.cmake', 'CMakeLists.txt')
 faults = 0
@@ -68,7 +73,8 @@ def check_comment(path, number, line, before):
         return
     rest = open(path, encoding='utf-8').read()
     code = re.sub(r'//.*', '', rest)
-    if not re.search(r'\b' + found[1] + r'\b', code) and found[1] not in ('stb', 'sin', 'cos', 'tan', 'asin', 'c', 'tinyobjloader', 'clang'):
+    if (not re.search(r'\b' + found[1] + r'\b', code)
+                and found[1] not in ('stb', 'sin', 'cos', 'tan', 'asin', 'c', 'tinyobjloader', 'clang')):
         fault(path, number, f"a comment begins with the fragment '{found[1]}'")
 
 
