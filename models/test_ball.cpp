@@ -48,8 +48,8 @@ std::span<const BallScene> ball_scenes() {
         {"glass-frosted", "frosted glass", R"("type": "dielectric", "ior": 1.5, "roughness": 0.4)", ""},
         {"glass-thin", "a bubble of thin glass", R"("type": "dielectric", "ior": 1.5, "thin": true)", ""},
         {"glass-carved", "glass out of which air of a higher priority takes a bite",
-         R"("type": "dielectric", "ior": 1.5, "priority": 1, "absorption": {"color": [0.8, 0.5, "
-                                                                                  "0.3], "distance": 0.8})",
+         R"("type": "dielectric", "ior": 1.5, "priority": 1, )"
+         R"("absorption": {"color": [0.8, 0.5, 0.3], "distance": 0.8})",
          R"(    {"name": "bite", "type": "sphere", "center": [0.42, 1.2, 0.62], "radius": 0.42, "material": "air"},)"},
         {"plastic", "a coat over a diffuse color", R"("type": "coated", "albedo": [0.1, 0.25, 0.7], "roughness": 0.1)",
          ""},
@@ -85,11 +85,8 @@ void write_test_ball(const std::filesystem::path& folder) {
     // The floor is one millimeter below the ball. If glass touched the floor, rounding would decide which of the two
     // is hit.
     for (const BallScene& ball : ball_scenes())
-        write_file(
-            folder / "balls" / (ball.name + ".json"),
-            R"({
-  "description": ")" +
-                ball.description + R"(",
+        write_file(folder / "balls" / (ball.name + ".json"), R"({
+  "description": ")" + ball.description + R"(",
   "camera": {"eye": [0, 1.9, 5.2], "look_at": [0, 0.86, 0], "fov_degrees": 24},
   "image": {"width": 480, "height": 480},
   "textures": {
@@ -97,8 +94,7 @@ void write_test_ball(const std::filesystem::path& folder) {
     "floor": {"type": "checker", "even": 0.62, "odd": 0.2, "scale": 32}
   },
   "materials": {
-    "ball": {)" +
-                ball.material + R"(},
+    "ball": {)" + ball.material + R"(},
     "air": {"type": "dielectric", "ior": 1, "priority": 2},
     "floor": {"type": "diffuse", "albedo": {"texture": "floor"}},
     "wall": {"type": "diffuse", "albedo": [0.42, 0.41, 0.4]},
@@ -106,10 +102,9 @@ void write_test_ball(const std::filesystem::path& folder) {
   },
   "objects": [
     {"name": "ball", "type": "mesh", "file": "../meshes/test-ball.obj", "material": "ball"},
-)" + ball.objects +
-                (ball.objects.empty() ? "" : "\n") +
-                R"(    {"name": "floor", "type": "quad", "corner": [-6, -0.001, 6], "u": [12, 0, 0], "v": [0, 0, -9],
-                 "material": "floor"},
+)" + ball.objects + (ball.objects.empty() ? "" : "\n") +
+               R"(    {"name": "floor", "type": "quad", "corner": [-6, -0.001, 6], "u": [12, 0, 0], "v": [0, 0, -9], )"
+               R"("material": "floor"},
     {"name": "wall", "type": "quad", "corner": [-6, 0, -3], "u": [12, 0, 0], "v": [0, 6, 0], "material": "wall"},
     {"name": "lamp", "type": "quad", "corner": [-3.2, 2.0, 0.3], "u": [1.2, 1.6, 0], "v": [0, 0, 2], "material": "lamp"}
   ],

@@ -110,8 +110,8 @@ def keyboard(page):
 
 def targets(page, least=24):
     """Buttons are large enough for a finger (WCAG 2.2, 2.5.8: 24 × 24 CSS pixels)."""
-    return page.js(f"""[...document.querySelectorAll("button, select,
-      summary")].filter(e => e.checkVisibility()).flatMap(e => {{
+    return page.js(f"""[...document.querySelectorAll("button, select, summary")]
+      .filter(e => e.checkVisibility()).flatMap(e => {{
       const b = e.getBoundingClientRect();
       return b.width < {least} || b.height < {least}
           ? [`${{e.id || e.textContent}} measures ${{b.width}} × ${{b.height}}`] : []; }})""")

@@ -324,7 +324,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("Other files are refused by name, before they are read") {
         CHECK(says(error_of([] { load_scene("picture.png"); }),
-                   "image.png: expected a scene file (.json) or a mesh (.obj)"));
+                   "picture.png: expected a scene file (.json) or a mesh (.obj)"));
         CHECK(says(error_of([] { load_scene("gone.json"); }), "gone.json: no such file"));
         CHECK(says(error_of([] { load_scene("gone.obj"); }), "gone.obj: no such file"));
     }
