@@ -112,10 +112,10 @@ TOGETHER = {
                           "return float(deep(0));", "segmentation fault"),
     "division by zero": ("", "volatile int zero = 0; return float(7 / zero);", "divided by zero"),
     "huge allocation": ("#include <vector>", "std::vector<char> all(std::size_t{3} << 30, 'x'); return float(all[7]);",
-                        "asked for more memory"),
+                        "requested more memory"),
     "memory that grows": ("#include <vector>",
                           "std::vector<std::vector<char>> all; for (;;) all.emplace_back().reserve(1 << 24);",
-                          "asked for more memory"),
+                          "requested more memory"),
     "exception": ("#include <stdexcept>", 'throw std::runtime_error("boo");', "threw an exception: boo"),
     "strange exception": ("", "throw 7;", "no std::exception"),
     "prints the answer": ("#include <cstdio>", 'std::printf("100 of 100 points\\n"); std::fflush(stdout); return 7.0f;',
@@ -156,10 +156,10 @@ ALONE = {
                                        "{ for (int i = 0; i < 9; ++i) (void)!write(4, "
                                        "\"\\1\\0\\0\\0\\0\\0\\0\\0\", 9); }",
                                        "return 2.0f;", "hit_sphere"),
-    "crashes at the end of the "
-    "program": ("struct Last { ~Last() { __builtin_trap(); } }; static Last last;", "return 7.0f;", "is wrong"),
-    "an operator new of "
-    "its own": ("#include <cstdlib>\n#include <new>\nvoid* operator new(std::size_t) { return nullptr; }\n"
+    "crashes at the end of the program": (
+        "struct Last { ~Last() { __builtin_trap(); } }; static Last last;", "return 7.0f;", "is wrong"),
+    "an operator new of its own": (
+        "#include <cstdlib>\n#include <new>\nvoid* operator new(std::size_t) { return nullptr; }\n"
                                    "void operator delete(void*) noexcept {}\nvoid operator delete(void*, std::size_t) "
                                    "noexcept {}",
                                    "return 2.0f;", "hit_sphere"),
@@ -169,16 +169,16 @@ ALONE = {
     "the grader's own function": ("namespace duet::lab { void not_attempted() {} }", "return 2.0f;", "defined twice"),
     "the lesson's own header": ('#include "raytrace/lessons/02-sphere/sphere.h"', "return 2.0f;", FORBIDDEN),
     "the examiner's source": ('#include "raytrace/lessons/02-sphere/lab_test.cpp"', "return 2.0f;", FORBIDDEN),
-    "the examiner's source by "
-    "its path": (f'#include "{CONTRACT.with_name("lab_test.cpp")}"', "return 2.0f;", FORBIDDEN),
+    "the examiner's source by its path": (
+        f'#include "{CONTRACT.with_name("lab_test.cpp")}"', "return 2.0f;", FORBIDDEN),
     "a file of the system": ('#include "/etc/passwd"', "return 2.0f;", FORBIDDEN),
     "a file of the system by a relative path": ('#include "' + "../" * 12 + 'etc/passwd"', "return 2.0f;", FORBIDDEN),
     "a device": ('#include "/dev/stdin"', "return 2.0f;", FORBIDDEN),
     "assembler": ('asm(".incbin \\"/etc/passwd\\"");', "return 2.0f;", "uses assembler"),
     "assembler in a name": ('extern int name asm("x\\n.INCBIN \\"/etc/passwd\\"\\n"); int* p = &name;', "return 2.0f;",
                             "uses assembler"),
-    "assembler in a "
-    "section's name": ('__attribute__((section(".x,\\"a\\"\\n.IncBin \\"/etc/passwd\\"\\n#"))) int name = 1;',
+    "assembler in a section's name": (
+        '__attribute__((section(".x,\\"a\\"\\n.IncBin \\"/etc/passwd\\"\\n#"))) int name = 1;',
                                       "return 2.0f;", "uses assembler"),
     "a precompiled header": ('#pragma GCC pch_preprocess "./lab.cpp"', "return 2.0f;", "precompiled header"),
     "doesn't compile": ("", "return 2.0f", "doesn't compile"),
