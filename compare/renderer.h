@@ -30,6 +30,10 @@ struct Renderer {
 Renderer raster_renderer(const Scene& scene, const ComparisonSettings& settings);
 Renderer raytrace_renderer(const Scene& scene, const ComparisonSettings& settings);
 
+/// Returns the Renderer::render_hits of each pipeline alone, and prepares no shading.
+RenderFunction raster_hits(const Scene& scene, const ComparisonSettings& settings);
+RenderFunction raytrace_hits(const Scene& scene, const ComparisonSettings& settings);
+
 /// Joins the sentences (a rendering's approximations) with spaces.
 std::string paragraph(const std::vector<std::string>& sentences);
 

@@ -93,8 +93,8 @@ int count_distances_apart(Trial& trial, const TrialScene& random, const Image<Hi
 void check_hits(Trial& trial, const TrialScene& random) {
     Control control;
     const ComparisonSettings settings{.threads = 1}; // trials already run in parallel
-    const Image<Hit> raster = raster_renderer(random.scene, settings).render_hits(random.view, control).hit;
-    const Image<Hit> raytrace = raytrace_renderer(random.scene, settings).render_hits(random.view, control).hit;
+    const Image<Hit> raster = raster_hits(random.scene, settings)(random.view, control).hit;
+    const Image<Hit> raytrace = raytrace_hits(random.scene, settings)(random.view, control).hit;
     const auto judge = [&](const Image<Hit>& hits, std::size_t most) {
         const Image<Hit> judged = sample_differences(hits, raytrace, most, trial.random);
         return compare_hits(random.scene, random.view, judged, raytrace, 1);

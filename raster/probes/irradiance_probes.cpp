@@ -1,5 +1,6 @@
 #include "raster/probes/irradiance_probes.h"
 
+#include "raster/lighting/lane_math.h"
 #include "raster/probes/solid_test.h"
 #include "raster/visibility/shader.h"
 
@@ -42,10 +43,39 @@ constexpr std::array<float, 9> kFactors = [] {
     return result;
 }();
 
-template <typename Visit> void for_each_pixel(const ProbeCapture& capture, const Visit& visit) {
+/// Calls visit for all pixels of a probe's cube, in steps of some columns.
+template <typename Visit> void for_each_pixel(int columns, const Visit& visit) {
     for (std::size_t face = 0; face < 6; ++face)
-        for (int y = 0; y < capture.side(); ++y)
-            for (int x = 0; x < capture.side(); ++x) visit(ProbeCapture::Pixel{face, x, y});
+        for (int y = 0; y < IrradianceProbes::kSide; ++y)
+            for (int x = 0; x < IrradianceProbes::kSide; x += columns) visit(ProbeCapture::Pixel{face, x, y});
+}
+constexpr int kBatch = static_cast<int>(Floats::size);
+static_assert(IrradianceProbes::kSide % kBatch == 0);
+
+/// Projects light that arrives at a probe from batches of pixels to the harmonics of the irradiance. What a pixel
+/// counts in a harmonic is the same for all probes, so it stands in a table.
+class Projection {
+public:
+    Projection() {
+        for (auto& face : weights_) face.fill(PlaneFloat(IrradianceProbes::kSide, IrradianceProbes::kSide));
+        for_each_pixel(1, [&](const ProbeCapture::Pixel& p) {
+            const std::array<float, 9> basis = harmonics(ProbeCapture::direction(p, IrradianceProbes::kSide));
+            const float solid_angle = ProbeCapture::solid_angle(p, IrradianceProbes::kSide);
+            for (std::size_t i = 0; i < 9; ++i) weights_[p.face][i](p.x, p.y) = basis[i] * kFactors[i] * solid_angle;
+        });
+    }
+
+    using Sum = std::array<RgbT<Floats>, 9>;
+    void add(const ProbeCapture::Pixel& first, const RgbT<Floats>& light, Sum& sum) const {
+        for (std::size_t i = 0; i < 9; ++i) sum[i] += light * load(weights_[first.face][i], first.x, first.y);
+    }
+
+private:
+    std::array<std::array<PlaneFloat, 9>, 6> weights_;
+};
+const Projection& projection() {
+    static const Projection table;
+    return table;
 }
 
 /// Returns the region that probes fill: the scene without what is very large, and not far beyond what its camera looks
@@ -128,9 +158,7 @@ IrradianceProbes::IrradianceProbes(const RasterSceneData& data, const RasterSett
     for (int k = 0; k <= kBounces; ++k) {
         std::vector<Harmonics> next(probes_.size());
         parallel_for(probes_.size(), settings.threads, [&](std::size_t i) {
-            if (!captures[i]) return;
-            next[i] = gathered(*captures[i]);
-            if (k > 0) add_bounce(*captures[i], next[i]);
+            if (captures[i]) next[i] = gather(*captures[i], k);
         });
         for (std::size_t i = 0; i < probes_.size(); ++i) probes_[i].irradiance = next[i];
     }
@@ -145,13 +173,13 @@ void IrradianceProbes::set_distances(const ProbeCapture& capture, Probe& probe) 
     const float farthest = 1.5f * static_cast<float>(length(step_));
     probe.distance = OctahedralMap(kDistanceSide);
     Image<Vec3> sums(kDistanceSide, kDistanceSide); // of distance, its square, and solid angle
-    for_each_pixel(capture, [&](const ProbeCapture::Pixel& pixel) {
-        const Vec2 at = octahedral(capture.direction(pixel));
+    for_each_pixel(1, [&](const ProbeCapture::Pixel& pixel) {
+        const Vec2 at = octahedral(ProbeCapture::direction(pixel, kSide));
         const auto cell = [](float v) {
             return std::clamp(static_cast<int>((v + 1) * 0.5f * static_cast<float>(kDistanceSide)), 0,
                               kDistanceSide - 1);
         };
-        const float distance = min(capture.distance(pixel), farthest), weight = capture.solid_angle(pixel);
+        const float distance = min(capture.distance(pixel), farthest), weight = ProbeCapture::solid_angle(pixel, kSide);
         sums(cell(at.x), cell(at.y)) += Vec3(distance, distance * distance, 1) * weight;
     });
     for (int y = 0; y < kDistanceSide; ++y)
@@ -162,40 +190,27 @@ void IrradianceProbes::set_distances(const ProbeCapture& capture, Probe& probe) 
     probe.distance.finish();
 }
 
-/// Projects the light that arrives at a probe, without what lights emit, to the harmonics of the irradiance.
-IrradianceProbes::Harmonics IrradianceProbes::gathered(const ProbeCapture& capture) {
-    Harmonics sum{};
-    for_each_pixel(capture, [&](const ProbeCapture::Pixel& pixel) {
-        const Rgb light = capture.faces()[pixel.face].direct.color_at(pixel.x, pixel.y) * capture.solid_angle(pixel);
-        const std::array<float, 9> y = harmonics(capture.direction(pixel));
-        for (std::size_t i = 0; i < 9; ++i) sum[i] += light * (y[i] * kFactors[i]);
+/// Returns the harmonics of the irradiance at a probe: of the light that the surfaces around it reflect of what the
+/// lights emit, and, after the first bounce, of what the probes held after the last one.
+IrradianceProbes::Harmonics IrradianceProbes::gather(const ProbeCapture& capture, int bounce) const {
+    Projection::Sum sum{};
+    for_each_pixel(kBatch, [&](const ProbeCapture::Pixel& p) {
+        const ProbeCapture::Face& face = capture.faces()[p.face];
+        RgbT<Floats> light = face.direct.color(p.x, p.y);
+        const Mask seen = face.gbuffer.visible(p.x, p.y);
+        if (bounce > 0 && xsimd::any(seen)) {
+            const GBuffer& g = face.gbuffer;
+            const RgbT<Floats> albedo = g.diffuse.color(p.x, p.y) + g.specular.color(p.x, p.y);
+            const RgbT<Floats> arriving =
+                irradiance(g.projection.eye(), g.points(p.x, p.y), g.normal.vector(p.x, p.y), seen);
+            light += blend(seen, albedo * arriving * Floats(kInvPi), RgbT<Floats>(Floats(0.0f)));
+        }
+        projection().add(p, light, sum);
     });
-    return sum;
-}
-
-/// Adds the light that the surfaces around a probe reflect of the last bounce, as the probes hold it.
-void IrradianceProbes::add_bounce(const ProbeCapture& capture, Harmonics& sum) const {
-    for (std::size_t face = 0; face < 6; ++face) {
-        const GBuffer& gbuffer = capture.faces()[face].gbuffer;
-        for (int y = 0; y < kSide; ++y)
-            for (int x = 0; x < kSide; x += static_cast<int>(Floats::size)) {
-                const Mask seen = gbuffer.visible(x, y);
-                if (!xsimd::any(seen)) continue;
-                const RgbT<Floats> albedo = gbuffer.diffuse.color(x, y) + gbuffer.specular.color(x, y);
-                const RgbT<Floats> reflected = albedo * irradiance(gbuffer.projection.eye(), gbuffer.points(x, y),
-                                                                   gbuffer.normal.vector(x, y), seen) *
-                                               Floats(kInvPi);
-                PacketOf<float> r, g, b;
-                store(r, 0, reflected.r), store(g, 0, reflected.g), store(b, 0, reflected.b);
-                for (std::uint32_t left = lane_bits(seen); left != 0; left &= left - 1) {
-                    const auto i = static_cast<std::size_t>(std::countr_zero(left));
-                    const ProbeCapture::Pixel pixel{face, x + static_cast<int>(i), y};
-                    const Rgb light = Rgb(r[i], g[i], b[i]) * capture.solid_angle(pixel);
-                    const std::array<float, 9> basis = harmonics(capture.direction(pixel));
-                    for (std::size_t c = 0; c < 9; ++c) sum[c] += light * (basis[c] * kFactors[c]);
-                }
-            }
-    }
+    Harmonics result;
+    for (std::size_t i = 0; i < 9; ++i)
+        result[i] = {xsimd::hadd(sum[i].r), xsimd::hadd(sum[i].g), xsimd::hadd(sum[i].b)};
+    return result;
 }
 
 /// The weight of one of the eight probes about a batch of points, and its irradiance.

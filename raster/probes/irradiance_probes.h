@@ -42,8 +42,7 @@ private:
     Vec3d grid_point(std::size_t probe) const;
     bool move_out_of_solids(const RasterSceneData& data, Vec3d& position) const;
     void set_distances(const ProbeCapture& capture, Probe& probe) const;
-    static Harmonics gathered(const ProbeCapture& capture);
-    void add_bounce(const ProbeCapture& capture, Harmonics& sum) const;
+    Harmonics gather(const ProbeCapture& capture, int bounce) const;
     struct Corner;
 
     Vec3d origin_;              ///< position of the first probe

@@ -67,6 +67,12 @@ std::array<ProbeCapture::Face, 6> capture_all(const RasterSceneData& data, const
     return {capture(data, settings, views[kFaces], side, selection)...};
 }
 
+/// Returns a pixel's center on the face's square at distance 1, in the face's axes.
+Vec3 point_on_face(const ProbeCapture::Pixel& p, int side) {
+    const auto tangent = [&](int i) { return (2 * static_cast<float>(i) + 1) / static_cast<float>(side) - 1; };
+    return {tangent(p.x), -tangent(p.y), 1};
+}
+
 std::vector<Camera> views_about(const RasterSceneData& data, Vec3d center) {
     const double size = static_cast<double>(length(data.scene.bounds.diagonal())) + 1e-30;
     std::vector<Camera> views = cube_views(center, {}, size, 1, 0);
@@ -95,21 +101,20 @@ ProbeCapture::Pixel ProbeCapture::pixel(Vec3 w) const {
     return {face, cell(f.x / f.z), cell(-f.y / f.z)};
 }
 
-Vec3 ProbeCapture::direction(const Pixel& p) const {
-    const auto tangent = [&](int i) { return (2 * static_cast<float>(i) + 1) / static_cast<float>(side_) - 1; };
-    return normalize(from_face(p.face, {tangent(p.x), -tangent(p.y), 1}));
+Vec3 ProbeCapture::direction(const Pixel& p, int side) {
+    return normalize(from_face(p.face, point_on_face(p, side)));
 }
 
-float ProbeCapture::solid_angle(const Pixel& p) const {
-    const Vec3 f = to_face(p.face, direction(p));
-    return f.z * f.z * f.z * 4 / static_cast<float>(side_ * side_); // of a unit square at distance 1: cos³ dA
+float ProbeCapture::solid_angle(const Pixel& p, int side) {
+    const float distance = length(point_on_face(p, side));
+    return 4 / (static_cast<float>(side * side) * distance * distance * distance); // dω = cos θ dA / r², and cos θ = 1 / r
 }
 
 float ProbeCapture::distance(const Pixel& p) const {
     const GBuffer& gbuffer = faces_[p.face].gbuffer;
     const float reversed = gbuffer.reversed_depth(p.x, p.y);
     if (!(reversed > 0)) return kInfinity;
-    return gbuffer.projection.near() / reversed / to_face(p.face, direction(p)).z;
+    return gbuffer.projection.near() / reversed * length(point_on_face(p, side_));
 }
 
 std::size_t ProbeCapture::memory_bytes() const {

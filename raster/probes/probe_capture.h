@@ -36,9 +36,9 @@ public:
         int x, y;
     };
     Pixel pixel(Vec3 w) const;
-    /// Returns the unit direction of a pixel, and the solid angle that the pixel subtends.
-    Vec3 direction(const Pixel& pixel) const;
-    float solid_angle(const Pixel& pixel) const;
+    /// Returns the unit direction of a pixel of faces of side × side, and the solid angle that the pixel subtends.
+    static Vec3 direction(const Pixel& pixel, int side);
+    static float solid_angle(const Pixel& pixel, int side);
     /// Returns the distance of the surface at a pixel, in meters; infinity for the background.
     float distance(const Pixel& pixel) const;
     std::size_t memory_bytes() const;

@@ -67,8 +67,8 @@ std::string describe(const HitAgreement& agreement) {
 HitAgreement agreement_of(const Scene& scene, const View& view) {
     Control control;
     const ComparisonSettings settings;
-    const Image<Hit> raster = raster_renderer(scene, settings).render_hits(view, control).hit;
-    const Image<Hit> raytrace = raytrace_renderer(scene, settings).render_hits(view, control).hit;
+    const Image<Hit> raster = raster_hits(scene, settings)(view, control).hit;
+    const Image<Hit> raytrace = raytrace_hits(scene, settings)(view, control).hit;
     return compare_hits(scene, view, raster, raytrace);
 }
 
