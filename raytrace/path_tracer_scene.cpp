@@ -17,8 +17,8 @@ bool emits(const Material& material) { return emitter(material) != nullptr; }
 
 } // namespace
 
-PathTracerSceneData::PathTracerSceneData(const Scene& scene_, int threads, BvhQuality quality)
-    : scene(scene_), accelerator(scene_, threads, quality),
+PathTracerSceneData::PathTracerSceneData(const Scene& scene_, int threads)
+    : scene(scene_), accelerator(scene_, threads),
       lights(scene_.lights, sampled_irradiance(scene_.environment)), finite_lights(scene_.lights, 0),
       environment_light({}, sampled_irradiance(scene_.environment)), emitters(any_used_material(scene_, emits)),
       environment(!is_black(scene_.environment)) {
@@ -36,7 +36,7 @@ PathTracerSceneData::PathTracerSceneData(const Scene& scene_, int threads, BvhQu
 }
 
 PathTracerScene prepare(const Scene& scene, const PathTracerSettings& settings) {
-    return PathTracerScene(std::make_shared<const PathTracerSceneData>(scene, settings.threads, settings.bvh));
+    return PathTracerScene(std::make_shared<const PathTracerSceneData>(scene, settings.threads));
 }
 
 Hit trace(const PathTracerScene& prepared, const Ray& ray) { return prepared.data().accelerator.closest(ray); }

@@ -11,8 +11,8 @@
 namespace duet::raytrace {
 
 struct PathTracerSceneData {
-    /// `threads` is the number of build threads (0 = all), and `quality` is that of the hierarchies.
-    PathTracerSceneData(const Scene& scene_, int threads, BvhQuality quality);
+    /// `threads` is the number of build threads (0 = all).
+    PathTracerSceneData(const Scene& scene_, int threads);
 
     const Scene& scene;
     Accelerator accelerator;

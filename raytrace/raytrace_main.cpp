@@ -34,7 +34,7 @@ void set_samples(const std::string& text, raytrace::PathTracerSettings& settings
 
 int main(int argc, char** argv) {
     if (argc > 1 && std::string_view(argv[1]) == "merge") return raytrace::run_merge(argc - 1, argv + 1);
-    std::string integrator_name = "path", sampler = "sobol", filter = "box", bvh = "default", film, samples, pixel;
+    std::string integrator_name = "path", sampler = "sobol", filter = "box", film, samples, pixel;
     raytrace::PathTracerSettings settings;
     bool no_environment = false;
     std::optional<bool> adaptive;
@@ -90,9 +90,6 @@ int main(int argc, char** argv) {
         app.add_option("--pixel", pixel,
                        "Render that one sample, X,Y[,SAMPLE] (row 0 on top, default sample 0), and print its path: "
                        "needs no -o");
-        app.add_option("--bvh", bvh,
-                       "Quality of the hierarchies that rays search: default, or high (long to build; faster to search "
-                       "where triangles are long or overlap; the same image)");
         app.add_flag("--no-environment", no_environment, "Leave the environment's light and background out");
     };
     const auto apply_options = [&](const RenderSettings& common, std::optional<int> spp) {
@@ -108,7 +105,6 @@ int main(int argc, char** argv) {
         settings.sampler = sampler_kind(sampler);
         settings.filter = filter_kind(filter);
         settings.adaptive = adaptive.value_or(limited && samples.empty() && !needs_sample_count(settings.sampler));
-        settings.bvh = raytrace::bvh_quality(bvh);
         settings.environment = !no_environment;
     };
     program.wants_text_output = [&] { return !pixel.empty(); };

@@ -7,7 +7,6 @@
 #include "common/sampling/sampler.h"
 #include "common/scene/scene.h"
 #include "common/system/control.h"
-#include "raytrace/acceleration/bvh_quality.h"
 
 #include <filesystem>
 #include <memory>
@@ -44,7 +43,6 @@ struct PathTracerSettings : RenderSettings {
     FilterKind filter = FilterKind::kBox;
     int max_depth = 64; ///< maximum number of scattering events: 0 = emission only, 1 = direct light
     bool russian_roulette = true;
-    BvhQuality bvh = BvhQuality::kDefault; ///< quality of the hierarchies; the image does not depend on it
     bool environment = true;               ///< see raster::RasterSettings::environment
     bool adaptive =
         false; ///< more samples where the error is larger; samples_per_pixel in the mean (sample_schedule.h)

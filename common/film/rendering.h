@@ -53,7 +53,6 @@ struct SkippedWork {
 
 /// These statistics are sums over all bounding volume hierarchies (BVHs) of the path tracer.
 struct BvhStatistics {
-    std::string quality;         ///< "default" or "high"; empty: there is no BVH
     std::int64_t nodes = 0;      ///< number of wide nodes
     std::int64_t references = 0; ///< primitives and instances in leaves; a split primitive counts once per leaf
 };

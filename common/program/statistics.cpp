@@ -26,8 +26,8 @@ nlohmann::json statistics_json(const RenderContext& context, const RenderStatist
     if (const auto& first = statistics.first_invalid)
         first_invalid = {{"x", first->x}, {"y", first->y}, {"sample", first->sample}};
     nlohmann::json bvh; // null where there is none
-    if (const BvhStatistics& h = statistics.bvh; !h.quality.empty())
-        bvh = {{"quality", h.quality}, {"nodes", h.nodes}, {"references", h.references}};
+    if (const BvhStatistics& h = statistics.bvh; h.nodes > 0 || h.references > 0)
+        bvh = {{"nodes", h.nodes}, {"references", h.references}};
     return {
         {"program", context.program},
         {"version", DUET_VERSION},

@@ -84,7 +84,6 @@ json report_json(const KernelsOptions& options, const KernelSettings& settings,
     return {{"program", "compare kernels"},
             {"version", DUET_VERSION},
             {"peer", peer ? json(embree_version()) : json(nullptr)},
-            {"bvh", options.bvh},
             {"width", options.size.width},
             {"height", options.size.height},
             {"threads", settings.threads},
@@ -101,7 +100,6 @@ int kernels(const KernelsOptions& options) {
     KernelSettings settings;
     settings.works = chosen_works(options.works);
     settings.peers = chosen_peers(options.peers);
-    settings.quality = raytrace::bvh_quality(options.bvh);
     settings.size = options.size;
     settings.threads = options.threads > 0 ? options.threads : available_threads();
     settings.repeats = options.repeats;

@@ -16,7 +16,6 @@ struct KernelsOptions {
     std::vector<std::string> scenes{"alone", "room"}; ///< for bare meshes; a scene file is always "alone"
     std::vector<std::string> works;                   ///< some of kWorks; empty: all
     std::vector<std::string> peers;                   ///< Embree's settings (name_of), or "none"; empty: all
-    std::string bvh = "default";                      ///< build quality of Duet's BVH
     ImageSize size{1920, 1080};                       ///< one camera ray per pixel
     int threads = 0;                                  ///< for the multithreaded rows; 0: all hardware threads
     int repeats = 7;

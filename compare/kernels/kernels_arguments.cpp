@@ -36,8 +36,6 @@ Subcommand add_kernels(CLI::App& app) {
                      "AVX-512 "
                      "medium-avx2 and high-avx2, or none (default: all)")
         ->delimiter(',');
-    kernels->add_option("--bvh", options.bvh,
-                        "Quality of our hierarchy, as of raytrace: default or high (default: default)");
     kernels->add_option("--size", *size, "One camera ray a pixel of WIDTHxHEIGHT (default 1920x1080)");
     kernels
         ->add_option("--threads", options.threads,

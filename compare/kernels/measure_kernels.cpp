@@ -99,7 +99,7 @@ private:
         const Control control = steps_.next();
         const TimedWork ours = [&] {
             const WorkStopwatch watch(threads);
-            const raytrace::Accelerator built(*scene_.scene, threads, settings_.quality);
+            const raytrace::Accelerator built(*scene_.scene, threads);
             return watch.seconds();
         };
         const Devices devices(settings_.peers, *scene_.scene, threads);
@@ -119,7 +119,7 @@ private:
     }
 
     void build_all() {
-        accelerator_.emplace(*scene_.scene, settings_.threads, settings_.quality);
+        accelerator_.emplace(*scene_.scene, settings_.threads);
         if (settings_.peers.empty()) {
             if (wanted("build")) table_.rows.push_back(memory_row());
             return;

@@ -15,7 +15,6 @@ namespace duet::compare {
 struct KernelSettings {
     std::vector<std::string> works;   ///< some of kWorks
     std::vector<EmbreeQuality> peers; ///< empty: Duet alone
-    raytrace::BvhQuality quality = raytrace::BvhQuality::kDefault; ///< build quality of Duet's BVH
     ImageSize size{1920, 1080};
     int threads = 1; ///< threads of the second set of rows; 1: no second set
     int repeats = 7;

@@ -20,9 +20,9 @@ bool is_untransformed(const Object& object) { return object.identity && !object.
 
 } // namespace
 
-Accelerator::Accelerator(const Scene& scene, int threads, BvhQuality quality)
-    : scene_(scene), quality_(quality), shapes_(scene.shapes.size()), has_alpha_masks_(scene.needs.alpha) {
-    BvhInput world(quality, threads);
+Accelerator::Accelerator(const Scene& scene, int threads)
+    : scene_(scene), shapes_(scene.shapes.size()), has_alpha_masks_(scene.needs.alpha) {
+    BvhInput world(threads);
     for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
         const Object& object = scene.objects[i];
         const Shape& shape = scene.shapes[object.shape];
@@ -33,7 +33,7 @@ Accelerator::Accelerator(const Scene& scene, int threads, BvhQuality quality)
         }
         world.add_instance(object, i, shape);
         if (!shapes_[object.shape].empty()) continue;
-        BvhInput own(quality, threads);
+        BvhInput own(threads);
         own.add_shape(shape, kNoObject);
         shapes_[object.shape] = own.build();
     }
@@ -234,7 +234,6 @@ bool Accelerator::occluded(const Ray& ray, const Hit& end) const {
 
 BvhStatistics Accelerator::statistics() const {
     BvhStatistics result;
-    result.quality = quality_ == BvhQuality::kHigh ? "high" : "default";
     const auto add = [&](const Bvh& bvh) {
         result.nodes += static_cast<std::int64_t>(bvh.nodes.size());
         result.references += static_cast<std::int64_t>(bvh.references);

@@ -4,7 +4,6 @@
 #include "common/film/rendering.h"
 #include "common/scene/scene.h"
 #include "raytrace/acceleration/bvh.h"
-#include "raytrace/acceleration/bvh_quality.h"
 
 #include <span>
 
@@ -16,8 +15,7 @@ namespace duet::raytrace {
 class Accelerator {
 public:
     /// Builds all hierarchies. `threads` is the number of build threads (0 = all); the result does not depend on it.
-    /// Hits do not depend on `quality`.
-    Accelerator(const Scene& scene, int threads, BvhQuality quality = BvhQuality::kDefault);
+    Accelerator(const Scene& scene, int threads);
 
     /// Returns the closest hit with t in (t_min, t_max]; t_min must not be negative. The hit is invalid if the ray
     /// misses, or if it is not `traceable`: its components are out of range or it has no direction. At equal t the
@@ -57,7 +55,6 @@ private:
     template <bool kAny> auto instance_test(const Ray& ray) const;
 
     const Scene& scene_;
-    BvhQuality quality_;
     Bvh world_;
     std::vector<Bvh> shapes_; ///< by shape; empty if no instance uses the shape
     std::int64_t primitives_ = 0;

@@ -88,9 +88,8 @@ void BvhInput::add_instance(const Object& object, std::uint32_t index, const Sha
 }
 
 Bvh BvhInput::build() {
-    const PrimitiveQueries queries{[this](const BuildItem& item) { return polygon_of(item); },
-                                   [this](std::span<BuildItem> items) { return remove_duplicates(items); }};
-    auto [items, collapsed] = build_hierarchy(std::move(items_), queries, quality_, threads_);
+    const auto unique = [this](std::span<BuildItem> items) { return remove_duplicates(items); };
+    auto [items, collapsed] = build_hierarchy(std::move(items_), unique, threads_);
     Bvh& bvh = collapsed.bvh;
     const auto elements = [&collapsed = collapsed](PrimitiveKind kind) {
         return collapsed.elements[static_cast<std::size_t>(kind)];
@@ -104,18 +103,6 @@ Bvh BvhInput::build() {
         fill_leaf(bvh, leaf, std::span<const BuildItem>(items).subspan(leaf.first, leaf.count));
     });
     return std::move(bvh);
-}
-
-// Returns the corners of a triangle or a quad, and none for other primitives.
-ConvexPolygon BvhInput::polygon_of(const BuildItem& item) const {
-    if (item.kind == PrimitiveKind::kTriangle) {
-        const MeshTriangle& triangle = triangles_[item.index];
-        const Mesh& mesh = *meshes_[triangle.mesh].mesh;
-        const auto& [a, b, c] = mesh.triangles[triangle.primitive];
-        return {{mesh.positions[a], mesh.positions[b], mesh.positions[c]}, 3};
-    }
-    if (item.kind == PrimitiveKind::kQuad) return {quads_[item.index].corners, 4};
-    return {};
 }
 
 // Moves one primitive of each set of duplicates to the front, and returns the number of these. Primitives with
@@ -153,9 +140,12 @@ BvhInput::PrimitiveKey BvhInput::key_of(const BuildItem& item) const {
         key[next] = std::bit_cast<std::uint32_t>(sphere.radius);
     } else if (item.kind == PrimitiveKind::kInstance) {
         key[next] = item.index;
+    } else if (item.kind == PrimitiveKind::kQuad) {
+        for (const Vec3 corner : quads_[item.index].corners) add(corner);
     } else {
-        const ConvexPolygon polygon = polygon_of(item);
-        for (std::size_t i = 0; i < polygon.count; ++i) add(polygon.corners[i]);
+        const MeshTriangle& triangle = triangles_[item.index];
+        const Mesh& mesh = *meshes_[triangle.mesh].mesh;
+        for (const std::uint32_t corner : mesh.triangles[triangle.primitive]) add(mesh.positions[corner]);
     }
     return key;
 }

@@ -2,8 +2,7 @@
 #pragma once
 
 #include "common/scene/scene.h"
-#include "raytrace/acceleration/bvh_spatial.h"
-#include "raytrace/acceleration/bvh_quality.h"
+#include "raytrace/acceleration/bvh_build.h"
 
 #include <span>
 #include <vector>
@@ -15,7 +14,7 @@ namespace duet::raytrace {
 class BvhInput {
 public:
     /// `threads` is the number of build threads (0 = all). The hierarchy does not depend on it.
-    BvhInput(BvhQuality quality, int threads) : quality_(quality), threads_(threads) {}
+    explicit BvhInput(int threads) : threads_(threads) {}
 
     /// Adds the primitives of a shape, without a transform. Their hits report `object`.
     void add_shape(const Shape& shape, std::uint32_t object);
@@ -49,7 +48,6 @@ private:
     void add_mesh(const Mesh& mesh, std::uint32_t object);
     template <typename Primitive>
     void add(PrimitiveKind kind, const Box3& box, std::vector<Primitive>& list, const Primitive& primitive);
-    ConvexPolygon polygon_of(const BuildItem& item) const;
     std::size_t remove_duplicates(std::span<BuildItem> items) const;
     PrimitiveKey key_of(const BuildItem& item) const;
 
@@ -59,7 +57,6 @@ private:
     void set(QuadBlock& block, std::size_t lane, std::uint32_t index) const;
     void set(SphereBlock& block, std::size_t lane, std::uint32_t index) const;
 
-    BvhQuality quality_;
     int threads_;
     BuildItems items_;
     std::vector<ObjectMesh> meshes_;

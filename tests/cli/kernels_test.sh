@@ -14,8 +14,6 @@ expect 2 "$bin/compare" kernels models/meshes/bowl.obj --work reflection
 one_line_error reflection
 expect 2 "$bin/compare" kernels models/meshes/bowl.obj --peers optix
 one_line_error optix
-expect 2 "$bin/compare" kernels models/meshes/bowl.obj --bvh best
-one_line_error best
 expect 2 "$bin/compare" kernels models/meshes/bowl.obj --repeats 0
 one_line_error --repeats
 expect 2 "$bin/compare" kernels models/meshes/bowl.obj --stats "$scratch/no/such/folder.json"
@@ -53,11 +51,10 @@ else
     one_line_error libembree
 fi
 
-expect 0 "$bin/compare" kernels models/meshes/bowl.obj $short --peers none --bvh high --quiet --stats \
+expect 0 "$bin/compare" kernels models/meshes/bowl.obj $short --peers none --quiet --stats \
     "$scratch/alone.json"
 [ ! -s "$scratch/stdout" ] && [ ! -s "$scratch/stderr" ] || fail "--quiet is not quiet"
 grep -q '"peer": null' "$scratch/alone.json" || fail "--peers none: a peer is in the rows"
-grep -q '"bvh": "high"' "$scratch/alone.json" || fail "--bvh high: not found in --stats"
 grep -q '"ratio": null' "$scratch/alone.json" || fail "--peers none: a ratio is in the rows"
 
 "$bin/compare" kernels models/meshes/pear.obj --peers none --repeats 10000 --quiet --stats "$scratch/interrupted.json" &

@@ -5,10 +5,17 @@
 #include "raytrace/acceleration/bvh_hierarchy.h"
 #include "tests/raytrace/acceleration/soup.h"
 
+#include <array>
 #include <cstring>
 #include <vector>
 
 namespace duet::raytrace {
+
+/// Holds the corners of a triangle or a quad, in order.
+struct ConvexPolygon {
+    std::array<Vec3, 4> corners;
+    std::size_t count = 0;
+};
 
 struct PolygonItems {
     std::vector<ConvexPolygon> polygons;
@@ -25,9 +32,6 @@ struct PolygonItems {
             add({{mesh.positions[a], mesh.positions[b], mesh.positions[c]}, 3});
     }
     PolygonItems() = default;
-    PolygonOf of() const {
-        return [this](const BuildItem& item) { return polygons[item.index]; };
-    }
 };
 
 inline bool same_trees(const BinaryTree& a, const BinaryTree& b) {

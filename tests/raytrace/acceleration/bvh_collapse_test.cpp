@@ -1,6 +1,5 @@
-// These tests check that reinsertion and collapse never make the tree worse.
+// These tests check that the collapse of a binary tree costs what it says.
 #include "raytrace/acceleration/bvh_hierarchy.h"
-#include "raytrace/acceleration/bvh_reinsertion.h"
 #include "tests/raytrace/acceleration/polygon_items.h"
 #include "tests/raytrace/acceleration/soup.h"
 #include "tests/raytrace/acceleration/tree_checks.h"
@@ -14,7 +13,7 @@ using namespace duet::raytrace;
 
 namespace {
 
-// Returns long thin triangles in all directions, the case that spatial splits are made for.
+// Returns long thin triangles in all directions.
 Mesh needles(Random& random, int count, float length, float width) {
     Mesh mesh;
     for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(count); ++i) {
@@ -25,85 +24,9 @@ Mesh needles(Random& random, int count, float length, float width) {
     return mesh;
 }
 
-// Returns the sum of the areas of all inner nodes.
-double inner_areas(const BinaryTree& tree) {
-    double sum = 0;
-    for (const BinaryNode& node : tree.nodes) sum += node.leaf() ? 0.0 : static_cast<double>(node.box.half_area());
-    return sum;
-}
-
 } // namespace
 
 TEST_SUITE("unit") {
-
-    TEST_CASE("reinsertion makes a tree cheaper and no less a tree, the same for any number of threads") {
-        Random random(26);
-        for (const float scale : {1e-20f, 1.0f, 1e18f}) {
-            CAPTURE(scale);
-            PolygonItems polygons;
-            for (int i = 0; i < 20000; ++i) { // small triangles among large ones
-                const float size = scale * (i % 100 == 0 ? 1.0f : 0.02f);
-                const Vec3 p = random.vector() * scale;
-                polygons.add({{p, p + random.vector() * size, p + random.vector() * size}, 3});
-            }
-            const BinaryTree before = build_binary_tree(polygons.items, 1);
-            BinaryTree after = before, same = before;
-            reinsert(after, after.nodes.size(), 3, 1);
-            reinsert(same, same.nodes.size(), 3, 5);
-            check_tree(after);
-            CHECK(same_trees(after, same));
-            CHECK(inner_areas(after) < 0.97 * inner_areas(before));
-            CHECK(after.items.size() == before.items.size());
-        }
-    }
-
-    TEST_CASE("reinsertion leaves a tree as it was where it would become too deep") {
-        // The tree is a chain of nested boxes with the maximum depth. Beside it is a small box that belongs in the
-        // innermost node but is paired with a distant one.
-        BuildItems items;
-        BinaryTree tree;
-        const auto cube = [](float size) { return Box3{Vec3(-size, -size, -size), Vec3(size, size, size)}; };
-        const auto leaf = [&](const Box3& box) {
-            BinaryNode node;
-            node.box = box;
-            node.first = static_cast<std::uint32_t>(tree.items.size());
-            node.count = 1;
-            tree.items.push_back({box, node.first, PrimitiveKind::kTriangle});
-            tree.nodes.push_back(node);
-            return static_cast<std::uint32_t>(tree.nodes.size() - 1);
-        };
-        const auto join = [&](std::uint32_t left, std::uint32_t right, std::uint32_t into) {
-            BinaryNode& node = tree.nodes[into];
-            node.left = left;
-            node.right = right;
-            node.box = tree.nodes[left].box;
-            node.box.extend(tree.nodes[right].box);
-        };
-        const auto inner = [&](std::uint32_t left, std::uint32_t right) {
-            tree.nodes.emplace_back();
-            join(left, right, static_cast<std::uint32_t>(tree.nodes.size() - 1));
-            return static_cast<std::uint32_t>(tree.nodes.size() - 1);
-        };
-        for (const int depth : {Bvh::kMaxDepth - 1, Bvh::kMaxDepth}) {
-            CAPTURE(depth);
-            tree = {};
-            tree.nodes.emplace_back(); // the root
-            float size = 0.1f;
-            std::uint32_t chain = leaf(cube(size));
-            for (int d = depth - 1; d > 0; --d) chain = inner(leaf(cube(size *= 1.03f)), chain);
-            Box3 far = cube(0.01f);
-            far.low.x += 100;
-            far.high.x += 100;
-            join(chain, inner(leaf(cube(0.001f)), leaf(far)), 0);
-            REQUIRE(depth_below(tree, 0) == depth);
-            const BinaryTree before = tree;
-            reinsert(tree, tree.nodes.size(), 1, 1);
-            check_tree(tree);
-            // Reinsertion moves the box only if a level is left.
-            CHECK(inner_areas(tree) <= inner_areas(before));
-            CHECK((inner_areas(before) - inner_areas(tree) > 1) == (depth < Bvh::kMaxDepth));
-        }
-    }
 
     TEST_CASE("the collapse costs what it says, and no more than opening the largest child first") {
         Random random(27);
