@@ -2,7 +2,7 @@
 #pragma once
 
 #include "raster/render.h"
-#include "raster/shading/shader_program.h"
+#include "raster/shader/shader_program.h"
 
 namespace duet::raster {
 

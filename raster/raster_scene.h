@@ -5,7 +5,7 @@
 #include "raster/geometry/packed_shape.h"
 #include "raster/lighting/environment_irradiance.h"
 #include "raster/render.h"
-#include "raster/shading/texture_sampler.h"
+#include "raster/shader/texture_sampler.h"
 
 #include <cstdint>
 #include <memory>

@@ -73,7 +73,7 @@ struct RasterSettings : RenderSettings {
 };
 
 struct RasterSceneData; // raster/raster_scene.h
-class ShaderProgram;    // raster/shading/packet_shader.h
+class ShaderProgram;    // raster/shader/packet_shader.h
 
 /// Holds the data computed once per scene, for any number of views. It refers to the scene, which must outlive it.
 class RasterScene {

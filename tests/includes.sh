@@ -4,13 +4,15 @@
 # usage: includes.sh SOURCE_DIR
 set -eu
 cd "$1"
-floors="vec image sampling geometry camera texture material light scene film program"
+common="vec image sampling geometry camera texture material light scene film program"
+raster="geometry visibility shader gbuffer screen_space shadows lighting probes shading output overlay"
+raytrace="acceleration integrator wavefront"
 grep -rnoE '#include "[^"]+"' common raster raytrace compare models tests --include='*.h' --include='*.cpp' |
-    awk -F: -v floors="$floors" '
-    BEGIN { n = split(floors, names, " "); for (i = 1; i <= n; ++i) floor[names[i]] = i }
-    # A lesson includes the small stable floor and the headers of its own folder and of earlier lessons of its room; its
-    # lab
-    # has the contract that the grader calls, too. A lesson of compare/ comes after those of both other rooms. The
+    awk -F: -v common="$common" -v raster="$raster" -v raytrace="$raytrace" '
+    function floors_of(room, list) { n = split(list, names, " "); for (i = 1; i <= n; ++i) floor[room, names[i]] = i }
+    BEGIN { floors_of("common", common); floors_of("raster", raster); floors_of("raytrace", raytrace) }
+    # A lesson includes the small stable floor and the headers of its own folder and of earlier lessons of its room;
+    # its lab has the contract that the grader calls, too. A lesson of compare/ comes after those of both other rooms. The
     # assignments, and what else stands in compare/lessons/, may include all.
     function lesson() {
         if (from[1] == "compare" && from[3] !~ /^[0-9][0-9]-/) return
@@ -34,12 +36,13 @@ grep -rnoE '#include "[^"]+"' common raster raytrace compare models tests --incl
         if (from[1] == "common" && to[1] != "common") fault("common/ includes nothing of the other rooms")
         if ((from[1] == "raster" || from[1] == "raytrace") && to[1] != "common" && to[1] != from[1])
             fault(from[1] "/ includes only common/ and itself")
-        if (from[1] == "common" && to[1] == "common" && from[2] != to[2] && to[2] != "system") {
-            if (from[2] == "system") fault("system/ includes no floor")
-            else if (!(from[2] in floor)) fault("common/" from[2] " is no floor: add it to tests/includes.sh")
-            else if (!(to[2] in floor)) fault("common/" to[2] " is no floor: add it to tests/includes.sh")
-            else if (floor[to[2]] > floor[from[2]]) fault("goes up from " from[2] "/ to " to[2] \
-                "/: move the definition")
-        }
+        # Files at the top of a room are its interface, which all of its floors may include.
+        if (from[1] != to[1] || from[2] == to[2] || from[1] == "compare" || from[1] == "models") next
+        if (from[2] ~ /\./ || to[2] ~ /\./ || to[2] == "system") next
+        if (from[2] == "system") fault("system/ includes no floor")
+        else if (!((from[1], from[2]) in floor)) fault(from[1] "/" from[2] " is no floor: add it to tests/includes.sh")
+        else if (!((to[1], to[2]) in floor)) fault(to[1] "/" to[2] " is no floor: add it to tests/includes.sh")
+        else if (floor[to[1], to[2]] > floor[from[1], from[2]])
+            fault("goes up from " from[2] "/ to " to[2] "/: move the definition")
     }
     END { exit faults > 0 }'

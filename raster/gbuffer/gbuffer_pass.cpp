@@ -1,8 +1,8 @@
 #include "raster/gbuffer/gbuffer_pass.h"
 
 #include "raster/gbuffer/surface_lobes.h"
-#include "raster/shading/shader_program.h"
-#include "raster/shading/single_hit.h"
+#include "raster/shader/shader_program.h"
+#include "raster/shader/single_hit.h"
 #include "raster/visibility/hit_tile.h"
 #include "raster/visibility/packet_primitives.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/light/environment.h"
-#include "raster/lighting/sky_visibility.h"
+#include "raster/screen_space/sky_visibility.h"
 
 #include <array>
 

@@ -4,7 +4,7 @@
 // Transformed Cosines").
 #pragma once
 
-#include "raster/lighting/lane_math.h"
+#include "raster/geometry/lane_math.h"
 
 namespace duet::raster {
 

@@ -1,6 +1,6 @@
 #include "raster/lighting/sky_light.h"
 
-#include "raster/lighting/lane_math.h"
+#include "raster/geometry/lane_math.h"
 #include "raster/visibility/shader.h"
 
 #include <array>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/image/rgb.h"
-#include "raster/lighting/lane_math.h"
+#include "raster/geometry/lane_math.h"
 
 namespace duet::raster {
 

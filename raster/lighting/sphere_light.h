@@ -3,7 +3,7 @@
 // Shading with Linearly Transformed Cosines"; here for the sphere's cone itself), for one point or a batch of points.
 #pragma once
 
-#include "raster/lighting/lane_math.h"
+#include "raster/geometry/lane_math.h"
 #include "raster/lighting/specular_lobe.h"
 
 namespace duet::raster {

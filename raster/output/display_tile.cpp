@@ -1,6 +1,6 @@
 #include "raster/output/display_tile.h"
 
-#include "raster/shading/packet_shader.h"
+#include "raster/shader/packet_shader.h"
 #include "raster/visibility/packet_primitives.h"
 
 #include "common/image/srgb.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "raster/geometry/geometry.h"
-#include "raster/shading/packet_shader.h"
+#include "raster/shader/packet_shader.h"
 #include "raster/visibility/depth_tile.h"
 #include "raster/visibility/hit_tile.h"
 

@@ -6,7 +6,7 @@
 #include "raster/shadows/cube_map.h"
 #include "raster/shadows/light_views.h"
 #include "raster/shadows/map_shadows.h"
-#include "raster/shadows/shadow_filter.h"
+#include "raster/lighting/shadow_filter.h"
 
 #include "common/system/control.h"
 

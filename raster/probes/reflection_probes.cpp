@@ -1,7 +1,7 @@
 #include "raster/probes/reflection_probes.h"
 
-#include "raster/lighting/indirect_light.h"
-#include "raster/lighting/reflections.h"
+#include "raster/probes/indirect_light.h"
+#include "raster/probes/reflections.h"
 
 #include "common/system/parallel.h"
 

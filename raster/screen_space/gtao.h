@@ -4,8 +4,8 @@
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"
-#include "raster/lighting/lane_math.h"
-#include "raster/lighting/sky_visibility.h"
+#include "raster/geometry/lane_math.h"
+#include "raster/screen_space/sky_visibility.h"
 
 namespace duet::raster {
 

@@ -1,6 +1,6 @@
 // Shows base colors without lighting.
 #include "raster/shading/built_in_shaders.h"
-#include "raster/shading/shader_program.h"
+#include "raster/shader/shader_program.h"
 
 namespace duet::raster {
 namespace {

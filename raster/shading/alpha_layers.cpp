@@ -1,6 +1,6 @@
 #include "raster/shading/alpha_layers.h"
 
-#include "raster/shading/packet_shader.h"
+#include "raster/shader/packet_shader.h"
 #include "raster/visibility/hit_lists.h"
 
 #include "common/scene/alpha_mask.h"

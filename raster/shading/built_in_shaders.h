@@ -2,7 +2,7 @@
 #pragma once
 
 #include "raster/render.h"
-#include "raster/shading/packet_shader.h"
+#include "raster/shader/packet_shader.h"
 
 #include <memory>
 

@@ -3,12 +3,12 @@
 #include "raster/gbuffer/gbuffer_pass.h"
 #include "raster/lighting/background.h"
 #include "raster/lighting/direct_light.h"
-#include "raster/lighting/indirect_light.h"
-#include "raster/lighting/reflections.h"
-#include "raster/lighting/refraction.h"
+#include "raster/probes/indirect_light.h"
+#include "raster/probes/reflections.h"
+#include "raster/probes/refraction.h"
 #include "raster/lighting/sky_light.h"
 #include "raster/shadows/map_shadows.h"
-#include "raster/shadows/shadow_filter.h"
+#include "raster/lighting/shadow_filter.h"
 
 #include "common/system/stopwatch.h"
 

@@ -1,6 +1,6 @@
 // Shows depth: white at the camera, half as bright at the distance of the look-at point, black at infinity.
 #include "raster/shading/built_in_shaders.h"
-#include "raster/shading/shader_program.h"
+#include "raster/shader/shader_program.h"
 
 namespace duet::raster {
 namespace {

@@ -3,7 +3,7 @@
 // which has no triangles, each sample is its own facet. The base color is evaluated per sample.
 #include "raster/shading/built_in_shaders.h"
 #include "raster/shading/phong_model.h"
-#include "raster/shading/shader_program.h"
+#include "raster/shader/shader_program.h"
 
 namespace duet::raster {
 namespace {

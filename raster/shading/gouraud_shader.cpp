@@ -2,7 +2,7 @@
 // sample (Gouraud 1971, "Continuous Shading of Curved Surfaces").
 #include "raster/shading/built_in_shaders.h"
 #include "raster/shading/phong_model.h"
-#include "raster/shading/shader_program.h"
+#include "raster/shader/shader_program.h"
 
 namespace duet::raster {
 namespace {

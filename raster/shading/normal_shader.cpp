@@ -1,6 +1,6 @@
 // Shows shading normals as colors: (n + 1)/2, see direction_color.
 #include "raster/shading/built_in_shaders.h"
-#include "raster/shading/shader_program.h"
+#include "raster/shader/shader_program.h"
 
 namespace duet::raster {
 namespace {

@@ -2,7 +2,7 @@
 // Computer Generated Images").
 #include "raster/shading/built_in_shaders.h"
 #include "raster/shading/phong_model.h"
-#include "raster/shading/shader_program.h"
+#include "raster/shader/shader_program.h"
 
 namespace duet::raster {
 namespace {

@@ -4,7 +4,7 @@
 // antialiases them.
 #include "raster/shading/built_in_shaders.h"
 #include "raster/shading/phong_model.h"
-#include "raster/shading/shader_program.h"
+#include "raster/shader/shader_program.h"
 
 namespace duet::raster {
 namespace {

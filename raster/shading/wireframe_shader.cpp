@@ -3,7 +3,7 @@
 // edge (Bærentzen, Nielsen, Gjøl, Larsen and Christensen 2006, "Single-pass Wireframe Rendering"). A quad's
 // diagonal is not an edge, and spheres have none. raster/overlay/lines.h draws lines without hidden-line removal.
 #include "raster/shading/built_in_shaders.h"
-#include "raster/shading/shader_program.h"
+#include "raster/shader/shader_program.h"
 
 namespace duet::raster {
 namespace {

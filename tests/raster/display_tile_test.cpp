@@ -1,6 +1,6 @@
 // These tests compare the fast paths of display images and shadow maps with naive implementations.
 #include "raster/draw.h"
-#include "raster/shading/srgb_packet.h"
+#include "raster/shader/srgb_packet.h"
 #include "raster/visibility/hit_tile.h"
 #include "tests/raster/varied_scene.h"
 

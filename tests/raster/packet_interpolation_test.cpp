@@ -1,6 +1,6 @@
 // These tests check where samples lie on their triangles, computed with SIMD: in float within the error bounds of
 // raster/visibility/packet_interpolation.h, in double exactly.
-#include "raster/shading/sphere_packet.h"
+#include "raster/shader/sphere_packet.h"
 #include "raster/visibility/hit_tile.h"
 #include "raster/visibility/packet_interpolation.h"
 #include "tests/raster/varied_scene.h"

@@ -1,5 +1,5 @@
 // These tests check that batched texture lookups give the same bits as single lookups.
-#include "raster/shading/texture_sampler.h"
+#include "raster/shader/texture_sampler.h"
 
 #include "common/texture/mipmap.h"
 #include "raster/raster_scene.h"

@@ -2,7 +2,7 @@
 // use SIMD.
 #pragma once
 
-#include "raster/shading/texture_sampler.h"
+#include "raster/shader/texture_sampler.h"
 #include "raster/visibility/packet_primitives.h"
 #include "raster/visibility/shader.h"
 

@@ -2,7 +2,7 @@
 // else from probes, else from the environment.
 #pragma once
 
-#include "raster/lighting/lane_math.h"
+#include "raster/geometry/lane_math.h"
 #include "raster/gbuffer/gbuffer.h"
 #include "raster/probes/reflection_probes.h"
 #include "raster/raster_scene.h"

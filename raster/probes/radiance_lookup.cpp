@@ -1,4 +1,4 @@
-#include "raster/lighting/radiance_lookup.h"
+#include "raster/probes/radiance_lookup.h"
 
 #include "common/material/metal.h"
 

@@ -1,6 +1,6 @@
-#include "raster/lighting/reflections.h"
+#include "raster/probes/reflections.h"
 
-#include "raster/lighting/radiance_lookup.h"
+#include "raster/probes/radiance_lookup.h"
 #include "raster/lighting/specular_lobe.h"
 
 #include "common/material/metal.h"

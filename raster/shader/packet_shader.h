@@ -2,7 +2,7 @@
 #pragma once
 
 #include "raster/geometry/geometry.h"
-#include "raster/shading/srgb_packet.h"
+#include "raster/shader/srgb_packet.h"
 #include "raster/visibility/sample_packet.h"
 
 #include "common/geometry/hit.h"

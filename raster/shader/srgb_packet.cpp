@@ -1,4 +1,4 @@
-#include "raster/shading/srgb_packet.h"
+#include "raster/shader/srgb_packet.h"
 
 #include "common/image/srgb.h"
 

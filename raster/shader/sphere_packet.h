@@ -3,7 +3,7 @@
 
 #include "raster/geometry/geometry.h"
 #include "raster/geometry/sphere.h"
-#include "raster/shading/packet_shader.h"
+#include "raster/shader/packet_shader.h"
 
 namespace duet::raster {
 

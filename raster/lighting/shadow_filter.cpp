@@ -1,4 +1,4 @@
-#include "raster/shadows/shadow_filter.h"
+#include "raster/lighting/shadow_filter.h"
 
 #include "raster/gbuffer/neighbors.h"
 

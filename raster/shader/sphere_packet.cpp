@@ -1,4 +1,4 @@
-#include "raster/shading/sphere_packet.h"
+#include "raster/shader/sphere_packet.h"
 
 #include "common/geometry/sphere.h"
 

@@ -1,6 +1,6 @@
-#include "raster/shading/packet_surface.h"
+#include "raster/shader/packet_surface.h"
 
-#include "raster/shading/single_hit.h"
+#include "raster/shader/single_hit.h"
 
 #include "common/vec/robust.h"
 

@@ -1,4 +1,4 @@
-#include "raster/shading/texture_sampler.h"
+#include "raster/shader/texture_sampler.h"
 
 #include "common/system/error.h"
 #include "common/texture/anisotropic_probes.h"

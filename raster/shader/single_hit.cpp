@@ -1,4 +1,4 @@
-#include "raster/shading/single_hit.h"
+#include "raster/shader/single_hit.h"
 
 #include "common/camera/pixel_footprint.h"
 

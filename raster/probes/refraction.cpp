@@ -1,6 +1,6 @@
-#include "raster/lighting/refraction.h"
+#include "raster/probes/refraction.h"
 
-#include "raster/lighting/radiance_lookup.h"
+#include "raster/probes/radiance_lookup.h"
 #include "raster/lighting/specular_lobe.h"
 #include "raster/probes/glass_shapes.h"
 #include "raster/visibility/shader.h"

@@ -1,3 +1,4 @@
+// prepare() computes what all views of a scene share.
 #include "raster/raster_scene.h"
 
 #include "raster/geometry/geometry.h"

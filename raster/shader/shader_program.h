@@ -2,10 +2,10 @@
 // object by object, and single hits with the same functions.
 #pragma once
 
-#include "raster/shading/linear_in_tile.h"
-#include "raster/shading/packet_surface.h"
-#include "raster/shading/single_hit.h"
-#include "raster/shading/sphere_interpolation.h"
+#include "raster/shader/linear_in_tile.h"
+#include "raster/shader/packet_surface.h"
+#include "raster/shader/single_hit.h"
+#include "raster/shader/sphere_interpolation.h"
 #include "raster/visibility/hit_tile.h"
 
 #include <algorithm>

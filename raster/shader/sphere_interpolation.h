@@ -1,7 +1,7 @@
 // Computes a shader's varyings for samples on a sphere with SIMD.
 #pragma once
 
-#include "raster/shading/sphere_packet.h"
+#include "raster/shader/sphere_packet.h"
 #include "raster/visibility/packet_interpolation.h"
 
 #include "common/geometry/sphere.h"

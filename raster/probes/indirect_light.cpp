@@ -1,6 +1,6 @@
-#include "raster/lighting/indirect_light.h"
+#include "raster/probes/indirect_light.h"
 
-#include "raster/lighting/lane_math.h"
+#include "raster/geometry/lane_math.h"
 
 namespace duet::raster {
 namespace {
