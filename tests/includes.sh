@@ -13,8 +13,7 @@ grep -rnoE '#include "[^"]+"' common raster raytrace compare models tests --incl
     BEGIN { floors_of("common", common); floors_of("raster", raster); floors_of("raytrace", raytrace) }
     # A lesson includes the small stable floor and the headers of its own folder and of earlier lessons of its room;
     # its lab has the contract that the grader calls, too. A lesson of compare/ comes after those of both other rooms.
-    # The
-    # assignments, and what else stands in compare/lessons/, may include all.
+    # The assignments, and what else stands in compare/lessons/, may include all.
     function lesson() {
         if (from[1] == "compare" && from[3] !~ /^[0-9][0-9]-/) return
         if (to[1] == "tests" && to[2] == "grading" && $1 ~ /\/lab(_test|_starter)?\.(h|cpp)$/) return

@@ -54,7 +54,7 @@ struct SkippedWork {
 /// These statistics are sums over all bounding volume hierarchies (BVHs) of the path tracer.
 struct BvhStatistics {
     std::int64_t nodes = 0;      ///< number of wide nodes
-    std::int64_t references = 0; ///< primitives and instances in leaves; a split primitive counts once per leaf
+    std::int64_t references = 0; ///< primitives and instances in leaves
 };
 
 /// Identifies a sample whose radiance is NaN, infinite or negative. `raytrace --pixel x,y,sample` prints its path.

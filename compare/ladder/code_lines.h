@@ -1,4 +1,5 @@
-// Lines of code of each rung of the ladder. They are counted at build time from the files that code.txt lists.
+// Lines of code of each rung of the ladder. They are counted at build time, in the files that the
+// units of code.txt include.
 #pragma once
 
 #include <span>
@@ -12,7 +13,7 @@ struct CodeFile {
     std::string_view path; ///< relative to the root of the sources
     int lines;             ///< neither blank nor comment only
 };
-/// Returns the files in the order of code.txt.
+/// Returns the files sorted by path. Each source of raster/ and raytrace/ is there once, but for main files and lessons.
 std::span<const CodeFile> code_files();
 
 } // namespace duet::compare

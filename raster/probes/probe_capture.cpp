@@ -107,7 +107,8 @@ Vec3 ProbeCapture::direction(const Pixel& p, int side) {
 
 float ProbeCapture::solid_angle(const Pixel& p, int side) {
     const float distance = length(point_on_face(p, side));
-    return 4 / (static_cast<float>(side * side) * distance * distance * distance); // dω = cos θ dA / r², and cos θ = 1 / r
+    // dω = cos θ dA / r², and cos θ = 1 / r.
+    return 4 / (static_cast<float>(side * side) * distance * distance * distance);
 }
 
 float ProbeCapture::distance(const Pixel& p) const {

@@ -4,7 +4,6 @@
 #include "common/system/error.h"
 #include "raytrace/acceleration/bvh_input.h"
 #include "raytrace/acceleration/bvh_packet.h"
-#include "raytrace/acceleration/bvh_stream.h"
 #include "raytrace/acceleration/sort_by_class.h"
 
 #include <algorithm>
@@ -39,7 +38,6 @@ Accelerator::Accelerator(const Scene& scene, int threads)
     }
     world_ = world.build();
     few_primitives_ = !world_.use_tree() && world_.instances.empty() && !has_alpha_masks_;
-    use_streams_ = streamable(world_);
 }
 
 // Transforms the ray to the instance's object space at the ray's time.
@@ -197,16 +195,11 @@ void Accelerator::closest_in_list(std::span<const Ray> rays, std::span<const std
 
 void Accelerator::closest_of_incoherent(std::span<const Ray> rays, std::span<const std::uint32_t> indices,
                                         std::span<Hit> hits) const {
-    DUET_CHECK(batches_incoherent_rays());
-    if (!use_streams_)
+    if (few_primitives_)
         for (std::size_t from = 0; from < indices.size(); from += kMaxSorted)
             closest_sorted_by_class(rays, indices.subspan(from, std::min(indices.size() - from, kMaxSorted)), hits);
-    else if (indices.size() >= kMinStreamSize)
-        find_closest_of_stream(world_, rays, indices, hits);
     else
-        for (const std::uint32_t i : indices) hits[i] = closest_without_alpha(rays[i]);
-    if (has_alpha_masks_)
-        for (const std::uint32_t i : indices) hits[i] = skip_transparent(rays[i], hits[i]);
+        for (const std::uint32_t i : indices) hits[i] = closest(rays[i]);
 }
 
 void Accelerator::closest_sorted_by_class(std::span<const Ray> rays, std::span<const std::uint32_t> indices,

@@ -26,11 +26,9 @@ public:
     /// faster if neighbors in the list are coherent, as the camera rays of neighboring pixels are.
     void closest(std::span<const Ray> rays, std::span<Hit> hits) const;
     /// Finds the closest hits of the rays with the indices `indices`, which may be incoherent. Other elements of
-    /// `hits` stay unchanged. The scene must be one for which batches_incoherent_rays() is true.
+    /// `hits` stay unchanged.
     void closest_of_incoherent(std::span<const Ray> rays, std::span<const std::uint32_t> indices,
                                std::span<Hit> hits) const;
-    /// Returns whether a batch of incoherent rays is traced faster together than one by one.
-    bool batches_incoherent_rays() const { return few_primitives_ || use_streams_; }
     /// Returns whether the scene is a short list of primitives without instances and alpha masks. For such a scene,
     /// the closest hits of a batch of rays cost less than a separate any-hit query for each ray.
     bool few_primitives() const { return few_primitives_; }
@@ -60,7 +58,6 @@ private:
     std::int64_t primitives_ = 0;
     bool has_alpha_masks_; ///< whether any material has an alpha mask
     bool few_primitives_ = false;
-    bool use_streams_ = false; ///< whether `world_` is streamable (bvh_stream.h)
 };
 
 } // namespace duet::raytrace

@@ -122,7 +122,7 @@ struct Bvh {
     static constexpr std::uint32_t kMaxLeaf = kBlockSize; ///< maximum number of primitives
 
     Box3 bounds;
-    std::size_t references = 0; ///< primitives in leaves; a primitive cut by spatial splits counts once per leaf
+    std::size_t references = 0; ///< primitives in leaves
     /// These leaves together hold all primitives, if a single ray tests them faster than it traverses the tree.
     std::vector<BvhRef> list;
     /// These are the nodes of the tree, and nodes[0] is the root. There are none if there is only one leaf, which is

@@ -83,7 +83,7 @@ public:
         for (int depth = 0; !active_.empty(); ++depth) {
             advance(depth);
             shadows_.trace([&](std::uint32_t i, Rgb light) { paths_[i].add(light); });
-            find_hits();
+            plan_.prepared.accelerator.closest_of_incoherent(rays_, active_, hits_);
         }
         for (std::size_t i = 0; i < paths_.size(); ++i) radiances[i] = paths_[i].result();
     }
@@ -91,12 +91,6 @@ public:
 private:
     using Kind = BatchedSurfaces::Kind;
     static constexpr std::size_t kMinBatch = 3; // fewest paths that are advanced as a batch
-
-    void find_hits() {
-        const Accelerator& accelerator = plan_.prepared.accelerator;
-        if (accelerator.batches_incoherent_rays()) return accelerator.closest_of_incoherent(rays_, active_, hits_);
-        for (const std::uint32_t i : active_) hits_[i] = accelerator.closest(rays_[i]);
-    }
 
     void advance(int depth) {
         if (depth == plan_.max_depth) return end(depth);

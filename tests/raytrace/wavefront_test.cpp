@@ -174,9 +174,6 @@ TEST_SUITE("unit") {
             const PathTracerScene prepared = prepare(scene, settings);
             const Accelerator& accelerator = prepared.data().accelerator;
             REQUIRE(!accelerator.few_primitives());
-#if XSIMD_WITH_AVX512F
-            REQUIRE(accelerator.batches_incoherent_rays()); // so rays are streamed (ray_stream_test.cpp)
-#endif
             check_same(scene, settings);
         }
     }

@@ -1,6 +1,5 @@
 // These tests check that the collapse of a binary tree costs what it says.
 #include "raytrace/acceleration/bvh_hierarchy.h"
-#include "tests/raytrace/acceleration/polygon_items.h"
 #include "tests/raytrace/acceleration/soup.h"
 #include "tests/raytrace/acceleration/tree_checks.h"
 
@@ -24,6 +23,16 @@ Mesh needles(Random& random, int count, float length, float width) {
     return mesh;
 }
 
+BuildItems items_of(const Mesh& mesh) {
+    BuildItems items;
+    for (const auto& [a, b, c] : mesh.triangles) {
+        Box3 box;
+        for (const std::uint32_t corner : {a, b, c}) box.extend(mesh.positions[corner]);
+        items.push_back({box, static_cast<std::uint32_t>(items.size()), PrimitiveKind::kTriangle});
+    }
+    return items;
+}
+
 } // namespace
 
 TEST_SUITE("unit") {
@@ -31,8 +40,8 @@ TEST_SUITE("unit") {
     TEST_CASE("the collapse costs what it says, and no more than opening the largest child first") {
         Random random(27);
         for (int trial = 0; trial < 20; ++trial) {
-            PolygonItems polygons(needles(random, 300 + trial * 50, random.uniform(0.01f, 1), 0.05f));
-            const BinaryTree tree = build_binary_tree(polygons.items, 1);
+            BuildItems items = items_of(needles(random, 300 + trial * 50, random.uniform(0.01f, 1), 0.05f));
+            const BinaryTree tree = build_binary_tree(items, 1);
             const CollapsedBvh collapsed = collapse(tree, 3);
             const double root = static_cast<double>(tree.nodes[0].box.half_area());
             // The cost of a node is its area plus a tenth of the areas of all leaves below it.
