@@ -36,13 +36,9 @@ void write_bowl(const std::filesystem::path& folder);
 inline constexpr const char* kHallFile = "generated/hall.obj";
 void write_hall(const std::filesystem::path& folder);
 void write_lanterns(const std::filesystem::path& folder);
-void write_octopus(const std::filesystem::path& folder);
-void write_octopus_hundred_thousand(const std::filesystem::path& folder);
-void write_octopus_million(const std::filesystem::path& folder);
 void write_pear(const std::filesystem::path& folder);
 void write_plinth(const std::filesystem::path& folder);
 void write_sky(const std::filesystem::path& folder);
 void write_spheres(const std::filesystem::path& folder);
-void write_test_ball(const std::filesystem::path& folder);
 
 } // namespace duet::models

@@ -4,7 +4,6 @@
 #include "models/octopus.h"
 
 #include "models/distance_field.h"
-#include "models/generate.h"
 #include "models/implicit.h"
 #include "models/profile.h"
 

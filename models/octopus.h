@@ -1,7 +1,9 @@
-// This header declares the positions of the octopus's eyes and of its ball, where the scene places spheres.
+// This header declares the octopus, and the positions of its eyes and of its ball, where the scene places spheres.
 #pragma once
 
 #include "common/vec/vec.h"
+
+#include <filesystem>
 
 namespace duet::models {
 
@@ -14,5 +16,9 @@ inline constexpr double kEyeX = 0.245, kEyeY = 0.82, kEyeZ = 0.17, kEyeRadius = 
 /// One arm winds around this ball.
 inline constexpr Vec3d kBallCenter{0.72, 0.40, 0.78};
 inline constexpr double kBallRadius = 0.28;
+
+void write_octopus(const std::filesystem::path& folder);
+void write_octopus_hundred_thousand(const std::filesystem::path& folder);
+void write_octopus_million(const std::filesystem::path& folder);
 
 } // namespace duet::models

@@ -1,7 +1,6 @@
 // This file generates the material test ball meshes/test-ball.obj, with a groove, a knob and a foot, and one scene in
 // balls/ for each material. The scenes differ only in the material.
 #include "common/system/file.h"
-#include "models/generate.h"
 #include "models/mesh_builder.h"
 #include "models/profile.h"
 #include "models/test_ball.h"

@@ -1,6 +1,7 @@
 // This header declares the scenes of the test ball, one for each material.
 #pragma once
 
+#include <filesystem>
 #include <span>
 #include <string>
 
@@ -13,5 +14,7 @@ struct BallScene {
 };
 /// Returns the scenes in the order of the gallery's page.
 std::span<const BallScene> ball_scenes();
+
+void write_test_ball(const std::filesystem::path& folder);
 
 } // namespace duet::models

@@ -1,10 +1,11 @@
 // prepare() computes what all views of a scene share.
-#include "raster/raster_scene.h"
+#include "raster/render.h"
 
 #include "raster/geometry/geometry.h"
 #include "raster/probes/glass_shapes.h"
 #include "raster/probes/irradiance_probes.h"
 #include "raster/probes/reflection_probes.h"
+#include "raster/raster_scene.h"
 #include "raster/shading/deferred.h"
 #include "raster/shadows/map_shadows.h"
 #include "raster/shadows/shadows.h"

@@ -2,6 +2,7 @@
 #include "common/program/option_checks.h"
 #include "common/program/render_program.h"
 #include "raster/render.h"
+#include "raster/shading/built_in_shaders.h"
 #include "raster/visibility/multisample.h"
 
 #include <CLI/CLI.hpp>

@@ -4,7 +4,7 @@
 #include "common/scene/scene.h"
 #include "raster/geometry/packed_shape.h"
 #include "raster/lighting/environment_irradiance.h"
-#include "raster/render.h"
+#include "raster/settings.h"
 #include "raster/shader/texture_sampler.h"
 
 #include <cstdint>

@@ -1,7 +1,6 @@
 #include "raster/render.h"
 
 #include "raster/geometry/geometry.h"
-#include "raster/output/alpha_depth.h"
 #include "raster/output/display_tile.h"
 #include "raster/output/framebuffer.h"
 #include "raster/output/statistics.h"
@@ -10,6 +9,7 @@
 #include "raster/shading/built_in_shaders.h"
 #include "raster/shading/deferred.h"
 #include "raster/shading/sample_attributes.h"
+#include "raster/visibility/depth_image.h"
 #include "raster/visibility/hit_lists.h"
 #include "raster/visibility/hit_tile.h"
 #include "raster/visibility/multisample.h"
@@ -361,11 +361,9 @@ void render_direct_output(const FrameContext& frame, const CameraModel& camera, 
         return;
     }
     render_pass(frame, camera, view, pass, [&](const PassView& pass_view, std::size_t i) {
-        if (depth_only && frame.layers != nullptr)
-            render_alpha_depth_tile(frame.data, frame.geometry, *frame.layers, pass_view, frame.grid.tile(i), i,
-                                    result.reversed_depth);
-        else if (depth_only)
-            render_depth_tile(frame.geometry, pass_view, frame.grid.tile(i), i, result.reversed_depth);
+        if (depth_only)
+            render_depth_tile(frame.data, frame.geometry, frame.layers, pass_view, frame.grid.tile(i), i,
+                              result.reversed_depth);
         else
             display_tile(frame.data, *frame.program, frame.geometry, pass_view, frame.grid.tile(i), i, result.srgb);
     });
@@ -415,6 +413,10 @@ void render(const RasterScene& prepared, const View& view, const RasterSettings&
     RasterSettings other = settings; // the environment must not be in the background, which only kLit shows
     if (other.shading == Shading::kLit) other.shading = Shading::kAlbedo;
     render_with(prepared, view, other, &program, control, result);
+}
+
+std::vector<std::string> approximations(const RasterScene& prepared, const RasterSettings& settings) {
+    return approximations(prepared.data(), settings);
 }
 
 Rendering render(const RasterScene& prepared, const View& view, const RasterSettings& settings, Control& control) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "raytrace/integrator/light_components.h"
+#include "raytrace/render.h"
 #include "raytrace/render_plan.h"
 
 #include <optional>

@@ -3,7 +3,8 @@
 
 #include "common/film/film_file.h"
 #include "common/system/stopwatch.h"
-#include "raytrace/render.h"
+#include "common/scene/scene.h"
+#include "raytrace/settings.h"
 
 #include <atomic>
 #include <functional>

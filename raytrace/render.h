@@ -2,64 +2,13 @@
 #pragma once
 
 #include "common/camera/camera.h"
-#include "common/film/rendering.h"
-#include "common/sampling/pixel_filter.h"
-#include "common/sampling/sampler.h"
 #include "common/scene/scene.h"
 #include "common/system/control.h"
+#include "raytrace/settings.h"
 
-#include <filesystem>
 #include <memory>
-#include <string_view>
 
 namespace duet::raytrace {
-
-/// This is the version of what the estimators of light (path, naive, direct) converge to. It is part of the name
-/// under which compare bench stores its references. Raise it with every change of that value (a material, a light, a
-/// filter, a corrected bias), but not for changes of noise or speed alone. tests/raytrace/estimator_version_test.cpp
-/// fails if it was forgotten.
-inline constexpr int kEstimatorVersion = 7;
-
-enum class Integrator {
-    kPath,        ///< light and BSDF sampling, combined by multiple importance sampling
-    kNaive,       ///< BSDF sampling only, as in book 1 of Ray Tracing in One Weekend
-    kDirect,      ///< emission and direct light: paths of at most one scattering event
-    kUnshadowed,  ///< direct light by light sampling without visibility: the rasterizer's quantity
-    kLights,      ///< components of path: LightComponents::emission and direct, Scene::lights and their shadows
-    kEnvironment, ///< component of path: LightComponents::environment, the environment's light on diffuse surfaces
-    kReflection,  ///< component of path: LightComponents::reflection, light through metal and glass at the first hit
-    kNormal,      ///< the shading normal as a color: (n + 1)/2
-    kAlbedo,      ///< base colors
-};
-/// Returns the integrator named "path", "naive", "direct", "unshadowed", "lights", "environment", "reflection",
-/// "normal" or "albedo". Throws Error for any other name.
-Integrator integrator(std::string_view name);
-std::string_view integrator_name(Integrator integrator);
-
-struct PathTracerSettings : RenderSettings {
-    PathTracerSettings() { samples_per_pixel = 64; }
-    Integrator integrator = Integrator::kPath;
-    SamplerKind sampler = SamplerKind::kSobol;
-    FilterKind filter = FilterKind::kBox;
-    int max_depth = 64; ///< maximum number of scattering events: 0 = emission only, 1 = direct light
-    bool russian_roulette = true;
-    bool environment = true;               ///< see raster::RasterSettings::environment
-    bool adaptive =
-        false; ///< more samples where the error is larger; samples_per_pixel in the mean (sample_schedule.h)
-    std::uint32_t first_sample = 0; ///< first of the samples_per_pixel samples; more than 0 in a shard
-    std::filesystem::path film; ///< file of the film, which is continued if it exists (film_checkpoint.h); empty: none
-    double film_interval = 60;      ///< seconds between two writes of that file
-    double time_limit = 0;   ///< seconds; stops between passes; 0: none
-    double error_limit = 0;  ///< estimated relMSE; stops between passes; 0: none
-
-    /// Returns whether the film must estimate its error. Samples then fall into two replicates
-    /// (common/sampling/sampler.h). Otherwise all samples of a pixel are stratified together, which reduces the
-    /// error.
-    bool estimates_error() const { return adaptive || error_limit > 0 || aovs.variance; }
-    std::uint32_t replicates() const { return estimates_error() ? 2 : 1; }
-    /// Returns the sampler of a render with these settings.
-    Sampler make_sampler() const { return {sampler, seed, samples_per_pixel, replicates()}; }
-};
 
 struct PathTracerSceneData; // raytrace/path_tracer_scene.h
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/film/film.h"
+#include "common/system/control.h"
 #include "raytrace/aov.h"
 #include "raytrace/film_checkpoint.h"
 #include "raytrace/integrator/integrator.h"

@@ -35,8 +35,7 @@ int depth(const PathTracerSettings& settings) {
 
 } // namespace
 
-RenderPlan::RenderPlan(const PathTracerSceneData& prepared_, const View& view, const PathTracerSettings& settings,
-                       std::optional<float> known_survival_factor)
+RenderPlan::RenderPlan(const PathTracerSceneData& prepared_, const View& view, const PathTracerSettings& settings)
     : prepared(prepared_), scene(prepared_.scene), filter(settings.filter), batched(scene.objects.size()),
       max_depth(depth(settings)), russian_roulette(settings.russian_roulette && max_depth > 1) {
     const SkipFlags& skips = settings.skips;
@@ -65,11 +64,6 @@ RenderPlan::RenderPlan(const PathTracerSceneData& prepared_, const View& view, c
     // batches do not support: a medium stack, footprints, or the shadow rays and light samples that tests request.
     if (kDoubleLanes >= 4 && !needs_medium_stack && !pixel_footprint && !black_shadow_rays && !specular_light_samples)
         batched = BatchedSurfaces(scene, *bsdfs);
-    // The naive integrator does not learn this factor, so that it stays simple.
-    const bool estimates_survival = russian_roulette && settings.integrator != Integrator::kNaive;
-    survival_factor = known_survival_factor ? *known_survival_factor
-                      : estimates_survival  ? estimate_survival_factor(prepared, view, settings)
-                                            : kDefaultSurvivalFactor;
 }
 
 std::vector<SkippedWork> skipped(const RenderPlan& plan, const PathTracerSettings& settings) {
@@ -110,7 +104,7 @@ std::vector<SkippedWork> skipped(const RenderPlan& plan, const PathTracerSetting
     if (!plan.hits_find_light && settings.integrator != Integrator::kUnshadowed)
         skip("last bounce", "rays cannot find the lights: point, spot and sun");
     if (plan.russian_roulette)
-        skip("dim paths", message("roulette ends some whose throughput is below ", 1 / plan.survival_factor));
+        skip("dim paths", message("roulette ends some whose throughput is below ", 1 / kSurvivalFactor));
     if (settings.integrator == Integrator::kUnshadowed) skip("shadow rays", "the integrator leaves visibility out");
     return list;
 }

@@ -6,16 +6,16 @@
 #include "common/film/rendering.h"
 #include "raytrace/batched_surfaces.h"
 #include "raytrace/path_tracer_scene.h"
-#include "raytrace/render.h"
-#include "raytrace/roulette.h"
+#include "raytrace/settings.h"
 
 namespace duet::raytrace {
 
+/// The probability with which Russian roulette lets a path continue, over the path's throughput. Factors that suit a
+/// scene of models/ best, from 1 to 14, gain more than a tenth in one of them alone (raytrace/measurements.md).
+inline constexpr float kSurvivalFactor = 4;
+
 struct RenderPlan {
-    /// Makes the plan. `known_survival_factor` sets the roulette survival factor `survival_factor`. If it is empty, the
-    /// factor is estimated by estimate_survival_factor.
-    RenderPlan(const PathTracerSceneData& prepared_, const View& view, const PathTracerSettings& settings,
-               std::optional<float> known_survival_factor = {});
+    RenderPlan(const PathTracerSceneData& prepared_, const View& view, const PathTracerSettings& settings);
     RenderPlan(const RenderPlan&) = delete; // bsdfs may point into the plan
     RenderPlan& operator=(const RenderPlan&) = delete;
 
@@ -36,8 +36,6 @@ struct RenderPlan {
     BatchedSurfaces batched;        ///< surfaces at which paths are scattered in batches (wavefront/batch.h)
     int max_depth = 0;
     bool russian_roulette = false;  ///< whether roulette may end paths after more than one scattering
-    float survival_factor =
-        kDefaultSurvivalFactor; ///< survival probability divided by throughput; see estimate_survival_factor
     std::optional<PixelFootprint>
         pixel_footprint; ///< of a ray that covers a whole pixel; empty if no texture is filtered
     bool lens = false;   ///< whether rays start at points sampled on the lens

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/film/film.h"
-#include "raytrace/render.h"
+#include "raytrace/settings.h"
 
 namespace duet::raytrace {
 

@@ -1,6 +1,6 @@
 #!/bin/sh
 # Includes go down the house, never up: a room includes what design and README allow, a floor of common/ only itself and
-# those below. A lesson includes only what was explained before.
+# those below. A lesson includes only what was explained before. No two units include each other, directly or not.
 # usage: includes.sh SOURCE_DIR
 set -eu
 cd "$1"
@@ -46,3 +46,7 @@ grep -rnoE '#include "[^"]+"' common raster raytrace compare models tests --incl
             fault("goes up from " from[2] "/ to " to[2] "/: move the definition")
     }
     END { exit faults > 0 }'
+# No circle between units either: a header, and the source of the same name, is one unit.
+grep -rnoE '^#include "[^"]+"' common raster raytrace compare models --include='*.h' --include='*.cpp' |
+    grep -v '^[a-z]*/lessons/' |
+    sed -E 's/\.(h|cpp):[0-9]+:#include "(.*)\.h"/ \2/' | awk '$1 != $2' | tsort >/dev/null

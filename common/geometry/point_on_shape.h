@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/geometry/shading_terminator.h"
-#include "common/geometry/surface_point.h"
+#include "common/geometry/surface_geometry.h"
 
 #include <array>
 

@@ -2,30 +2,9 @@
 // this folder use image_file.h.
 #pragma once
 
-#include "common/image/image_file.h"
-
-#include <string>
-#include <string_view>
+#include "common/image/stored_image.h"
 
 namespace duet {
-
-/// Holds the bytes of an image file and the name that error messages use for it, which is its path.
-struct ImageBytes {
-    std::string name;
-    std::string_view bytes;
-};
-
-/// Throws an Error with the given exit code unless both sides are in [1, kMaxImageSide] and the image has at most
-/// kMaxImagePixels pixels.
-void check_image_size(const std::string& name, long long width, long long height, int exit_code = 2);
-/// Throws an Error if needed > available. `needed` is the smallest number of bytes that can store an image of the size
-/// in the header, and `available` is the number of bytes in the file. The check prevents allocations for pixels that
-/// the file does not contain.
-void check_pixel_data_size(const ImageBytes& file, long long width, long long height, double needed, double available);
-
-/// Decodes an image file in the format of its signature. TGA has no signature; it is chosen if `extension` is ".tga".
-/// Throws an Error for an unknown format or a malformed file.
-StoredImage decode_image(const ImageBytes& file, const std::string& extension);
 
 // The stb library implements these formats.
 StoredImage decode_png(const ImageBytes& file);

@@ -1,7 +1,5 @@
 #include "common/light/light.h"
 
-#include "common/light/solid_angle.h"
-
 #include <algorithm>
 #include <cmath>
 

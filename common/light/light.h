@@ -3,6 +3,7 @@
 
 #include "common/geometry/shape.h"
 #include "common/image/rgb.h"
+#include "common/light/solid_angle.h"
 
 #include <cstdint>
 #include <optional>
@@ -30,9 +31,7 @@ struct SunLight {
 /// A SurfaceLight is one primitive of an emissive surface, in world space. It does not move: a moving emitter has no
 /// light samples and is found by BSDF sampling only.
 struct SurfaceLight {
-    struct Triangle {
-        Vec3 a, b, c;
-    };
+    using Triangle = LightTriangle;
     std::variant<Triangle, Quad, Sphere> shape; ///< front side: (b − a) × (c − a); u × v; outwards
     bool two_sided = false;
     Rgb radiance; ///< W/(m² sr)

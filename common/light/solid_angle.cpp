@@ -13,7 +13,7 @@ namespace duet {
 
 namespace {
 
-using Triangle = SurfaceLight::Triangle;
+using Triangle = LightTriangle;
 
 using Plane = AreaSampling<double>;
 

@@ -1,15 +1,19 @@
 // This file samples the solid angle that a shape subtends at a point.
 #pragma once
 
+#include "common/geometry/shape.h"
 #include "common/light/area_sampling.h"
-#include "common/light/light.h"
 
 #include <optional>
 
 namespace duet {
 
+struct LightTriangle {
+    Vec3 a, b, c;
+};
+
 /// Each overload returns a flat shape as seen from p.
-AreaSampling<double> area_seen(const SurfaceLight::Triangle& triangle, Vec3d p);
+AreaSampling<double> area_seen(const LightTriangle& triangle, Vec3d p);
 QuadSeen<double> area_seen(const Quad& quad, Vec3d p);
 
 /// Returns whether the quad's sides are at right angles, up to rounding. Near parallelograms of other angles are
@@ -22,8 +26,8 @@ bool is_rectangle(const Quad& quad);
 
 /// Near flat shapes are sampled uniformly by solid angle: a rectangle as a spherical rectangle, another quad as two
 /// triangles. Far shapes are sampled uniformly by area, which is nearly the same there.
-std::optional<SolidAngleSample> sample_solid_angle(const SurfaceLight::Triangle& triangle, Vec3d p, Vec2d u);
-double solid_angle_pdf(const SurfaceLight::Triangle& triangle, Vec3d p, Vec3d q);
+std::optional<SolidAngleSample> sample_solid_angle(const LightTriangle& triangle, Vec3d p, Vec2d u);
+double solid_angle_pdf(const LightTriangle& triangle, Vec3d p, Vec3d q);
 
 std::optional<SolidAngleSample> sample_solid_angle(const Quad& quad, Vec3d p, Vec2d u);
 double solid_angle_pdf(const Quad& quad, Vec3d p, Vec3d q);

@@ -1,7 +1,6 @@
 #include "common/scene/default_scene.h"
 
-#include "common/scene/json/read_objects.h"
-#include "common/scene/obj/load_obj.h"
+#include "common/scene/obj/add_obj_materials.h"
 #include "common/system/error.h"
 
 namespace duet {

@@ -1,5 +1,5 @@
 #include "common/texture/anisotropic_probes.h"
-#include "common/texture/evaluate_texture.h"
+#include "common/texture/texture.h"
 #include "common/texture/texel_index.h"
 
 #include <algorithm>

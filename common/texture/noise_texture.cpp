@@ -1,4 +1,4 @@
-#include "common/texture/evaluate_texture.h"
+#include "common/texture/texture.h"
 #include "common/texture/noise.h"
 
 #include <cmath>

@@ -1,6 +1,5 @@
 #include "common/texture/texture.h"
 
-#include "common/texture/evaluate_texture.h"
 #include "common/texture/mipmap.h"
 
 namespace duet {

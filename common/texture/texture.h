@@ -74,4 +74,13 @@ inline float evaluate(const TextureSet& set, const ScalarSlot& slot, const Surfa
     return slot.value * evaluate_texture(set, set.textures[static_cast<std::size_t>(slot.texture)], point).r;
 }
 
+// The kinds of textures, each in a file of its own.
+
+/// Returns the texture's color at a point. `mip_levels` holds the image's mip levels. Where it is empty, the image is
+/// sampled bilinearly, or at the nearest texel if the filter says so.
+Rgb evaluate(const ImageTexture& texture, const ImageRgb& image, const std::vector<ImageRgb>& mip_levels,
+             const SurfacePoint& point);
+Rgb evaluate(const CheckerTexture& texture, const SurfacePoint& point);
+Rgb evaluate(const NoiseTexture& texture, const SurfacePoint& point);
+
 } // namespace duet

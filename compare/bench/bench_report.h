@@ -2,7 +2,7 @@
 #pragma once
 
 #include "compare/bench/baseline.h"
-#include "compare/bench/bench.h"
+#include "compare/bench/bench_options.h"
 #include "compare/bench/scene_result.h"
 
 #include <nlohmann/json_fwd.hpp>

@@ -26,9 +26,6 @@ struct KernelsOptions {
     bool quiet = false;
 };
 
-/// Names of the works: build, camera, camera-bulk, bounce, shadow.
-extern const std::vector<std::string> kWorks;
-
 /// Prints one table per scene. Returns 1 if any of Duet's results is wrong or a ray leaked, 130 after an
 /// interrupt signal. Throws Error for files and names that cannot be used.
 int kernels(const KernelsOptions& options);

@@ -3,6 +3,7 @@
 #include "common/program/render_program.h"
 #include "compare/arguments.h"
 #include "compare/kernels/kernels.h"
+#include "compare/kernels/measure_kernels.h"
 
 #include <CLI/CLI.hpp>
 #include <memory>

@@ -1,7 +1,6 @@
 #include "compare/kernels/measure_kernels.h"
 
 #include "common/system/parallel.h"
-#include "compare/kernels/kernels.h"
 #include "compare/kernels/ray_sets.h"
 #include "compare/kernels/watertight.h"
 

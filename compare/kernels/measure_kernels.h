@@ -12,6 +12,9 @@
 
 namespace duet::compare {
 
+/// Names of the works: build, camera, camera-bulk, bounce, shadow.
+extern const std::vector<std::string> kWorks;
+
 struct KernelSettings {
     std::vector<std::string> works;   ///< some of kWorks
     std::vector<EmbreeQuality> peers; ///< empty: Duet alone

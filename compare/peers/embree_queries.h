@@ -2,7 +2,7 @@
 // by embree.cpp only; empty if Embree is not installed.
 #pragma once
 
-#include "compare/peers/embree.h"
+#include "compare/kernels/tracer.h"
 
 #include <algorithm>
 #include <array>

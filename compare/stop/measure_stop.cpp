@@ -1,3 +1,4 @@
+#include "raytrace/render.h"
 #include "compare/stop/measure_stop.h"
 
 #include "common/system/stopwatch.h"

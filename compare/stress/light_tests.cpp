@@ -1,5 +1,5 @@
 // These tests sample lights that are slivers, far away, near or edge-on.
-#include "common/light/solid_angle.h"
+#include "common/light/light.h"
 #include "common/light/spherical_triangle.h"
 #include "compare/stress/errors.h"
 #include "compare/stress/log_p_value.h"

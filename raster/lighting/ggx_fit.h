@@ -2,7 +2,7 @@
 // common/material/ggx.h.
 #pragma once
 
-#include "raster/lighting/ggx_table.h"
+#include "raster/lighting/lobe_matrix.h"
 
 #include <array>
 #include <cstddef>

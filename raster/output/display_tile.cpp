@@ -1,6 +1,7 @@
 #include "raster/output/display_tile.h"
 
 #include "raster/shader/packet_shader.h"
+#include "raster/visibility/image_blocks.h"
 #include "raster/visibility/packet_primitives.h"
 
 #include "common/image/srgb.h"
@@ -15,58 +16,7 @@ namespace {
 
 Rgba8 encoded(const SrgbEncoder& encode, Rgb c) { return {encode(c.r), encode(c.g), encode(c.b), 255}; }
 
-bool is_empty(const Geometry& geometry, std::size_t index) {
-    return geometry.triangle_lists.tile(index).empty() && geometry.mask_lists.tile(index).empty() &&
-           geometry.fragment_lists.tile(index).empty() &&
-           (geometry.spheres.empty() || geometry.sphere_bins.tile(index).empty());
-}
-
-constexpr int kBlock = DepthTile::kBlock;
 constexpr Rgba8 kBackground{0, 0, 0, 255};
-
-/// Copies a row of a tile's blocks to the image, from pixel row y on. row_of(block, row) returns the address of
-/// eight pixels of a block. Whole cache lines are written with non-temporal stores, because a frame is larger than
-/// what caches retain until the next one.
-template <typename Pixel, typename RowOf>
-void copy_blocks(const PixelRect& rect, int y, const RowOf& row_of, Image<Pixel>& image) {
-    static_assert(2 * kBlock * sizeof(Pixel) == 64);
-    for (int row = 0; row < std::min(kBlock, rect.y1 - y); ++row) {
-        Pixel* to = &image(rect.x0, y + row);
-        const auto block = [&](int column) {
-            return row_of(static_cast<std::size_t>(column), static_cast<std::size_t>(row));
-        };
-        int column = 0, left = rect.width();
-        if (is_line_start(to))
-            for (; left >= 2 * kBlock; left -= 2 * kBlock, column += 2)
-                stream_line(block(column), block(column + 1), to + column * kBlock);
-        for (; left >= kBlock; left -= kBlock, ++column) std::copy_n(block(column), kBlock, to + column * kBlock);
-        if (left > 0) std::copy_n(block(column), left, to + column * kBlock);
-    }
-}
-
-/// Fills the pixels of an empty tile.
-template <typename Pixel> void fill(const PixelRect& rect, const Pixel& pixel, Image<Pixel>& image) {
-    std::array<Pixel, kBlock> eight;
-    eight.fill(pixel);
-    for (int y = rect.y0; y < rect.y1; y += kBlock)
-        copy_blocks(
-            rect, y, [&](std::size_t, std::size_t) { return eight.data(); }, image);
-    finish_streams();
-}
-
-void copy_depth(const DepthTile& tile, ImageFloat& image) {
-    static constexpr std::array<float, kBlock> kNothing{};
-    const PixelRect& rect = tile.rect();
-    for (int y = rect.y0; y < rect.y1; y += kBlock) {
-        const std::size_t first = tile.sample_index(rect.x0, y) / kBlockSamples;
-        const auto row_of = [&](std::size_t column, std::size_t row) {
-            return tile.drawn(first + column) ? tile.reversed_depth() + (first + column) * kBlockSamples + row * kBlock
-                                              : kNothing.data();
-        };
-        copy_blocks(rect, y, row_of, image);
-    }
-    finish_streams();
-}
 
 /// Shades a tile's pixels packet by packet and stores them in the image. The background is black.
 class TileDisplay {
@@ -150,14 +100,6 @@ void display_tile(const RasterSceneData& data, const ShaderProgram& program, con
     DepthTile tile;
     rasterize_drawn_blocks(geometry, view, view.samples.front(), rect, index, tile);
     TileDisplay(data, program, geometry, view, tile, image).run();
-}
-
-void render_depth_tile(const Geometry& geometry, const PassView& view, const PixelRect& rect, std::size_t index,
-                       ImageFloat& image) {
-    if (is_empty(geometry, index)) return fill(rect, 0.0f, image);
-    DepthTile depths;
-    rasterize_drawn_blocks(geometry, view, view.samples.front(), rect, index, depths);
-    copy_depth(depths, image);
 }
 
 void encode(const ImageRgb& radiance, int threads, Image<Rgba8>& image) {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/film/rendering.h"
-#include "raster/render.h"
+#include "raster/settings.h"
 #include "raster/shading/sample_attributes.h"
 
 #include <atomic>

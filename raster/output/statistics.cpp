@@ -75,7 +75,9 @@ void list_shadow_approximations(const RasterSceneData& data, const RasterSetting
         result.push_back(message("The ", data.shadows->unshadowed(), " weakest lights are unshadowed."));
 }
 
-std::vector<std::string> list_approximations(const RasterSceneData& data, const RasterSettings& settings) {
+} // namespace
+
+std::vector<std::string> approximations(const RasterSceneData& data, const RasterSettings& settings) {
     const Scene& scene = data.scene;
     const SceneNeeds& needs = scene.needs;
     std::vector<std::string> result;
@@ -116,12 +118,6 @@ std::vector<std::string> list_approximations(const RasterSceneData& data, const 
     add_if(parts.direct && data.unsampled_emitters,
            "Emissive surfaces that move, and stretched spheres, are visible but light nothing.");
     return result;
-}
-
-} // namespace
-
-std::vector<std::string> approximations(const RasterScene& prepared, const RasterSettings& settings) {
-    return list_approximations(prepared.data(), settings);
 }
 
 void StatisticsCollector::add(const Geometry& geometry) {
@@ -176,7 +172,7 @@ void fill_statistics(RenderStatistics& statistics, const RasterSceneData& data, 
         data.memory_bytes +
         static_cast<std::int64_t>(collector.geometry_bytes + collector.gbuffer_bytes + collector.framebuffer_bytes);
     statistics.skipped = list_skipped(data, settings, collector.culled);
-    statistics.approximations = list_approximations(data, settings);
+    statistics.approximations = approximations(data, settings);
 }
 
 } // namespace duet::raster

@@ -38,6 +38,8 @@ struct StatisticsCollector {
     std::vector<std::pair<std::string, double>> seconds() const;
 };
 
+/// See raster/render.h.
+std::vector<std::string> approximations(const RasterSceneData& data, const RasterSettings& settings);
 /// Fills in all statistics but the number of invalid samples, which the Framebuffer counts.
 void fill_statistics(RenderStatistics& statistics, const RasterSceneData& data, const RasterSettings& settings,
                      const StatisticsCollector& collector, const std::vector<Pass>& passes, const TileGrid& grid);

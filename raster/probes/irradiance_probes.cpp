@@ -1,6 +1,6 @@
 #include "raster/probes/irradiance_probes.h"
 
-#include "raster/lighting/lane_math.h"
+#include "raster/geometry/lane_math.h"
 #include "raster/probes/solid_test.h"
 #include "raster/visibility/shader.h"
 

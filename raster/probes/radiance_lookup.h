@@ -13,8 +13,7 @@ namespace duet::raster {
 class RadianceLookup {
 public:
     /// `probes` may be null: the environment alone arrives. `image` is the radiance of the pixels without what is
-    /// looked
-    /// up here.
+    /// looked up here.
     RadianceLookup(const RasterSceneData& data, const GBuffer& gbuffer, const ReflectionProbes* probes,
                    const Planes3& image, int x, int y);
 

@@ -1,13 +1,5 @@
 #include "raster/probes/reflection_probes.h"
 
-#include "raster/probes/indirect_light.h"
-#include "raster/probes/reflections.h"
-
-#include "common/system/parallel.h"
-
-#include <algorithm>
-#include <set>
-
 namespace duet::raster {
 namespace {
 
@@ -16,85 +8,7 @@ using Vec3s = Vec3T<Floats>;
 /// Steps that a ray takes from impostor to impostor. Three bring most rays within a texel.
 constexpr int kSteps = 4;
 
-bool any_reflects(const Scene& scene, const Object& object) {
-    return std::any_of(object.materials.begin(), object.materials.end(),
-                       [&](std::uint32_t material) { return reflects(scene.materials[material]); });
-}
-
-struct Site {
-    Vec3d center;
-    std::vector<std::uint32_t> excluded; ///< objects that the probe does not see, in order
-    std::uint32_t object = kNoObject;    ///< whose own probe it is
-};
-
-/// Returns the objects that reflect, the largest first.
-std::vector<std::uint32_t> reflecting_objects(const RasterSceneData& data) {
-    std::vector<std::uint32_t> objects;
-    for (std::uint32_t i = 0; i < data.scene.objects.size(); ++i)
-        if (any_reflects(data.scene, data.scene.objects[i])) objects.push_back(i);
-    const auto size = [&](std::uint32_t i) { return length(data.objects[i].bounds.diagonal()); };
-    std::stable_sort(objects.begin(), objects.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return size(a) > size(b); });
-    return objects;
-}
-
-std::vector<Site> sites_of(const RasterSceneData& data) {
-    std::vector<Site> sites;
-    for (const std::uint32_t object : reflecting_objects(data)) {
-        if (sites.size() == ReflectionProbes::kMostProbes) break;
-        std::set<std::uint32_t> excluded(data.glass.begin(), data.glass.end());
-        excluded.insert(object);
-        sites.push_back({Vec3d(data.objects[object].bounds.center()), {excluded.begin(), excluded.end()}, object});
-    }
-    return sites;
-}
-
-/// Adds what a capture's surfaces reflect of the light between surfaces, and of the environment in their highlights.
-void add_reflected_light(const RasterSceneData& data, RasterSettings settings, ProbeCapture& capture) {
-    settings.threads = 1;
-    for (ProbeCapture::Face& face : capture.faces()) {
-        if (data.irradiance_probes)
-            add_indirect_light(settings, face.gbuffer, *data.irradiance_probes, face.direct);
-        add_reflections(data, settings, face.gbuffer, nullptr, face.direct);
-    }
-}
-
-RadianceMap radiance_map(const ProbeCapture& capture, int threads) {
-    const auto arriving = [&](Vec3 w) {
-        const ProbeCapture::Pixel pixel = capture.pixel(w);
-        const ProbeCapture::Face& face = capture.faces()[pixel.face];
-        const Rgb emitted = face.emission.color_at(pixel.x, pixel.y);
-        return RadianceMap::Arriving{face.direct.color_at(pixel.x, pixel.y) + emitted, emitted,
-                                     capture.distance(pixel)};
-    };
-    return RadianceMap(ReflectionProbes::kSide, arriving, threads);
-}
-
 } // namespace
-
-bool reflects(const Material& material) {
-    return !std::holds_alternative<Diffuse>(material) && !std::holds_alternative<Emissive>(material);
-}
-
-ReflectionProbes::ReflectionProbes(const RasterSceneData& data, const RasterSettings& settings) {
-    const std::vector<Site> sites = sites_of(data);
-    if (sites.empty()) return;
-    probes_.resize(sites.size());
-    parallel_for(sites.size(), settings.threads, [&](std::size_t i) {
-        ProbeCapture capture(data, settings, sites[i].center, kSide / 2, sites[i].excluded);
-        add_reflected_light(data, settings, capture);
-        probes_[i] = {sites[i].center, radiance_map(capture, 1)};
-    });
-    for (std::uint32_t object = 0; object < data.scene.objects.size(); ++object) {
-        const Vec3d center(data.objects[object].bounds.center());
-        const auto rank = [&](const Site& site) {
-            return std::pair(site.object != object, length(site.center - center));
-        };
-        const auto nearest = std::min_element(sites.begin(), sites.end(),
-                                              [&](const Site& a, const Site& b) { return rank(a) < rank(b); });
-        of_object_.push_back(static_cast<std::size_t>(nearest - sites.begin()));
-    }
-}
 
 Vec3s ReflectionProbes::trace(std::size_t probe, const Vec3d& eye, const Vec3s& p, const Vec3s& w) const {
     const Vec3 offset(eye - probes_[probe].center);

@@ -14,7 +14,8 @@ namespace duet::raster {
 /// center, which does not see them; all others use the nearest probe.
 class ReflectionProbes {
 public:
-    /// `data` must have its irradiance probes, if the settings want them.
+    /// Renders the probes (raster/probes/render_reflection_probes.cpp). `data` must have its irradiance probes, if the
+    /// settings want them.
     ReflectionProbes(const RasterSceneData& data, const RasterSettings& settings);
 
     /// Returns the probe of an object.

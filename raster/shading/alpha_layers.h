@@ -8,6 +8,8 @@
 
 namespace duet::raster {
 
+class ShaderProgram; // raster/shader/packet_shader.h
+
 /// Holds the transparent layers of a tile, one sample per pixel. Each pixel has a list of Hits in front of its
 /// visible surface (raster/visibility/hit_lists.h). Hits of zero opacity are skipped. The first fully opaque hit
 /// becomes the visible surface. Those in front of it are blended with the "over" operator (Porter and Duff 1984).

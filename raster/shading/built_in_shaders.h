@@ -1,12 +1,17 @@
 // Implements the built-in shadings as programs.
 #pragma once
 
-#include "raster/render.h"
+#include "raster/settings.h"
 #include "raster/shader/packet_shader.h"
 
 #include <memory>
 
 namespace duet::raster {
+
+/// Returns the shading of a name that shading_names() lists ("lit", "phong" …). Throws Error for any other name.
+Shading parse_shading(std::string_view name);
+/// Returns the list of names, "lit, phong … or depth".
+std::string shading_names();
 
 /// Returns the program of a shading for a camera; null for Shading::kLit, which has no program
 /// (raster/shading/sample_attributes.h).

@@ -10,6 +10,7 @@
 #include "raster/shadows/map_shadows.h"
 #include "raster/lighting/shadow_filter.h"
 
+#include "common/system/control.h"
 #include "common/system/stopwatch.h"
 
 namespace duet::raster {

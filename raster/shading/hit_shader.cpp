@@ -7,8 +7,8 @@
 
 namespace duet::raster {
 
-HitShader::HitShader(const RasterScene& prepared, const View& view, const RasterSettings& settings)
-    : data_(prepared.data()), settings_(settings), projection_(CameraModel(view).pinhole(), {}),
+HitShader::HitShader(const RasterSceneData& data, const View& view, const RasterSettings& settings)
+    : data_(data), settings_(settings), projection_(CameraModel(view).pinhole(), {}),
       time_(static_cast<float>(view.camera.shutter_open)) {
     frame_.start(data_.scene, projection_, view.width, view.height);
     frame_.gbuffer->position = Planes3(view.width, view.height);

@@ -1,7 +1,7 @@
 // Deferred shading of hits that the caller has found, along its own rays.
 #pragma once
 
-#include "raster/render.h"
+#include "raster/settings.h"
 #include "raster/shading/deferred.h"
 
 #include "common/scene/scene.h"
@@ -14,7 +14,7 @@ namespace duet::raster {
 class HitShader {
 public:
     /// `prepared` must outlive this object. All pixels are background until they are set.
-    HitShader(const RasterScene& prepared, const View& view, const RasterSettings& settings);
+    HitShader(const RasterSceneData& data, const View& view, const RasterSettings& settings);
 
     /// Sets the surface that a pixel's ray meets. Its direction must be unit. Different pixels may be set concurrently.
     void set(int x, int y, const Ray& ray, const SurfacePoint& point, const Bsdf& bsdf);

@@ -1,17 +1,12 @@
 #include "raster/shadows/shadow_map.h"
 
-#include "raster/raster_scene.h"
+#include "raster/visibility/depth_image.h"
 
 namespace duet::raster {
 
-ShadowMap::ShadowMap(const RasterScene& casters, const Camera& camera, int side, int threads)
+ShadowMap::ShadowMap(const RasterSceneData& casters, const Camera& camera, int side, int threads)
     : view_(CameraModel({camera, side, side}).pinhole()),
-      orthographic_(camera.projection == Camera::Projection::kOrthographic), dithered_(casters.data().has_layers()) {
-    RasterSettings settings;
-    settings.output = Output::kReversedDepth;
-    settings.threads = threads;
-    Control control;
-    reversed_depth_ = std::move(render(casters, {camera, side, side}, settings, control).reversed_depth);
-}
+      orthographic_(camera.projection == Camera::Projection::kOrthographic), dithered_(casters.has_layers()),
+      reversed_depth_(render_depth(casters, {camera, side, side}, threads)) {}
 
 } // namespace duet::raster

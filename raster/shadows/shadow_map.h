@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/image/image.h"
-#include "raster/render.h"
+#include "raster/raster_scene.h"
 
 namespace duet::raster {
 
@@ -11,7 +11,7 @@ namespace duet::raster {
 class ShadowMap {
 public:
     /// Renders the depths of `casters` into side × side texels.
-    ShadowMap(const RasterScene& casters, const Camera& camera, int side, int threads);
+    ShadowMap(const RasterSceneData& casters, const Camera& camera, int side, int threads);
 
     static constexpr double kFilterRadius = 1.5; ///< texels to each side over which a lookup blurs an edge
     static constexpr double kMargin = 2.5;       ///< texels that a lookup needs around its position
@@ -23,7 +23,7 @@ public:
     float reversed_depth(int x, int y) const { return reversed_depth_(x, y); }
     const ImageFloat& reversed_depth() const { return reversed_depth_; }
     double near() const { return view_.near; }
-    /// Returns whether alpha-blended casters are dithered over 4 × 4 texels (raster/output/alpha_depth.h).
+    /// Returns whether alpha-blended casters are dithered over 4 × 4 texels (raster/visibility/depth_image.h).
     bool dithered() const { return dithered_; }
 
 private:

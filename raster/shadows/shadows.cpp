@@ -1,6 +1,7 @@
 #include "raster/shadows/shadows.h"
 
 #include "raster/gbuffer/screen_projection.h"
+#include "raster/visibility/depth_image.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +11,7 @@ namespace duet::raster {
 namespace {
 
 constexpr int kVisiblePointsWidth = 256;             ///< pixels
-constexpr double kGuard = 4;                         ///< texels
+constexpr double kGuardTexels = 4;                         ///< texels
 constexpr std::int64_t kCubeTexels = 64 * (1 << 20); ///< over all cubes, at most
 constexpr std::int64_t kViewTexels = 128 * (1 << 20); ///< over all other maps, at most
 constexpr int kMinSide = 64;                          ///< texels, of any map
@@ -33,10 +34,6 @@ RasterSceneData select_objects(const RasterSceneData& data, const std::vector<bo
     select(data.alpha_polygonal, result.alpha_polygonal);
     select(data.alpha_spheres, result.alpha_spheres);
     return result;
-}
-
-RasterScene caster_scene(const RasterSceneData& data, const std::vector<bool>& selected) {
-    return RasterScene(std::make_shared<const RasterSceneData>(select_objects(data, selected)));
 }
 
 Box3 bounds_of(const RasterSceneData& data, const std::vector<bool>& selected) {
@@ -80,13 +77,8 @@ std::vector<VisiblePoint> visible_points(const RasterSceneData& data, int thread
     const double aspect = static_cast<double>(scene.height) / scene.width;
     const View view{scene.camera, kVisiblePointsWidth,
                     static_cast<int>(std::clamp(kVisiblePointsWidth * aspect, 1.0, 4.0 * kVisiblePointsWidth))};
-    RasterSettings settings;
-    settings.output = Output::kReversedDepth;
-    settings.threads = threads;
-    Control control;
-    const RasterScene all = caster_scene(data, std::vector<bool>(scene.objects.size(), true));
     const ScreenProjection projection(CameraModel(view).pinhole(), {});
-    const ImageFloat reversed_depth = render(all, view, settings, control).reversed_depth;
+    const ImageFloat reversed_depth = render_depth(data, view, threads);
     std::vector<VisiblePoint> result;
     for (int y = 0; y < view.height; ++y)
         for (int x = 0; x < view.width; ++x)
@@ -156,14 +148,14 @@ Shadows::Shadows(const RasterSceneData& data, const RasterSettings& settings)
 std::vector<Camera> Shadows::views_of(const RasterSceneData& data, const std::vector<VisiblePoint>& visible,
                                       const Source& source) const {
     const Light& light = scene_.lights[source.lights.front()];
-    if (const auto* spot = std::get_if<SpotLight>(&light)) return spot_views(*spot, scene_size_, side_, kGuard);
+    if (const auto* spot = std::get_if<SpotLight>(&light)) return spot_views(*spot, scene_size_, side_, kGuardTexels);
     const auto* sun = std::get_if<SunLight>(&light);
     if (sun == nullptr) return {};
     std::vector<bool> casts(scene_.objects.size());
     for (std::uint32_t i = 0; i < casts.size(); ++i) casts[i] = !is_floor(scene_, i, sun->direction);
     const Box3 bounds = bounds_of(data, casts);
     if (bounds.empty()) return {};
-    return sun_views(*sun, bounds, scene_.camera, visible, side_, kGuard);
+    return sun_views(*sun, bounds, scene_.camera, visible, side_, kGuardTexels);
 }
 
 /// Halves the resolution of the maps until they take at most kViewTexels and kCubeTexels.
@@ -219,7 +211,7 @@ void Shadows::draw(const RasterSceneData& data, const RasterSettings& settings, 
     std::vector<bool> selected(scene_.objects.size(), true);
     const Light& light = scene_.lights[source.lights.front()];
     if (!views.empty()) {
-        const RasterScene casters = caster_scene(data, selected);
+        const RasterSceneData casters = select_objects(data, selected);
         for (Camera camera : views) {
             camera.shutter_open = camera.shutter_close = moment;
             maps.views.emplace_back(casters, camera, side_, settings.threads);
@@ -233,13 +225,13 @@ void Shadows::draw(const RasterSceneData& data, const RasterSettings& settings, 
         const auto* spot = std::get_if<SpotLight>(&light);
         const Vec3d center(spot != nullptr ? spot->position : std::get<PointLight>(light).position);
         maps.cubes.push_back(
-            draw_cube(caster_scene(data, selected), center, nullptr, true, moment, cube_side_, settings.threads));
+            draw_cube(select_objects(data, selected), center, nullptr, true, moment, cube_side_, settings.threads));
         return;
     }
 
     const SurfaceLight& surface = *surface_light;
     if (source.emits_only) selected[surface.object] = false;
-    const RasterScene casters = caster_scene(data, selected);
+    const RasterSceneData casters = select_objects(data, selected);
     for (const Emitter& cell : source.cells) {
         const bool flat = cell.kind != Emitter::Kind::kSphere;
         // Other objects may lie in the light's plane, so the camera is slightly in front of it.
@@ -249,7 +241,7 @@ void Shadows::draw(const RasterSceneData& data, const RasterSettings& settings, 
     }
 }
 
-CubeMap Shadows::draw_cube(const RasterScene& casters, Vec3d center, const Emitter* plane, bool back, double moment,
+CubeMap Shadows::draw_cube(const RasterSceneData& casters, Vec3d center, const Emitter* plane, bool back, double moment,
                            int side, int threads) {
     CubeMap cube;
     cube.center = Vec3d(Vec3(center)); // rounded as the camera rounds it

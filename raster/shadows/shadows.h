@@ -65,7 +65,7 @@ private:
     void draw(const RasterSceneData& data, const RasterSettings& settings, std::span<const Camera> views,
               Source& source, double moment, Maps& maps);
     /// `plane` is a planar emitter, or null; `back` says whether it also emits on its back side.
-    CubeMap draw_cube(const RasterScene& casters, Vec3d center, const Emitter* plane, bool back, double moment,
+    CubeMap draw_cube(const RasterSceneData& casters, Vec3d center, const Emitter* plane, bool back, double moment,
                       int side, int threads);
 
     const Scene& scene_;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/system/parallel.h"
-#include "raytrace/acceleration/bvh_build.h"
+#include "raytrace/acceleration/bvh_items.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,7 +1,6 @@
 // Paths are traced for a sum of light, for its components, or for a log of each step.
 #include "raytrace/integrator/path.h"
 
-#include "raytrace/integrator/path_contributions.h"
 #include "raytrace/integrator/path_log.h"
 
 namespace duet::raytrace {
@@ -36,14 +35,14 @@ private:
 };
 
 // This sink adds up the light and logs each step.
-template <typename Log> class LoggingSink : public RadianceSum {
+class LoggingSink : public RadianceSum {
 public:
     static constexpr bool kLogsEvents = true;
-    explicit LoggingSink(Log& log) : log_(log) {}
-    Log& log() { return log_; }
+    explicit LoggingSink(PathLog& log) : log_(log) {}
+    PathLog& log() { return log_; }
 
 private:
-    Log& log_;
+    PathLog& log_;
 };
 
 template <typename Sink>
@@ -62,12 +61,6 @@ Rgb path_radiance(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sample
 Rgb logged_path_radiance(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, PathLog& log) {
     RayCounts counts;
     return trace_path(plan, ray, hit, sampler, counts, LoggingSink(log));
-}
-
-void record_path_contributions(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler,
-                               PathContributions& contributions) {
-    RayCounts counts;
-    trace_path(plan, ray, hit, sampler, counts, LoggingSink(contributions));
 }
 
 LightComponents path_components(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler,

@@ -72,9 +72,10 @@ template <typename T> struct RouletteT {
     MaskOf<T> survives;
 };
 /// Decides by Russian roulette with the random number u whether the path continues, and weights survivors up for the
-/// paths that end. `survival_factor` is RenderPlan::survival_factor.
-template <typename T> inline RouletteT<T> russian_roulette(float survival_factor, T u, PathThroughputT<T>& path) {
-    const T probability = survival(path.throughput, path.refraction, T(survival_factor));
+/// paths that end. The throughput is taken without the factor of refraction. A path with a throughput of at least
+/// 1 / kSurvivalFactor continues for certain.
+template <typename T> inline RouletteT<T> russian_roulette(T u, PathThroughputT<T>& path) {
+    const T probability = max_component(path.throughput) * T(kSurvivalFactor) / path.refraction;
     const MaskOf<T> certain = !(probability < T(1)); // NaN survives, too, so that it is counted as invalid
     if (all(certain)) return {probability, certain};
     path.throughput *= select(certain, T(1), T(1) / probability);
@@ -255,7 +256,7 @@ private:
     }
 
     bool survives(float u) {
-        const auto [probability, survives] = russian_roulette(plan_.survival_factor, u, state_);
+        const auto [probability, survives] = russian_roulette(u, state_);
         if constexpr (Sink::kLogsEvents)
             if (probability < 1) sink_.log().roulette(probability, survives);
         counts_.ended += !survives;

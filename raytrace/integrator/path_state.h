@@ -22,11 +22,4 @@ struct PathState : PathThroughputT<float> {
     PreviousVertex previous_vertex;
 };
 
-/// Returns the probability with which Russian roulette continues a path, where it is below 1. Survivors are weighted
-/// up for the paths that end. `survival_factor` is RenderPlan::survival_factor. The throughput is taken without the
-/// factor of refraction. T is float or a batch of floats.
-template <typename T> T survival(RgbT<T> throughput, T refraction, T survival_factor) {
-    return max_component(throughput) * survival_factor / refraction;
-}
-
 } // namespace duet::raytrace

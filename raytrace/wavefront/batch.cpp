@@ -124,7 +124,7 @@ public:
         const ScatteringT<Floats> next = scatter(vertex_, u, path_);
         unsigned continuing = lane_bits(next.continues);
         if (plan_.russian_roulette && depth > 0) {
-            const unsigned survivors = lane_bits(russian_roulette(plan_.survival_factor, u.roulette, path_).survives);
+            const unsigned survivors = lane_bits(russian_roulette(u.roulette, path_).survives);
             const unsigned used_lanes = (1u << paths_.size()) - 1;
             counts.ended += std::popcount(continuing & ~survivors & used_lanes);
             continuing &= survivors;

@@ -4,7 +4,7 @@
 #include "common/image/rgb.h"
 #include "common/vec/robust_batch.h"
 #include "common/vec/widen.h"
-#include "raytrace/wavefront/batch.h"
+#include "raytrace/wavefront/batch_path.h"
 
 #include <array>
 #include <span>

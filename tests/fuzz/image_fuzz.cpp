@@ -1,5 +1,5 @@
 // This fuzz target decodes any bytes as an image. Each reader must return pixels or throw Error, nothing else.
-#include "common/image/formats.h"
+#include "common/image/image_file.h"
 
 #include <cstdlib>
 

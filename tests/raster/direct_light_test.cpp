@@ -15,6 +15,7 @@
 #include "raster/lighting/sphere_light.h"
 
 #include "common/system/control.h"
+#include "raster/render.h"
 
 #include <doctest/doctest.h>
 

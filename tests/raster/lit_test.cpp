@@ -1,4 +1,5 @@
 // These tests compare the shading of simple scenes with closed forms.
+#include "raster/shading/built_in_shaders.h"
 #include "tests/raster/scenes.h"
 
 #include <doctest/doctest.h>

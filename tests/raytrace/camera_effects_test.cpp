@@ -1,4 +1,5 @@
 // These tests compare motion blur and depth of field with geometry.
+#include "raytrace/render.h"
 #include "tests/raytrace/estimates.h"
 #include "tests/raytrace/scene_builder.h"
 

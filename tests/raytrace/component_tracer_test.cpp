@@ -1,6 +1,7 @@
 // These tests check that the path tracer's light components add up to the image and that each has the correct value.
 #include "raytrace/component_tracer.h"
 
+#include "raytrace/render.h"
 #include "tests/raytrace/estimates.h"
 #include "tests/raytrace/scene_builder.h"
 

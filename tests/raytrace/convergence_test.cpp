@@ -1,5 +1,6 @@
 // These tests check that errors decrease with the sample count at the expected rate, up to 65,536 samples, without a
 // lower limit. The reference images are known in double precision.
+#include "raytrace/render.h"
 #include "tests/raytrace/estimates.h"
 #include "tests/raytrace/integrating_sphere.h"
 

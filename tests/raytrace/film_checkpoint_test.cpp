@@ -3,6 +3,7 @@
 
 #include "common/image/image_file.h"
 #include "raytrace/merge_films.h"
+#include "raytrace/render.h"
 #include "tests/raytrace/scene_builder.h"
 #include "tests/support/errors.h"
 #include "tests/support/scratch.h"

@@ -1,5 +1,6 @@
 // These tests trace batches of incoherent rays among few and many spheres. The hits must equal those of single rays,
 // bit for bit.
+#include "raytrace/render.h"
 #include "raytrace/render_pass.h"
 
 #include "common/sampling/sampler.h"

@@ -2,6 +2,7 @@
 #include "raytrace/integrator/medium_stack.h"
 #include "raytrace/integrator/vertex.h"
 
+#include "raytrace/render.h"
 #include "tests/raytrace/estimates.h"
 #include "tests/raytrace/scene_builder.h"
 

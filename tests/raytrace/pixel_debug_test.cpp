@@ -2,6 +2,7 @@
 #include "raytrace/pixel_debug.h"
 
 #include "common/system/error.h"
+#include "raytrace/render.h"
 #include "tests/raytrace/scene_builder.h"
 #include "tests/support/errors.h"
 

@@ -1,5 +1,6 @@
 // These tests check the render loop: the same bits for any thread count, limits, interruption, AOVs and statistics.
 #include "common/system/error.h"
+#include "raytrace/render.h"
 #include "raytrace/render_pass.h"
 #include "tests/raytrace/estimates.h"
 #include "tests/raytrace/scene_builder.h"

@@ -1,4 +1,5 @@
 // These tests check how many samples pixels get: passes, limits, and adaptive sampling by error.
+#include "raytrace/render.h"
 #include "raytrace/sample_schedule.h"
 
 #include "tests/raytrace/scene_builder.h"

@@ -1,5 +1,6 @@
 // These tests check the shading-terminator fix: smooth normals on coarse meshes must give a smooth boundary between
 // light and shadow.
+#include "raytrace/render.h"
 #include "tests/raytrace/estimates.h"
 #include "tests/raytrace/scene_builder.h"
 

@@ -1,6 +1,7 @@
 // These tests check that batched path tracing with SIMD lanes and ray packets gives the same bits as tracing each
 // path separately.
 #include "raytrace/integrator/integrator.h"
+#include "raytrace/render.h"
 #include "raytrace/render_pass.h"
 
 #include "common/image/bitwise_equal.h"

@@ -9,16 +9,8 @@ namespace duet {
 
 /// A scene may have at most this many objects, including intermediate groups and instances.
 inline constexpr std::size_t kMaxObjects = 10'000'000;
-/// Groups and instances may be nested at most this deep.
-inline constexpr std::size_t kMaxGroupDepth = 64;
-
 /// Appends the objects of the array to the scene, with their shapes and the materials of their MTL files. Groups and
 /// instances are flattened, and their transforms are composed in double. Members are named "group/member".
 void read_objects(const JsonValue& objects, const NameIndex& materials, ImageCache& images, Scene& scene);
-
-/// Appends a mesh's materials and textures to the scene. Returns the scene's material index of each slot. The
-/// materials are named "stem:name".
-std::vector<std::uint32_t> add_obj_materials(const std::filesystem::path& file, const struct ObjFile& obj,
-                                             ImageCache& images, Scene& scene);
 
 } // namespace duet

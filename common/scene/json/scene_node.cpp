@@ -1,8 +1,7 @@
 #include "common/scene/json/scene_node.h"
 
-#include "common/scene/json/read_objects.h"
 #include "common/scene/json/scene_keys.h"
-#include "common/scene/obj/load_obj.h"
+#include "common/scene/obj/add_obj_materials.h"
 #include "common/system/error.h"
 
 namespace duet {

@@ -14,6 +14,9 @@
 
 namespace duet {
 
+/// Groups and instances may be nested at most this deep.
+inline constexpr std::size_t kMaxGroupDepth = 64;
+
 /// A SceneNode is one entry of "objects": a shape with its materials, a group of members, or an instance of a group.
 struct SceneNode {
     std::string name;   ///< name in the file, or a generated one such as "sphere-3"

@@ -2,13 +2,23 @@
 // has the table.
 #pragma once
 
-#include "common/scene/obj/load_obj.h"
+#include "common/image/channel_selection.h"
+#include "common/material/material.h"
+#include "common/material/surface_maps.h"
 
+#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
 
 namespace duet {
+
+/// An ObjTexture is an image that a material uses.
+struct ObjTexture {
+    std::filesystem::path file;
+    Vec2 scale{1, 1};
+    ChannelSelection selection{};
+};
 
 /// An MtlMaterial is a material of an MTL file with the images that it uses.
 struct MtlMaterial {

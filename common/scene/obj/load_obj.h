@@ -3,9 +3,7 @@
 #pragma once
 
 #include "common/geometry/shape.h"
-#include "common/image/channel_selection.h"
-#include "common/material/material.h"
-#include "common/material/surface_maps.h"
+#include "common/scene/obj/load_mtl.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -24,13 +22,6 @@ enum class MeshNormals {
 struct ObjOptions {
     MeshNormals normals = MeshNormals::kFile;
     bool materials = true; ///< false: no MTL file is read, and the mesh has one material slot
-};
-
-/// An ObjTexture is an image that a material uses.
-struct ObjTexture {
-    std::filesystem::path file;
-    Vec2 scale{1, 1};
-    ChannelSelection selection{};
 };
 
 struct ObjMaterial {

@@ -1,4 +1,5 @@
 // These tests check the sampling of spherical triangles and rectangles, near and far and at any slant.
+#include "common/light/light.h"
 #include "common/light/solid_angle.h"
 #include "common/light/spherical_rectangle.h"
 #include "common/light/spherical_triangle.h"

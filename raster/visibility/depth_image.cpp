@@ -1,0 +1,101 @@
+#include "raster/visibility/depth_image.h"
+
+#include "raster/visibility/hit_lists.h"
+#include "raster/visibility/image_blocks.h"
+#include "raster/visibility/packet_primitives.h"
+
+#include "common/sampling/hash.h"
+#include "common/system/parallel.h"
+
+namespace duet::raster {
+namespace {
+
+/// Returns the dither threshold of a texel, in [0, 1): a rank of Bayer's matrix (1973, "An Optimum Method for
+/// Two-Level Rendition of Continuous-Tone Images") plus a hash within its step of 1/16, so that the mean is exact
+/// for every opacity.
+float dither(int x, int y) {
+    const auto column = static_cast<std::uint32_t>(x), row = static_cast<std::uint32_t>(y), odd = column ^ row;
+    const std::uint32_t rank = (odd & 1) << 3 | (row & 1) << 2 | (odd & 2) | (row & 2) >> 1;
+    return unit_float(rank << 28 | high_bits(hash_combine(column, row)) >> 4);
+}
+
+/// Returns a tile whose hits lie at the given reversed depths. Only their distances are set, because no object is
+/// needed.
+HitTile rays_to(const ImageFloat& reversed_depth, const Geometry& geometry, const PassView& view, SampleOffset offset,
+                const PixelRect& rect) {
+    DepthTile nothing;
+    nothing.reset(rect, offset, view.viewport);
+    nothing.clear_undrawn();
+    HitTile tile(nothing, geometry, view);
+    for (int y = rect.y0; y < rect.y1; ++y)
+        for (int x = rect.x0; x < rect.x1; ++x) {
+            if (!(reversed_depth(x, y) > 0)) continue;
+            const double depth = view.pinhole.near / static_cast<double>(reversed_depth(x, y));
+            tile.exchange(x, y, {.t = static_cast<float>(depth * tile.distance_per_depth(x, y))});
+        }
+    return tile;
+}
+
+void copy_depth(const DepthTile& tile, ImageFloat& image) {
+    static constexpr std::array<float, kBlock> kNothing{};
+    const PixelRect& rect = tile.rect();
+    for (int y = rect.y0; y < rect.y1; y += kBlock) {
+        const std::size_t first = tile.sample_index(rect.x0, y) / kBlockSamples;
+        const auto row_of = [&](std::size_t column, std::size_t row) {
+            return tile.drawn(first + column) ? tile.reversed_depth() + (first + column) * kBlockSamples + row * kBlock
+                                              : kNothing.data();
+        };
+        copy_blocks(rect, y, row_of, image);
+    }
+    finish_streams();
+}
+
+/// Stores the first alpha-masked or alpha-blended surface of each pixel that stops its light.
+void add_layers(const RasterSceneData& data, const Geometry& geometry, const Geometry& layers, const PassView& view,
+                const PixelRect& rect, std::size_t index, ImageFloat& image) {
+    const SampleOffset offset = view.samples.front();
+    HitTile tile = rays_to(image, geometry, view, offset, rect);
+    HitLists lists(layers, view, offset, index, tile);
+    const auto by_threshold = [](int x, int y, float left) { return 1 - left > dither(x, y); };
+    lists.for_each_blocking_hit(data.scene, by_threshold, [&](int x, int y, const Hit& hit) {
+        tile.exchange(x, y, hit);
+        image(x, y) = tile.reversed_depth(x, y);
+    });
+}
+
+} // namespace
+
+void render_depth_tile(const RasterSceneData& data, const Geometry& geometry, const Geometry* layers,
+                       const PassView& view, const PixelRect& rect, std::size_t index, ImageFloat& image) {
+    if (is_empty(geometry, index)) {
+        fill(rect, 0.0f, image);
+    } else {
+        DepthTile depths;
+        rasterize_drawn_blocks(geometry, view, view.samples.front(), rect, index, depths);
+        copy_depth(depths, image);
+    }
+    if (layers != nullptr && overlaps_tile(*layers, index))
+        add_layers(data, geometry, *layers, view, rect, index, image);
+}
+
+ImageFloat render_depth(const RasterSceneData& data, const View& view, int threads) {
+    RasterSettings settings;
+    settings.threads = threads;
+    const Pinhole pinhole = CameraModel(view).pinhole();
+    const std::vector<SampleOffset> samples{SampleOffset{}};
+    const PassView pass{.pinhole = pinhole,
+                        .time = static_cast<float>(view.camera.shutter_open),
+                        .viewport = viewport_of(view, pinhole),
+                        .samples = samples};
+    const TileGrid grid{{0, 0, view.width, view.height}};
+    PooledGeometry geometry(*data.geometries), layers(*data.geometries);
+    process_geometry(data, grid, pass, settings, *geometry);
+    if (data.has_layers()) process_layers(data, grid, pass, settings, *layers);
+    ImageFloat image(view.width, view.height);
+    parallel_for(grid.size(), threads, [&](std::size_t i) {
+        render_depth_tile(data, *geometry, data.has_layers() ? &*layers : nullptr, pass, grid.tile(i), i, image);
+    });
+    return image;
+}
+
+} // namespace duet::raster
