@@ -12,7 +12,7 @@ Subcommand add_images(CLI::App& app) {
     CLI::App* images = app.add_subcommand("images", "Compare two image files");
     const auto all = std::make_shared<ImagesOptions>();
     ImagesOptions& options = *all;
-    images->add_option("A", options.a, "A image (PNG, JPEG, TGA, PPM, PFM, HDR, EXR)")->required();
+    images->add_option("A", options.a, "An image (PNG, JPEG, TGA, PPM, PFM, HDR, EXR)")->required();
     images->add_option("B", options.reference, "The reference, of the same size")->required();
     images
         ->add_option("--fail-above", options.limits,

@@ -150,6 +150,7 @@ RasterScene prepare(const Scene& scene, const RasterSettings& settings) {
         const Object& object = scene.objects[i];
         const Shape& shape = scene.shapes[object.shape];
         data.objects.push_back(prepare_object(scene, object));
+        data.emits.push_back(any_emissive(scene, object) ? 1 : 0);
         const bool sphere = std::holds_alternative<Sphere>(shape);
         if (can_be_seen_through(scene, object))
             (sphere ? data.alpha_spheres : data.alpha_polygonal).push_back(i);

@@ -78,7 +78,7 @@ std::vector<SkippedWork> skipped(const RenderPlan& plan, const PathTracerSetting
     if (!plan.scene.needs.alpha) skip("opacity tests", "no material has holes");
     if (!plan.scene.needs.normal_maps) skip("normal maps", "no material has one");
     if (!plan.needs_medium_stack) skip("insides", "no glass absorbs, or stands in other glass");
-    if (!plan.pixel_footprint) skip("texture footprints", "no material has a image that is filtered");
+    if (!plan.pixel_footprint) skip("texture footprints", "no material has an image that is filtered");
     if (!plan.lens) skip("lens samples", "the camera has no aperture");
     if (!plan.motion) skip("time samples", "nothing moves");
     if (!plan.scene.needs.instances && !plan.motion) skip("instance transforms", "all objects stand in the world");

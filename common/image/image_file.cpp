@@ -72,7 +72,7 @@ private:
 } // namespace
 
 StoredImage decode_image(const ImageBytes& file, const std::string& extension) {
-    if (file.bytes.empty()) throw Error(message(file.name, ": empty file, expected a image"));
+    if (file.bytes.empty()) throw Error(message(file.name, ": empty file, expected an image"));
     for (const Reader& reader : kReaders)
         if (file.bytes.starts_with(reader.signature)) return reader.decode(file);
     if (extension == ".tga") return decode_tga(file);

@@ -144,7 +144,7 @@ template <typename Write> std::string encode_with(Write write, const ImageRgb& i
     const std::vector<std::uint8_t> bytes = srgb_encode_8bit(image);
     std::string file;
     if (write(&append, &file, image.width(), image.height(), 3, bytes.data()) == 0)
-        throw Error("a image cannot be encoded: out of memory", 1);
+        throw Error("an image cannot be encoded: out of memory", 1);
     return file;
 }
 

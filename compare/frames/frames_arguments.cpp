@@ -36,7 +36,7 @@ Subcommand add_frames(CLI::App& app) {
                      "Count the seconds of all processors instead of the clock's: on a machine that others use, too");
     frames->add_option(
         "--texture", options.texture,
-        "A image for base color, by the meshes' texture coordinates (default: gray); the rasterizer alone is "
+        "An image for base color, by the meshes' texture coordinates (default: gray); the rasterizer alone is "
         "measured with it");
     frames->add_flag("--no-peer", *no_peer, "Measure the rasterizer alone");
     frames->add_option("-o,--output", options.folder, "A folder for the images of both");

@@ -13,7 +13,8 @@ struct CodeFile {
     std::string_view path; ///< relative to the root of the sources
     int lines;             ///< neither blank nor comment only
 };
-/// Returns the files sorted by path. Each source of raster/ and raytrace/ is there once, but for main files and lessons.
+/// Returns the files sorted by path. Each source of raster/ and raytrace/ is there once, but for main files and
+/// lessons.
 std::span<const CodeFile> code_files();
 
 } // namespace duet::compare

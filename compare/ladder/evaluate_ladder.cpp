@@ -55,7 +55,8 @@ class LadderEvaluation {
 public:
     LadderEvaluation(const PreparedPair& pair, const View& view, LadderImages& images)
         : pair_(pair), view_(view), images_(images), tracer_(pair.raytrace, view, pair.raytrace_settings),
-          hits_(pair.raster.data(), view, pair.raster_settings), surfaces_(pair.raster.data(), view, pair.raster_settings),
+          hits_(pair.raster.data(), view, pair.raster_settings),
+          surfaces_(pair.raster.data(), view, pair.raster_settings),
           light_(view.width, view.height) {
         counts_.fill(Image<int>(view.width, view.height, 0));
     }

@@ -343,6 +343,12 @@ inline Floats gather(const float* from, const Ints& indices) {
     return Floats::load_aligned(result.data());
 #endif
 }
+inline Ints gather(const std::int32_t* from, const Ints& indices) {
+    alignas(64) std::array<std::int32_t, Ints::size> values;
+    indices.store_aligned(values.data());
+    for (std::int32_t& value : values) value = from[value];
+    return Ints::load_aligned(values.data());
+}
 /// Truncates towards zero.
 inline Ints truncated(const Floats& x) { return xsimd::batch_cast<std::int32_t>(x); }
 

@@ -1,5 +1,5 @@
-// This header declares the fit of the table in raster/lighting/ggx_table.h. The table is derived only from
-// common/material/ggx.h.
+// This header declares the fit of linearly transformed cosines to the GGX reflection lobe, by roughness and angle. The
+// table is derived only from common/material/ggx.h.
 #pragma once
 
 #include "raster/lighting/lobe_matrix.h"

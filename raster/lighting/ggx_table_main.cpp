@@ -1,4 +1,4 @@
-// This program writes the table of raster/lighting/ggx_table.h as a source file when the project is built.
+// This program writes the table of raster/lighting/ggx_fit.h as a source file when the project is built.
 #include "raster/lighting/ggx_fit.h"
 
 #include "common/system/table_generator.h"

@@ -12,7 +12,7 @@ template <typename T> struct CosineSpaceT {
     T xx, xz, yy, zx, zz;
     T determinant, gram_xx, gram_xz, gram_yy, gram_zz; ///< of M Mᵀ; the others are 0
 
-    /// The numbers are those of raster/lighting/ggx_table.h's LobeMatrix, which is the inverse up to its determinant.
+    /// The numbers are those of raster/lighting/lobe_matrix.h's LobeMatrix, which is the inverse up to its determinant.
     static CosineSpaceT of(T m11, T m13, T m22, T m31, T m33) {
         const T flat = m11 * m33 - m13 * m31;
         CosineSpaceT s{m33, -m13, flat / m22, -m31, m11, {}, {}, {}, {}, {}};

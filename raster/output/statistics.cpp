@@ -22,7 +22,7 @@ std::vector<SkippedWork> list_skipped(const RasterSceneData& data, const RasterS
     add_if(!needs.textures, "textures", "no material has one");
     add_if(!needs.lens, "lens", "the camera is a pinhole: all samples share one view");
     add_if(!needs.motion, "motion", "nothing moves: all samples share one moment");
-    add_if(!needs.footprints, "texture footprints", "no material has a image that is filtered");
+    add_if(!needs.footprints, "texture footprints", "no material has an image that is filtered");
     add_if(!needs.normal_maps, "normal maps", "no material has one");
     add_if(!needs.alpha, "transparent layers", "no material has holes or lets light through");
     add_if(!needs.spheres, "spheres", "the scene has none");

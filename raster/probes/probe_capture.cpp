@@ -42,7 +42,7 @@ ProbeCapture::Face capture(const RasterSceneData& data, const RasterSettings& se
     if (data.scene.lights.empty()) return face;
     std::optional<MapShadows> shadows;
     if (settings.shadows && data.soft_shadows)
-        shadows.emplace(*data.shadows, *data.soft_shadows, face.gbuffer, pass.time);
+        shadows.emplace(data, face.gbuffer, pass.time, 1);
     add_direct_light(face.gbuffer, direct_light(data, settings, face.gbuffer, shadows ? &*shadows : nullptr), 1,
                      face.direct);
     return face;

@@ -72,11 +72,12 @@ Rgbs RadianceLookup::from_probe(std::size_t probe, const Query& query) const {
                                    xsimd::all(sharp) ? hit : probes_->trace(probe, eye, query.p, unit_axis));
     if (!xsimd::any(sharp)) return from_map;
     const Vec3 center = gbuffer_.projection.relative(probes_->center(probe));
-    return on_screen(hit + Vec3s{Floats(center.x), Floats(center.y), Floats(center.z)}, sharp, from_map);
+    return on_screen(hit + Vec3s{Floats(center.x), Floats(center.y), Floats(center.z)}, sharp, query.mirror, from_map);
 }
 
-/// Returns the image's pixels where they show the points q, relative to the eye.
-Rgbs RadianceLookup::on_screen(const Vec3s& q, const Mask& lanes, const Rgbs& otherwise) const {
+/// Returns the image's pixels where they show the points q, relative to the eye. Only mirrors see what emits: the light
+/// that wider lobes reflect of it is direct light.
+Rgbs RadianceLookup::on_screen(const Vec3s& q, const Mask& lanes, const Mask& mirror, const Rgbs& otherwise) const {
     const auto [xw, yw, depth, w] = gbuffer_.projection.homogeneous(q);
     const Floats over = Floats(1.0f) / w, x = xw * over, y = yw * over, none(0.0f);
     const Floats right(static_cast<float>(gbuffer_.width() - 1)), bottom(static_cast<float>(gbuffer_.height() - 1));
@@ -93,7 +94,9 @@ Rgbs RadianceLookup::on_screen(const Vec3s& q, const Mask& lanes, const Rgbs& ot
     const Planes3& specular = gbuffer_.specular;
     const Mask diffuse = max(reflectance(specular.x), max(reflectance(specular.y), reflectance(specular.z))) <
                          Floats(kMostlyDiffuse);
-    const Mask shows = inside & diffuse & (abs(seen - depth) < Floats(kDepthTolerance) * depth);
+    const Ints object = xsimd::max(gather(gbuffer_.object.row(0), index), Ints(0));
+    const Mask dark = mirror | xsimd::bool_cast(gather(data_.emits.data(), object) == Ints(0));
+    const Mask shows = inside & diffuse & dark & (abs(seen - depth) < Floats(kDepthTolerance) * depth);
     return blend(shows, {gather(image_.x.row(0), index), gather(image_.y.row(0), index),
                          gather(image_.z.row(0), index)}, otherwise);
 }

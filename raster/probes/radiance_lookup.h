@@ -26,7 +26,7 @@ private:
     struct Query;
     RgbT<Floats> from_probe(std::size_t probe, const Query& query) const;
     RgbT<Floats> on_screen(const Vec3T<Floats>& q, const xsimd::batch_bool<float>& lanes,
-                           const RgbT<Floats>& otherwise) const;
+                           const xsimd::batch_bool<float>& mirror, const RgbT<Floats>& otherwise) const;
 
     const RasterSceneData& data_;
     const GBuffer& gbuffer_;

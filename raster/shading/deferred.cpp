@@ -86,8 +86,7 @@ void shade_gbuffer(const RasterSceneData& data, const RasterSettings& settings, 
     if (parts.direct && !data.scene.lights.empty()) {
         std::optional<MapShadows> shadows;
         if (settings.shadows && data.soft_shadows)
-            shadows.emplace(*data.shadows, *data.soft_shadows, gbuffer, options.time,
-                            options.sparse);
+            shadows.emplace(data, gbuffer, options.time, threads, options.sparse);
         const DirectLight light = direct_light(data, settings, gbuffer, shadows ? &*shadows : nullptr);
         done("direct light and shadows");
         add_direct_light(gbuffer, light, threads, radiance);

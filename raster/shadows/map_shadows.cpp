@@ -27,12 +27,12 @@ SoftShadowMaps::SoftShadowMaps(const Shadows& shadows) {
     }
 }
 
-MapShadows::MapShadows(const Shadows& shadows, const SoftShadowMaps& soft, const GBuffer& gbuffer, float time,
-                       bool all_taps)
-    : shadows_(shadows), soft_(soft), gbuffer_(gbuffer), eye_(gbuffer.projection.eye()),
-      to_moment_(shadows.motions(time)), moment_(shadows.moment_at(time)), all_taps_(all_taps) {
+MapShadows::MapShadows(const RasterSceneData& data, const GBuffer& gbuffer, float time, int threads, bool all_taps)
+    : shadows_(*data.shadows), soft_(*data.soft_shadows), gbuffer_(gbuffer), eye_(gbuffer.projection.eye()),
+      to_moment_(shadows_.motions(time)), moment_(shadows_.moment_at(time)), all_taps_(all_taps),
+      unblocked_(data, gbuffer, threads) {
     const Vec3d eye = eye_;
-    for (const Shadows::Source& from : shadows.sources()) {
+    for (const Shadows::Source& from : shadows_.sources()) {
         Source& source = sources_.emplace_back();
         const Shadows::Maps& maps = from.moments[moment_];
         for (const ShadowMap& view : maps.views) source.views.emplace_back(view, eye);
@@ -91,7 +91,7 @@ MapShadows::Receivers MapShadows::at_moment(const Receivers& receivers, int x, i
 Floats MapShadows::visibility(std::size_t light, const Vec3T<Floats>& point, const Vec3T<Floats>& normal, int x, int y,
                               const Mask&) const {
     const std::size_t source = shadows_.source_of(light);
-    if (source == shadows_.sources().size()) return Floats(1.0f);
+    if (source == shadows_.sources().size() || unblocked_.contains(source, x, y)) return Floats(1.0f);
     const Receivers receivers{point, normal};
     const auto [p, n] = to_moment_.empty() ? receivers : at_moment(receivers, x, y);
     const std::span<const SoftShadowMap> cells = soft_.of(source, moment_);

@@ -6,6 +6,7 @@
 #include "raster/shadows/shadows.h"
 #include "raster/shadows/sharp_shadow_map.h"
 #include "raster/shadows/soft_shadow_map.h"
+#include "raster/shadows/unblocked_tiles.h"
 
 namespace duet::raster {
 
@@ -23,20 +24,18 @@ private:
 /// Looks up the shadows for the points of one view at one time.
 class MapShadows final : public ShadowLookup {
 public:
-    /// None of the references is copied. The points are those of the G-buffer's pixels at `time`. A point of a moving
-    /// object is looked up where it is at the map's moment, so that the object does not shade itself by its motion.
-    /// With `all_taps`, each pixel takes the taps of all sixteen pixels of a
-    /// block, for surfaces whose neighbors are too few to average.
-    MapShadows(const Shadows& shadows, const SoftShadowMaps& soft, const GBuffer& gbuffer, float time,
-               bool all_taps = false);
+    /// None of the references is copied. `data` must have its shadow maps. The points are those of the G-buffer's
+    /// pixels at `time`. A point of a moving object is looked up where it is at the map's moment, so that the object
+    /// does not shade itself by its motion. With `all_taps`, each pixel takes the taps of all sixteen pixels of a
+    /// block, for surfaces whose neighbors are too few to average. `threads` = 0 stands for all.
+    MapShadows(const RasterSceneData& data, const GBuffer& gbuffer, float time, int threads, bool all_taps = false);
 
     bool shadows(std::size_t light) const override { return shadows_.source_of(light) < shadows_.sources().size(); }
     bool noisy(std::size_t light) const override {
         return !all_taps_ && shadows(light) && !soft_.of(shadows_.source_of(light), moment_).empty();
     }
     /// Each pixel of a block of 4 × 4 looks at one cell of an area light, with taps of its own. The mean over a block
-    /// is
-    /// the shadow; blur_shadows() computes it.
+    /// is the shadow; add_direct_light() (raster/lighting/shadow_filter.h) computes it.
     Floats visibility(std::size_t light, const Vec3T<Floats>& p, const Vec3T<Floats>& n, int x, int y,
                       const xsimd::batch_bool<float>& mask) const override;
 
@@ -60,6 +59,7 @@ private:
     std::vector<std::optional<Mat4d>> to_moment_; ///< for each object: from its position now; empty if nothing moves
     std::size_t moment_;
     bool all_taps_;
+    UnblockedTiles unblocked_;
     std::vector<Source> sources_;
 };
 

@@ -16,11 +16,13 @@ constexpr int kPatterns = 16;
 constexpr float kLeastRise = 0.1f;
 /// Rounding of a depth and of a point relative to the light, as a fraction of its distance.
 constexpr float kRounding = 0x1p-18f;
+constexpr float kLeastReversed = 1e-25f; ///< near / depth where nothing is seen
 constexpr float kMargin = 0.02f; ///< of the light's edge by which a line may miss the light and still count
 
-/// Tap positions on the unit square, kPatterns × count of them in a (0,2)-net, by pattern and tap.
+/// Tap positions, kPatterns × count of them in a (0,2)-net, by pattern and tap: (a, b) on the unit square, and the same
+/// points mapped to the unit disk.
 template <int kTaps> struct Taps {
-    std::array<std::array<float, kPatterns>, kTaps> a, b, fraction;
+    std::array<std::array<float, kPatterns>, kTaps> a, b, disk_x, disk_y, fraction;
 
     Taps() {
         constexpr int kAll = kPatterns * kTaps;
@@ -30,6 +32,8 @@ template <int kTaps> struct Taps {
                 const auto index = static_cast<std::uint32_t>(tap * kPatterns + pattern);
                 const Vec2 u = sobol_net_point(index, kAll);
                 a[k][i] = u.x, b[k][i] = u.y;
+                const float radius = std::sqrt(u.x), angle = 2 * kPi * u.y;
+                disk_x[k][i] = radius * std::cos(angle), disk_y[k][i] = radius * std::sin(angle);
                 // Offsets from the center's direction grow with the square, so contacts close by are found too.
                 const float s = (static_cast<float>(tap) + (static_cast<float>(pattern * 7 % kPatterns) + 0.5f) /
                                                                kPatterns) / kTaps;
@@ -46,11 +50,12 @@ DepthCube::DepthCube(const CubeMap& cube)
     : frame(cube.frame), center(cube.center), side_(static_cast<int>(std::lround(2 * cube.middle))), near_(cube.near),
       middle_(cube.middle), scale_(cube.scale) {
     const std::size_t texels = static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_);
-    depths_.assign(6 * texels, 0);
+    depths_.assign(6 * texels, near_ / kLeastReversed);
     for (std::size_t face = 0; face < 6; ++face)
         if (cube.faces[face]) {
             const ImageFloat& image = cube.faces[face]->reversed_depth();
-            std::copy(image.begin(), image.end(), depths_.begin() + static_cast<std::ptrdiff_t>(face * texels));
+            std::transform(image.begin(), image.end(), depths_.begin() + static_cast<std::ptrdiff_t>(face * texels),
+                           [&](float reversed) { return near_ / std::max(reversed, kLeastReversed); });
         }
 }
 
@@ -69,7 +74,7 @@ Vec3s DepthCube::surface(const Vec3s& w, Floats& texel) const {
                  y = xsimd::floor(clamp(middle - pick(w.y, w.z, w.x) * scale, zero, last));
     const Ints face = truncated(pick(zero, Floats(2.0f), Floats(4.0f)) + xsimd::select(axis < zero, one, zero));
     const Ints index = (face * Ints(side_) + truncated(y)) * Ints(side_) + truncated(x);
-    const Floats depth = Floats(near_) / max(gather(depths_.data(), index), Floats(1e-25f));
+    const Floats depth = gather(depths_.data(), index);
     const Floats per_texel = depth * Floats(1 / scale_);
     texel = per_texel;
     const Floats right = (x + half - middle) * per_texel * sign, up = (middle - y - half) * per_texel,
@@ -88,7 +93,7 @@ struct SoftShadowMap::Receiver {
     const DepthCube& cube;
     const Outline& light;
     Vec3s p, n;
-    Floats height;  ///< of p above the light's plane, along −axis
+    Floats per_height; ///< 1 / the height of p above the light's plane, along −axis
     Floats slack;
 
     /// Returns the fraction of the way from p to the light's plane at which the surface seen in direction q blocks the
@@ -96,7 +101,7 @@ struct SoftShadowMap::Receiver {
     Floats blocker(const Vec3s& q) const {
         Floats texel;
         const Vec3s to = cube.surface(q, texel) - p;
-        const Floats f = dot(to, light.axis) / height;
+        const Floats f = dot(to, light.axis) * per_height;
         const Floats rise = dot(to, n), distance2 = dot(to, to);
         const Floats scale = Floats(1.0f) / max(f, Floats(1e-6f));
         const Vec3s hit = p + to * scale - light.corner; // where the line meets the light's plane
@@ -113,16 +118,18 @@ struct SoftShadowMap::Receiver {
                             (rise * rise > Floats(kLeastRise * kLeastRise) * distance2) & meets;
         return xsimd::select(blocks, f, Floats(0.0f));
     }
-    Vec3s on_light(const Floats& a, const Floats& b) const {
+    /// Returns the position of a tap on the light.
+    template <int kTaps> Vec3s on_light(const Taps<kTaps>& taps, std::size_t tap, const Ints& pattern) const {
+        if (light.shape == Emitter::Kind::kSphere)
+            return light.u * gather(taps.disk_x[tap].data(), pattern) +
+                   light.v * gather(taps.disk_y[tap].data(), pattern);
+        const Floats a = gather(taps.a[tap].data(), pattern), b = gather(taps.b[tap].data(), pattern);
         if (light.shape == Emitter::Kind::kTriangle) { // the other half of the parallelogram is folded onto it
             const Mask beyond = a + b > Floats(1.0f);
             return light.corner + light.u * xsimd::select(beyond, Floats(1.0f) - a, a) +
                    light.v * xsimd::select(beyond, Floats(1.0f) - b, b);
         }
-        if (light.shape == Emitter::Kind::kParallelogram) return light.corner + light.u * a + light.v * b;
-        const Floats r = xsimd::sqrt(a);
-        const auto [sine, cosine] = xsimd::sincos(b * Floats(2 * kPi));
-        return light.u * (r * cosine) + light.v * (r * sine);
+        return light.corner + light.u * a + light.v * b;
     }
 };
 
@@ -166,12 +173,12 @@ Floats SoftShadowMap::visibility(const Vec3d& eye, const Vec3s& p, const Vec3s& 
     const Vec3s own = local(p + Vec3s{Floats(offset.x), Floats(offset.y), Floats(offset.z)});
     const Outline light = outline_from(own);
     const Floats height = max(-dot(own, light.axis), Floats(1e-20f));
-    const Receiver receiver{cube_, light, own, local(n), height, height * Floats(kRounding)};
+    const Receiver receiver{cube_, light, own, local(n), Floats(1.0f) / height, height * Floats(kRounding)};
 
     Floats sum(0.0f), count(0.0f);
     for (std::size_t i = 0; i < kSearchTaps; ++i) {
         const Floats f = gather(kSearch.fraction[i].data(), pattern);
-        const Vec3s l = receiver.on_light(gather(kSearch.a[i].data(), pattern), gather(kSearch.b[i].data(), pattern));
+        const Vec3s l = receiver.on_light(kSearch, i, pattern);
         const Floats found = receiver.blocker(own * (Floats(1.0f) - f) + l * f);
         sum += found;
         count += xsimd::select(found > Floats(0.0f), Floats(1.0f), Floats(0.0f));
@@ -181,7 +188,7 @@ Floats SoftShadowMap::visibility(const Vec3d& eye, const Vec3s& p, const Vec3s& 
     const Floats f = sum / max(count, Floats(1.0f));
     Floats dark(0.0f);
     for (std::size_t i = 0; i < kFilterTaps; ++i) {
-        const Vec3s l = receiver.on_light(gather(kFilter.a[i].data(), pattern), gather(kFilter.b[i].data(), pattern));
+        const Vec3s l = receiver.on_light(kFilter, i, pattern);
         dark += xsimd::select(receiver.blocker(own * (Floats(1.0f) - f) + l * f) > Floats(0.0f), Floats(1.0f),
                               Floats(0.0f));
     }

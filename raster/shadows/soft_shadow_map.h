@@ -11,7 +11,7 @@
 
 namespace duet::raster {
 
-/// Holds a cube of reversed depths around a point, face after face, so that each lane may look at another face.
+/// Holds a cube of depths around a point, face after face, so that each lane may look at another face.
 class DepthCube {
 public:
     explicit DepthCube(const CubeMap& cube);
@@ -24,7 +24,7 @@ public:
     Vec3d center;
 
 private:
-    std::vector<float> depths_; ///< near / depth
+    std::vector<float> depths_; ///< very large where nothing is seen
     int side_;
     float near_, middle_, scale_; ///< as in CubeMap
 };

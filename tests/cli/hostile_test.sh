@@ -20,7 +20,7 @@ refuse() { # refuse FILE TEXT
         rm -f "$scratch/out.png"
         expect 2 timeout 60 "$bin/$program" "$in/$1" -o "$scratch/out.png" --size 8x8 --quiet
         one_line_error "$2"
-        [ ! -e "$scratch/out.png" ] || fail "$program $1: a image was written"
+        [ ! -e "$scratch/out.png" ] || fail "$program $1: an image was written"
     done
     expect 2 timeout 60 "$bin/compare" run "$in/$1" -o "$scratch/report" --size 8x8 --quiet
     one_line_error "$2"

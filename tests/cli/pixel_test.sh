@@ -1,5 +1,5 @@
 #!/bin/sh
-# --pixel: a sample's path in words, without a image.
+# --pixel: a sample's path in words, without an image.
 . "$(dirname "$0")/support.sh"
 
 expect 0 "$bin/raytrace" models/cornell.json --size 64x64 --pixel 32,40,1

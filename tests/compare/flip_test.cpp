@@ -99,7 +99,7 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("FLIP of a image does not depend on how its rows are worked on: transposed, the map is transposed") {
+    TEST_CASE("FLIP of an image does not depend on how its rows are worked on: transposed, the map is transposed") {
         const TestPair pair = encoded_pair(67, 131);
         const auto transposed = [](const auto& image) {
             auto result = std::decay_t<decltype(image)>(image.height(), image.width());

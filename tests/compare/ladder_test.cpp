@@ -327,7 +327,8 @@ TEST_SUITE("unit") {
                 if ((ending != ".h" && ending != ".cpp") || path.ends_with("_main.cpp") ||
                     path.find("/lessons/") != std::string::npos)
                     continue;
-                CHECK_MESSAGE(listed[path] == 1, path, ": compare/ladder/code.txt leads to it ", listed[path], " times");
+                CHECK_MESSAGE(listed[path] == 1, path, ": compare/ladder/code.txt leads to it ", listed[path],
+                              " times");
             }
     }
 }

@@ -8,7 +8,6 @@
 #include "raster/gbuffer/gbuffer_pass.h"
 #include "raster/geometry/geometry.h"
 #include "raster/lighting/direct_light.h"
-#include "raster/lighting/ggx_table.h"
 #include "raster/lighting/light_set.h"
 #include "raster/lighting/lit_batch.h"
 #include "raster/lighting/polygon_light.h"
@@ -16,6 +15,7 @@
 
 #include "common/system/control.h"
 #include "raster/render.h"
+#include "tests/raster/lobe_lookup.h"
 
 #include <doctest/doctest.h>
 

@@ -34,7 +34,7 @@ std::vector<Vec3> directions() {
 
 TEST_SUITE("unit") {
 
-    TEST_CASE("a image of a constant gives π times it") {
+    TEST_CASE("an image of a constant gives π times it") {
         const Environment environment = shown_image(64, [](Vec3) { return Rgb(0.5f, 1.0f, 2.0f); });
         const Irradiance irradiance(environment, 2);
         CHECK_FALSE(irradiance.is_closed_form());
@@ -46,7 +46,7 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("a image of the sky gradient gives the sky's closed form") {
+    TEST_CASE("an image of the sky gradient gives the sky's closed form") {
         const SkyEnvironment sky{{1.0f, 0.8f, 0.6f}, {0.2f, 0.5f, 1.0f}};
         const Environment closed = sky;
         const Environment environment = shown_image(256, [&](Vec3 w) { return lerp(sky.down, sky.up, (w.y + 1) / 2); });

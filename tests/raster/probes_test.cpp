@@ -111,4 +111,26 @@ TEST_SUITE("unit") {
             CHECK(e.g.get(0) == doctest::Approx(kPi).epsilon(0.03));
         }
     }
+
+    // What a narrow lobe reflects of a light is direct light. The image's pixels, which show the light, must not add it
+    // again.
+    TEST_CASE("a polished floor reflects a light once") {
+        Scene scene;
+        constexpr float kRadiance = 5, kAlpha = 0.015f; // wide enough for direct light, narrow enough for the image
+        add(scene, QuadList{{{Vec3(-4, 0, 4), Vec3(8, 0, 0), Vec3(0, 0, -8)}}}, Mat4(),
+            Metal{{Rgb(1.0f)}, {std::sqrt(kAlpha)}});
+        add(scene, Sphere{Vec3(0, 1, 0), 0.5f}, Mat4(), Emissive{Rgb(kRadiance)});
+        scene.environment = ConstantEnvironment{Rgb(0.0f)};
+        scene.camera = look({0, 1, 4}, {0, 0.5, 0}, 50);
+        finish_scene(scene);
+        const View view{scene.camera, 64, 64};
+        const ImageRgb image = render(scene, view, {}).radiance;
+        int reflecting = 0;
+        for (int y = 40; y < 64; ++y)
+            for (int x = 0; x < 64; ++x) {
+                reflecting += image(x, y).g > 0.9f * kRadiance;
+                CHECK(image(x, y).g < 1.05f * kRadiance);
+            }
+        CHECK(reflecting > 20);
+    }
 }

@@ -1,5 +1,5 @@
 // These tests compare rough metal under environments and area lights with the exact integrals.
-#include "raster/lighting/ggx_table.h"
+#include "tests/raster/lobe_lookup.h"
 #include "tests/raster/scenes.h"
 
 #include "common/material/ggx.h"

@@ -103,7 +103,7 @@ TEST_SUITE("statistical") {
         }
     }
 
-    TEST_CASE("a light that shows a image: light sampling finds the light that chance finds") {
+    TEST_CASE("a light that shows an image: light sampling finds the light that chance finds") {
         for (const int kind : {0, 1, 2}) { // quad, triangle, sphere
             SceneBuilder builder;
             ImageRgb image(8, 4);

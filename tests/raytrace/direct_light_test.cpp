@@ -194,7 +194,7 @@ TEST_SUITE("statistical") {
             }
     }
 
-    TEST_CASE("irradiance from the sky is that of the closed form; so is that from a bright patch of a image") {
+    TEST_CASE("irradiance from the sky is that of the closed form; so is that from a bright patch of an image") {
         for (const bool sky : {true, false}) {
             SceneBuilder builder = floor_scene();
             double expected = 0;

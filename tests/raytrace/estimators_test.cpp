@@ -54,7 +54,7 @@ Scene under_a_image() {
 } // namespace
 
 TEST_SUITE("unit") {
-    TEST_CASE("an even sky has no shadow rays, a image with a sun has") {
+    TEST_CASE("an even sky has no shadow rays, an image with a sun has") {
         PathTracerSettings settings;
         settings.samples_per_pixel = 4;
         const Rendering image = render_scene(under_a_image(), 16, settings);

@@ -43,7 +43,7 @@ bool covered(const Edges& edges, int x, int y) {
 GridPoint random_point(Rng& rng, int width, int height) {
     return {rng.integer(0, width * 256), rng.integer(0, height * 256)};
 }
-/// A clockwise triangle in a image.
+/// A clockwise triangle in an image.
 Corners random_triangle(Rng& rng, int width, int height) {
     for (;;) {
         Corners p{random_point(rng, width, height), random_point(rng, width, height), random_point(rng, width, height)};
@@ -336,7 +336,7 @@ LAB_ITEM(25, "tiles: outside, partial, inside") {
         const int x = item.random().integer(0, 2040), y = item.random().integer(0, 2040);
         item.require(STUDENT(test_tile)(edges, x, y, 8) == tile_by_pixels(edges, x, y, 8),
                      message("The tile from (", x, ", ", y,
-                             ") on is wrong for a triangle as large as a image of 2048 × 2048 "
+                             ") on is wrong for a triangle as large as an image of 2048 × 2048 "
                              "pixels: does a product overflow?"));
     }
 }
@@ -398,7 +398,7 @@ LAB_ITEM(20, "eight pixels as a mask") {
 LAB_ITEM(25, "the triangle by tiles is the triangle by pixels") {
     check_cover(item, "a triangle over several tiles", {GridPoint{700, 300}, {9800, 2600}, {2600, 7800}}, 40, 32);
     check_cover(item, "a triangle that covers whole tiles", {GridPoint{0, 0}, {12000, 200}, {200, 9000}}, 48, 36);
-    check_cover(item, "a triangle in a image of 37 × 29 pixels", {GridPoint{300, 200}, {9400, 900}, {7000, 7300}}, 37,
+    check_cover(item, "a triangle in an image of 37 × 29 pixels", {GridPoint{300, 200}, {9400, 900}, {7000, 7300}}, 37,
                 29);
     check_cover(item, "a triangle smaller than a pixel, around a center",
                 {GridPoint{2600, 2600}, {2800, 2700}, {2650, 2800}}, 24, 24);

@@ -119,7 +119,7 @@ TEST_SUITE("unit") {
         CHECK(pinhole.ray({20, 10}).t_min == doctest::Approx(5e-6));
     }
 
-    TEST_CASE("looking straight along up still gives a image") {
+    TEST_CASE("looking straight along up still gives an image") {
         View view;
         view.camera.eye = {0, 5, 0};
         view.camera.look_at = {0, 0, 0};

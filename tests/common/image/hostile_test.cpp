@@ -81,11 +81,11 @@ TEST_SUITE("unit") {
     TEST_CASE("PNG: sizes that cannot be") {
         const test::ScratchFolder folder;
         const std::string claim = error_of_bytes(folder / "claim.png", png(100000, 100000, 8, 2, "abc"));
-        CHECK(claim == Containing("a image of 100000 x 100000 pixels, expected 1 to 32768 a side"));
+        CHECK(claim == Containing("an image of 100000 x 100000 pixels, expected 1 to 32768 a side"));
         CHECK(error_of_bytes(folder / "a.png", png(30000, 30000, 8, 2, "abc")) ==
               Containing("at most 90000000 in all"));
         CHECK(error_of_bytes(folder / "b.png", png(30000, 3000, 8, 2, "abc")) == Containing("cannot be in its"));
-        CHECK(error_of_bytes(folder / "c.png", png(0, 1, 8, 2, "abc")) == Containing("a image of 0 x 1"));
+        CHECK(error_of_bytes(folder / "c.png", png(0, 1, 8, 2, "abc")) == Containing("an image of 0 x 1"));
         CHECK(error_of_bytes(folder / "d.png", png(2, 2, 8, 2, std::string(7, '\0'))) ==
               Containing("not a readable PNG"));
         CHECK(error_of_bytes(folder / "e.png", kPngSignature) == Containing("truncated"));
@@ -120,10 +120,10 @@ TEST_SUITE("unit") {
             for (std::size_t i = 0; i < 4; ++i) changed[frame + 5 + i] = static_cast<char>(parts[i]);
             return error_of_bytes(folder / "claim.jpg", changed);
         };
-        CHECK(claim(65500, 65500) == Containing("a image of 65500 x 65500"));
+        CHECK(claim(65500, 65500) == Containing("an image of 65500 x 65500"));
         CHECK(claim(30000, 30000) == Containing("at most 90000000 in all"));
         CHECK(claim(30000, 3000) == Containing("cannot be in its"));
-        CHECK(claim(0, 40) == Containing("a image of 0 x 40"));
+        CHECK(claim(0, 40) == Containing("an image of 0 x 40"));
         CHECK(error_of_bytes(folder / "short.jpg", bytes.substr(0, frame + 6)) == Containing("truncated"));
     }
 
@@ -166,7 +166,7 @@ TEST_SUITE("unit") {
         CHECK(error_of_bytes(folder / "a.tga", tga(2, 30000, 3000, 24, "abc")) == Containing("cannot be in its"));
         CHECK(error_of_bytes(folder / "b.tga", tga(10, 30000, 3000, 24, "abc")) == Containing("cannot be in its"));
         CHECK(error_of_bytes(folder / "c.tga", tga(2, 65535, 65535, 24, "abc")) ==
-              Containing("a image of 65535 x 65535"));
+              Containing("an image of 65535 x 65535"));
         CHECK(error_of_bytes(folder / "d.tga", tga(2, 2, 2, 24, std::string(11, 'a'))) ==
               Containing("cannot be in its"));
         CHECK(error_of_bytes(folder / "e.tga", tga(10, 2, 2, 24, std::string("\1abcdef\1abc", 11))) ==
@@ -189,9 +189,9 @@ TEST_SUITE("unit") {
     TEST_CASE("HDR: sizes, formats and runs that cannot be") {
         const test::ScratchFolder folder;
         const auto error = [&](const std::string& bytes) { return error_of_bytes(folder / "a.hdr", bytes); };
-        CHECK(error(hdr("-Y 100000 +X 100000", "")) == Containing("a image of 100000 x 100000"));
+        CHECK(error(hdr("-Y 100000 +X 100000", "")) == Containing("an image of 100000 x 100000"));
         CHECK(error(hdr("-Y 3000 +X 30000", "abcd")) == Containing("cannot be in its"));
-        CHECK(error(hdr("-Y -5 +X 5", "abcd")) == Containing("a image of 5 x -5"));
+        CHECK(error(hdr("-Y -5 +X 5", "abcd")) == Containing("an image of 5 x -5"));
         CHECK(error(hdr("-Y 99999999999999 +X 5", "abcd")) == Containing("no size"));
         CHECK(error(hdr("+Y 5 +X 5", "abcd")) == Containing("-Y height +X width"));
         CHECK(error("#?RADIANCE\n\n-Y 1 +X 1\nabcd") == Containing("no line FORMAT"));
@@ -231,11 +231,11 @@ TEST_SUITE("unit") {
               std::vector{0x1234 / 65535.0f, 1.0f, 0.0f});
         CHECK(values("P6 1 1 100 dd\1") == std::vector{1.0f, 1.0f, 0.01f});
 
-        CHECK(error("P6 100000 100000 255 abc") == Containing("a image of 100000 x 100000"));
+        CHECK(error("P6 100000 100000 255 abc") == Containing("an image of 100000 x 100000"));
         CHECK(error("P6 9999 9000 255 abc") == Containing("cannot be in its"));
         CHECK(error("P3 9999 9000 255 1 2 3") == Containing("cannot be in its"));
         CHECK(error("P6 99999999999999999999 1 255 abc") == Containing("expected the width"));
-        CHECK(error("P6 -1 1 255 abc") == Containing("a image of -1 x 1"));
+        CHECK(error("P6 -1 1 255 abc") == Containing("an image of -1 x 1"));
         CHECK(error("P6 1 1 65536 abcabc") == Containing("expected 1 to 65535"));
         CHECK(error("P6 1 1 0 abcabc") == Containing("expected 1 to 65535"));
         CHECK(error("P6 1 1 99 ddd") == Containing("a value of 100, expected 0 to 99"));
@@ -255,7 +255,7 @@ TEST_SUITE("unit") {
         CHECK(values(std::string("Pf\n1 2\n-1.0\n\0\0\x80\x3f\0\0\0\x40", 20)) == std::vector{2.0f, 1.0f});
         CHECK(values(std::string("PF\n1 1\n-2e0\n\0\0\x80\x3f\0\0\0\x40\0\0\0\0", 24)) ==
               std::vector{2.0f, 4.0f, 0.0f});
-        CHECK(error("PF 100000 100000 -1 abcd") == Containing("a image of 100000 x 100000"));
+        CHECK(error("PF 100000 100000 -1 abcd") == Containing("an image of 100000 x 100000"));
         CHECK(error("PF 9999 9000 -1 abcd") == Containing("cannot be in its"));
         CHECK(error("PF 1 1 0 abcdabcdabcd") == Containing("a scale of 0"));
         CHECK(error("PF 1 1 nan abcdabcdabcd") == Containing("a scale of nan"));

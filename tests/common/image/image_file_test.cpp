@@ -252,7 +252,7 @@ TEST_SUITE("unit") {
         CHECK(!std::filesystem::exists(folder / "b.exr"));
     }
 
-    TEST_CASE("EXR: gray, alpha and integer channels make a image; others are named in the Error") {
+    TEST_CASE("EXR: gray, alpha and integer channels make an image; others are named in the Error") {
         const test::ScratchFolder folder;
         const std::vector<float> one{0.25f}, two{0.5f}, three{4.0f}, four{0.75f};
         write_exr(folder / "grey.exr", 1, 1, {{"Y", one, {}}, {"A", four, {}}});

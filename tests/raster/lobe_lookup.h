@@ -1,4 +1,5 @@
-#include "raster/lighting/ggx_table.h"
+// This header looks up the table of lobes one by one, as a reference for the lookup in lanes.
+#pragma once
 
 #include "raster/lighting/ggx_fit.h"
 
@@ -10,11 +11,9 @@ namespace duet::raster {
 
 extern const GgxTable<5, kLobeSide> kLobeTable; // written by raster/lighting/ggx_table_main.cpp
 
-namespace {
-
 /// Interpolates bilinearly between the four nearest entries.
-template <std::size_t N, int Side> std::array<float, N> look_up(const GgxTable<N, Side>& table, float alpha,
-                                                                float cosine) {
+template <std::size_t N, int Side>
+std::array<float, N> look_up(const GgxTable<N, Side>& table, float alpha, float cosine) {
     const float roughness = (std::sqrt(alpha) - kSmoothest) / (kRoughest - kSmoothest);
     const float y = clamp(roughness, 0.0f, 1.0f) * (Side - 1),
                 x = std::sqrt(clamp(1 - cosine, 0.0f, 1.0f)) * (Side - 1);
@@ -27,9 +26,8 @@ template <std::size_t N, int Side> std::array<float, N> look_up(const GgxTable<N
     return result;
 }
 
-} // namespace
-
-LobeMatrix ggx_lobe(float alpha, float cosine) {
+/// alpha is in (0, 1]; values below (1/20)² are clamped to that. `cosine`, between normal and viewer, is in (0, 1].
+inline LobeMatrix ggx_lobe(float alpha, float cosine) {
     const auto m = look_up(kLobeTable, alpha, cosine);
     return {m[0], m[1], m[2], m[3], m[4]};
 }

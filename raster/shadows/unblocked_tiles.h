@@ -1,0 +1,41 @@
+// Finds the tiles of an image whose points no object can shadow from a light: shaft culling (Haines and Wallace 1991,
+// "Shaft Culling for Efficient Ray-Traced Radiosity"). Shadow maps need not be looked up there.
+#pragma once
+
+#include "raster/gbuffer/gbuffer.h"
+#include "raster/raster_scene.h"
+#include "raster/shadows/shadows.h"
+
+#include <vector>
+
+namespace duet::raster {
+
+/// Returns whether a box lies outside the convex hull of the boxes `a` and `b`. It may return false for a box that lies
+/// outside, too, but not true for one that meets the hull.
+bool misses_shaft(const Box3d& a, const Box3d& b, const Box3d& box);
+
+class UnblockedTiles {
+public:
+    /// `data` must have its shadow maps. `threads` = 0 stands for all. In scenes of more than kMostCasters casters or
+    /// with moving objects, no tile counts as unblocked.
+    UnblockedTiles(const RasterSceneData& data, const GBuffer& gbuffer, int threads);
+
+    /// Returns whether nothing can stand between the points of the tile around a pixel and a source of Shadows.
+    bool contains(std::size_t source, int x, int y) const {
+        return !sources_.empty() && (sources_[tile(x, y)] >> source & 1) != 0;
+    }
+
+    static constexpr int kSide = 32; ///< pixels
+    static constexpr std::size_t kMostCasters = 128;
+
+private:
+    std::size_t tile(int x, int y) const {
+        return static_cast<std::size_t>(y / kSide * columns_ + x / kSide);
+    }
+
+    int columns_ = 0;
+    std::vector<std::uint64_t> sources_; ///< for each tile: a bit for each source
+    static_assert(Shadows::kMaxSources <= 64);
+};
+
+} // namespace duet::raster
