@@ -55,10 +55,7 @@ template <bool kAny> auto Accelerator::instance_test(const Ray& ray) const {
         const Ray local = to_instance_space(instance, ray);
         if (!traceable(local)) return false;
         const Bvh& shape = shapes_[instance.shape];
-        if constexpr (kAny)
-            return find_any(shape, local, instance.object, so_far, no_instance);
-        else
-            return find_closest(shape, local, instance.object, so_far, no_instance);
+        return traverse<kAny>(shape, local, instance.object, so_far, no_instance);
     };
 }
 
@@ -98,7 +95,7 @@ Hit Accelerator::closest_without_alpha(const Ray& ray) const {
     Hit best;
     best.t = min(ray.t_max, std::numeric_limits<float>::max()); // a distance that overflowed is no hit
     if (!traceable(ray)) return {};
-    return find_closest(world_, ray, kNoObject, best, instance_test<false>(ray)) ? best : Hit{};
+    return traverse<false>(world_, ray, kNoObject, best, instance_test<false>(ray)) ? best : Hit{};
 }
 
 Hit Accelerator::closest(const Ray& ray) const {
@@ -117,7 +114,7 @@ Hit Accelerator::skip_transparent(const Ray& ray, Hit hit) const {
     return hit;
 }
 
-// Returns what find_any returns, but respects alpha by stepping through closest hits.
+// Returns what traverse<true> returns, but respects alpha by stepping through closest hits.
 bool Accelerator::occluded_with_alpha(Ray ray, const Hit& end) const {
     ray.t_max = min(ray.t_max, end.t);
     const auto before_end = [&](const Hit& hit) {
@@ -222,7 +219,7 @@ bool Accelerator::occluded(const Ray& ray, const Hit& end) const {
     Hit clamped = end;
     clamped.t = min(end.t, std::numeric_limits<float>::max()); // a distance that overflowed is no hit
     if (has_alpha_masks_) return occluded_with_alpha(ray, clamped);
-    return traceable(ray) && find_any(world_, ray, kNoObject, clamped, instance_test<true>(ray));
+    return traceable(ray) && traverse<true>(world_, ray, kNoObject, clamped, instance_test<true>(ray));
 }
 
 BvhStatistics Accelerator::statistics() const {

@@ -140,7 +140,7 @@ private:
     std::uint32_t pack(std::uint32_t index) {
         std::array<std::uint32_t, BvhNode::kWidth> children;
         const std::size_t count = table_.children(index, children);
-        // The largest child is stored last, because find_any visits the children in reverse order.
+        // The largest child is stored last, because LargestFirst visits the children in reverse order.
         std::stable_sort(children.begin(), children.begin() + static_cast<std::ptrdiff_t>(count),
                          [&](std::uint32_t a, std::uint32_t b) {
                              return tree_.nodes[a].box.half_area() < tree_.nodes[b].box.half_area();

@@ -1,5 +1,5 @@
 // PacketTraversal traverses a hierarchy with a packet of coherent rays: each box and each triangle is loaded once
-// and tested against all rays. The hits are bit-equal to those of `find_closest`.
+// and tested against all rays. The hits are bit-equal to those of `traverse<false>`.
 #pragma once
 
 #include "raytrace/acceleration/ray_packet.h"
@@ -54,13 +54,13 @@ struct NoInstances {
     void operator()(const BvhInstance&, unsigned, PacketHits&) const {}
 };
 
-/// Finds the closest hits of a coherent packet's rays, as `find_closest` does for each.
+/// Finds the closest hits of a coherent packet's rays, as `traverse<false>` does for each.
 template <typename Instances> class PacketTraversal {
 public:
     static constexpr std::size_t kSize = RayPacket::kSize;
 
     /// `active` is a bit mask of the rays to trace. If `object` is not kNoObject (inside an instance), hits report
-    /// it as their object. instances(ray) returns the instance test that `find_closest` needs for one ray;
+    /// it as their object. instances(ray) returns the instance test that `traverse<false>` needs for one ray;
     /// instances(instance, rays, best) tests an instance against several rays.
     PacketTraversal(const Bvh& bvh, const RayPacket& packet, std::span<const Ray, kSize> rays, unsigned active,
                     std::uint32_t object, const Instances& instances, PacketHits& best)

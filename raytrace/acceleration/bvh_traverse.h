@@ -1,4 +1,4 @@
-// These functions traverse a hierarchy with one ray: near children first, and without those beyond the closest hit.
+// These functions traverse a hierarchy with one ray.
 //
 // The result is bit-equal to that of testing every primitive, ties included. Box tests are so conservative that no
 // box with a hit is skipped (Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection", §3.3), and boxes
@@ -63,97 +63,107 @@ private:
     std::uint64_t bits_;
 };
 
+/// The children that a ray has entered and not yet visited. A step down leaves at most kWidth − 1 of them.
+inline constexpr std::size_t kStackSize = (BvhNode::kWidth - 1) * Bvh::kMaxDepth + 1;
+
+/// Visits the nearest child first, so that what lies beyond the closest hit need not be visited.
+class NearestFirst {
+public:
+    /// Returns the child of a node to visit next. `entered` is the bit mask of the children that the ray enters, not 0,
+    /// and `distance` holds where it enters them. The others are kept.
+    BvhRef descend(const BvhNode& node, const SlabRay::Batch& distance, unsigned entered) {
+        const auto first = static_cast<std::size_t>(std::countr_zero(entered));
+        entered &= entered - 1;
+        if (entered == 0) return node.children[first];
+        const Lanes entry(distance);
+        const auto take = [&] {
+            const auto child = static_cast<std::size_t>(std::countr_zero(entered));
+            entered &= entered - 1;
+            return StackEntry(entry[child], node.children[child]);
+        };
+        const std::size_t bottom = size_;
+        StackEntry nearest = take_nearer(StackEntry(entry[first], node.children[first]), take(), stack_[size_++]);
+        while (entered != 0) {
+            StackEntry other;
+            nearest = take_nearer(nearest, take(), other);
+            // The children are sorted so that the farthest is lowest on the stack.
+            std::size_t i = size_++;
+            for (; i > bottom && stack_[i - 1].nearer_than(other); --i) stack_[i] = stack_[i - 1];
+            stack_[i] = other;
+        }
+        return nearest.child();
+    }
+    /// Sets `next` to the last child kept that the ray enters before `end`. Returns false if there is none.
+    bool pop(float end, BvhRef& next) {
+        do {
+            if (size_ == 0) return false;
+            --size_;
+        } while (stack_[size_].entry() > end);
+        next = stack_[size_].child();
+        return true;
+    }
+
+private:
+    std::array<StackEntry, kStackSize> stack_;
+    std::size_t size_ = 0;
+};
+
+/// Visits the largest child first, which is the last of its node, where any hit will do (Ogaki and Derouet-Jourdan 2016,
+/// "An N-ary BVH child node sorting technique for occlusion test", sort by area likewise). The functions are those of
+/// NearestFirst.
+class LargestFirst {
+public:
+    BvhRef descend(const BvhNode& node, const SlabRay::Batch&, unsigned entered) {
+        for (; (entered & (entered - 1)) != 0; entered &= entered - 1)
+            stack_[size_++] = node.children[static_cast<std::size_t>(std::countr_zero(entered))];
+        return node.children[static_cast<std::size_t>(std::countr_zero(entered))];
+    }
+    bool pop(float, BvhRef& next) {
+        if (size_ == 0) return false;
+        next = stack_[--size_];
+        return true;
+    }
+
+private:
+    std::array<BvhRef, kStackSize> stack_;
+    std::size_t size_ = 0;
+};
+
 /// Tests the leaves of the list, in a hierarchy whose tree is not to be traversed.
 template <bool kAny, typename Instance>
-[[gnu::noinline]] bool find_in_list(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& best,
-                                    const Instance& instance) {
+[[gnu::noinline]] bool traverse_list(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& best,
+                                     const Instance& instance) {
     LeafTest<kAny, Instance> test_leaf(bvh, ray, object, instance);
     for (const BvhRef leaf : bvh.list)
         if (test_leaf(leaf, best)) return true;
     return test_leaf.found();
 }
 
-/// Finds the first hit that comes before `best`, in the order of `precedes`, and stores it in `best`. On input,
-/// best.t is the end of the ray. Returns whether there was such a hit. If `object` is not kNoObject (inside an
-/// instance), hits report it as their object. `instance(i, best)` is called to find the hits of instances in the
-/// same manner.
-template <typename Instance>
-bool find_closest(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& best, const Instance& instance) {
-    if (!bvh.use_tree()) return find_in_list<false>(bvh, ray, object, best, instance);
+/// Traverses the hierarchy with a ray that ends at best.t.
+/// - Without kAny: stores the first hit that comes before `best`, in the order of `precedes`, in `best`. Returns whether
+///   there was such a hit.
+/// - With kAny: returns whether any primitive other than that of `best` is hit before it. A shadow ray to a light thus
+///   ignores the light itself. The search ends at the first such hit.
+///
+/// If `object` is not kNoObject (inside an instance), hits report it as their object. `instance(i, best)` is called to
+/// find the hits of instances in the same manner.
+template <bool kAny, typename Instance>
+bool traverse(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& best, const Instance& instance) {
+    if (!bvh.use_tree()) return traverse_list<kAny>(bvh, ray, object, best, instance);
     const SlabRay slabs(ray, bvh.bounds);
-    LeafTest<false, Instance> test_leaf(bvh, ray, object, instance);
-
-    // A step down pushes at most kWidth − 1 children.
-    std::array<StackEntry, (BvhNode::kWidth - 1) * Bvh::kMaxDepth + 1> stack;
-    std::size_t size = 0;
+    LeafTest<kAny, Instance> test_leaf(bvh, ray, object, instance);
+    std::conditional_t<kAny, LargestFirst, NearestFirst> children;
     const SlabRay::Batch t_min(ray.t_min);
     BvhRef next = BvhRef::node(0);
     for (;;) {
         while (!next.is_leaf()) {
             const BvhNode& node = node_at(bvh, next);
             const auto [distance, entered] = slabs.enter(node, t_min, SlabRay::Batch(best.t));
-            unsigned children = entered;
-            if (children == 0) break;
-            const auto first = static_cast<std::size_t>(std::countr_zero(children));
-            children &= children - 1;
-            if (children == 0) {
-                next = node.children[first];
-                continue;
-            }
-            const Lanes entry(distance);
-            const auto take = [&] {
-                const auto child = static_cast<std::size_t>(std::countr_zero(children));
-                children &= children - 1;
-                return StackEntry(entry[child], node.children[child]);
-            };
-            const std::size_t bottom = size;
-            StackEntry nearest = take_nearer(StackEntry(entry[first], node.children[first]), take(), stack[size++]);
-            while (children != 0) {
-                StackEntry other;
-                nearest = take_nearer(nearest, take(), other);
-                // The children are sorted so that the farthest is lowest on the stack.
-                std::size_t i = size++;
-                for (; i > bottom && stack[i - 1].nearer_than(other); --i) stack[i] = stack[i - 1];
-                stack[i] = other;
-            }
-            next = nearest.child();
-        }
-        if (next.is_leaf()) test_leaf(next, best);
-        do {
-            if (size == 0) return test_leaf.found();
-            --size;
-        } while (stack[size].entry() > best.t);
-        next = stack[size].child();
-    }
-}
-
-/// Returns whether any primitive other than that of `end` is hit before `end`. A shadow ray to a light thus ignores
-/// the light itself. The search ends at the first such hit. The other arguments are those of find_closest.
-template <typename Instance>
-bool find_any(const Bvh& bvh, const Ray& ray, std::uint32_t object, const Hit& end, const Instance& instance) {
-    Hit best = end;
-    if (!bvh.use_tree()) return find_in_list<true>(bvh, ray, object, best, instance);
-    const SlabRay slabs(ray, bvh.bounds);
-    LeafTest<true, Instance> test_leaf(bvh, ray, object, instance);
-
-    std::array<BvhRef, (BvhNode::kWidth - 1) * Bvh::kMaxDepth + 1> stack;
-    std::size_t size = 0;
-    const SlabRay::Batch t_min(ray.t_min), t_max(end.t);
-    BvhRef next = BvhRef::node(0);
-    for (;;) {
-        while (!next.is_leaf()) {
-            const BvhNode& node = node_at(bvh, next);
-            unsigned children = slabs.enter(node, t_min, t_max).children;
-            if (children == 0) break;
-            // The largest child, which is the last, is visited first (Ogaki and Derouet-Jourdan 2016, "An N-ary BVH
-            // child node sorting technique for occlusion test", sort by area likewise).
-            next = node.children[static_cast<std::size_t>(31 - std::countl_zero(children))];
-            for (; (children & (children - 1)) != 0; children &= children - 1)
-                stack[size++] = node.children[static_cast<std::size_t>(std::countr_zero(children))];
+            if (entered == 0) break;
+            next = children.descend(node, distance, entered);
         }
         if (next.is_leaf() && test_leaf(next, best)) return true;
-        if (size == 0) return false;
-        next = stack[--size];
+        if (!children.pop(best.t, next)) return test_leaf.found();
     }
 }
 
