@@ -8,12 +8,12 @@ namespace duet::raytrace {
 
 namespace {
 
-// These are the times in nanoseconds, measured (Zen 5, 8 lanes) on 2 to 64 triangles, quads, spheres and mixtures of
-// these, small and large, in the open and in a room. On these scenes, the choice by these times was the faster one
-// or within a tenth of it. Only their ratios matter.
-constexpr double kNodeTime = 25;                       // tests of a node's boxes
-constexpr double kLeafVisitTime = 12;                  // mostly a mispredicted branch
-constexpr std::array kBlockTestTime{10.0, 22.0, 12.0}; // indexed by PrimitiveKind
+// Costs in units of one test of a node's boxes, as in the SAH. They are ratios of times, measured with 8 lanes on 2 to 64
+// triangles, quads, spheres and mixtures of these, small and large, in the open and in a room. On these scenes, the
+// choice by these costs was the faster one or within a tenth of it.
+constexpr double kNodeCost = 1;
+constexpr double kLeafVisitCost = 0.5;                 // mostly a mispredicted branch
+constexpr std::array kBlockTestCost{0.4, 0.9, 0.5};    // indexed by PrimitiveKind
 
 constexpr std::size_t index_of(PrimitiveKind kind) { return static_cast<std::size_t>(kind); }
 // Scenes with more items never get a list.
@@ -25,19 +25,19 @@ double half_area(const Box3& box) {
     return d.x * d.y + d.y * d.z + d.z * d.x;
 }
 
-// Returns the expected time to traverse the subtree below `ref` for a ray that enters its box of half area `area`,
+// Returns the expected cost to traverse the subtree below `ref` for a ray that enters its box of half area `area`,
 // by the SAH.
-double tree_time(const Bvh& bvh, BvhRef ref, double area) {
-    if (ref.is_leaf()) return kLeafVisitTime + kBlockTestTime[index_of(ref.kind())];
+double tree_cost(const Bvh& bvh, BvhRef ref, double area) {
+    if (ref.is_leaf()) return kLeafVisitCost + kBlockTestCost[index_of(ref.kind())];
     const BvhNode& node = bvh.nodes[ref.index() / (sizeof(BvhNode) / BvhRef::kNodeUnit)];
-    double time = kNodeTime;
+    double cost = kNodeCost;
     for (std::size_t i = 0; i < BvhNode::kWidth; ++i) {
         const Box3 box = node.box(i);
         if (box.empty()) break;
         const double its_area = half_area(box);
-        time += tree_time(bvh, node.children[i], its_area) * (area > 0 ? its_area / area : 1);
+        cost += tree_cost(bvh, node.children[i], its_area) * (area > 0 ? its_area / area : 1);
     }
-    return time;
+    return cost;
 }
 
 } // namespace
@@ -49,10 +49,10 @@ void add_list_where_faster(BinaryTree& tree, CollapsedBvh& collapsed) {
     std::array<std::size_t, 4> count{};
     for (const BuildItem& item : tree.items) ++count[index_of(item.kind)];
     if (count[index_of(PrimitiveKind::kInstance)] > 0) return; // an instance's box test always pays off
-    double list_time = 0;
-    for (std::size_t kind = 0; kind < kBlockTestTime.size(); ++kind)
-        list_time += static_cast<double>((count[kind] + kBlockSize - 1) / kBlockSize) * kBlockTestTime[kind];
-    if (list_time > tree_time(bvh, BvhRef::node(0), half_area(bvh.bounds))) return;
+    double list_cost = 0;
+    for (std::size_t kind = 0; kind < kBlockTestCost.size(); ++kind)
+        list_cost += static_cast<double>((count[kind] + kBlockSize - 1) / kBlockSize) * kBlockTestCost[kind];
+    if (list_cost > tree_cost(bvh, BvhRef::node(0), half_area(bvh.bounds))) return;
 
     tree.items.reserve(2 * size);
     std::copy_n(tree.items.begin(), size, std::back_inserter(tree.items));
