@@ -12,8 +12,8 @@ namespace {
 // triangles, quads, spheres and mixtures of these, small and large, in the open and in a room. On these scenes, the
 // choice by these costs was the faster one or within a tenth of it.
 constexpr double kNodeCost = 1;
-constexpr double kLeafVisitCost = 0.5;                 // mostly a mispredicted branch
-constexpr std::array kBlockTestCost{0.4, 0.9, 0.5};    // indexed by PrimitiveKind
+constexpr double kLeafVisitCost = 0.48;                 // mostly a mispredicted branch
+constexpr std::array kBlockTestCost{0.4, 0.88, 0.48};   // indexed by PrimitiveKind
 
 constexpr std::size_t index_of(PrimitiveKind kind) { return static_cast<std::size_t>(kind); }
 // Scenes with more items never get a list.
