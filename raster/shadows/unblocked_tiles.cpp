@@ -27,7 +27,8 @@ std::vector<Caster> casters_of(const RasterSceneData& data) {
             casters.push_back({doubled(data.objects[i].bounds), i, sphere});
             continue;
         }
-        const bool convex = list->quads.size() == 1 || data.objects[i].closed;
+        const bool is_box = list->quads.size() == 6 && data.objects[i].closed;
+        const bool convex = list->quads.size() == 1 || is_box;
         for (const Quad& quad : list->quads) {
             Box3d box;
             for (const Vec3& corner : corners(quad)) box.extend(transform_point(Mat4d(object.to_world), Vec3d(corner)));
