@@ -8,9 +8,9 @@ namespace duet::raytrace {
 
 namespace {
 
-// Costs in units of one test of a node's boxes, as in the SAH. They are ratios of times, measured with 8 lanes on 2 to 64
-// triangles, quads, spheres and mixtures of these, small and large, in the open and in a room. On these scenes, the
-// choice by these costs was the faster one or within a tenth of it.
+// These costs are in units of one test of a node's boxes, as in the SAH. They are ratios of times, measured with 8
+// lanes on 2 to 64 triangles, quads, spheres and mixtures of these, small and large, in the open and in a room. On
+// these scenes, the choice by these costs was the faster one or within a tenth of it.
 constexpr double kNodeCost = 1;
 constexpr double kLeafVisitCost = 0.48;                 // mostly a mispredicted branch
 constexpr std::array kBlockTestCost{0.4, 0.88, 0.48};   // indexed by PrimitiveKind

@@ -108,9 +108,9 @@ private:
     std::size_t size_ = 0;
 };
 
-/// Visits the largest child first, which is the last of its node, where any hit will do (Ogaki and Derouet-Jourdan 2016,
-/// "An N-ary BVH child node sorting technique for occlusion test", sort by area likewise). The functions are those of
-/// NearestFirst.
+/// Visits the largest child first, which is the last of its node, where any hit will do (Ogaki and Derouet-Jourdan
+/// 2016, "An N-ary BVH child node sorting technique for occlusion test", sort by area likewise). The functions are
+/// those of NearestFirst.
 class LargestFirst {
 public:
     BvhRef descend(const BvhNode& node, const SlabRay::Batch&, unsigned entered) {
@@ -140,8 +140,8 @@ template <bool kAny, typename Instance>
 }
 
 /// Traverses the hierarchy with a ray that ends at best.t.
-/// - Without kAny: stores the first hit that comes before `best`, in the order of `precedes`, in `best`. Returns whether
-///   there was such a hit.
+/// - Without kAny: stores the first hit that comes before `best`, in the order of `precedes`, in `best`. Returns
+///   whether there was such a hit.
 /// - With kAny: returns whether any primitive other than that of `best` is hit before it. A shadow ray to a light thus
 ///   ignores the light itself. The search ends at the first such hit.
 ///
