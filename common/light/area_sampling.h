@@ -1,5 +1,6 @@
-// This file supports sampling a flat light uniformly by area, which is nearly uniform by solid angle where the light
-// is far away.
+// This file samples a flat light uniformly by area (pbrt-4, §12.2.3, which samples near lights by solid angle instead).
+// Right beside the light the density by solid angle varies without bound; multiple importance sampling with the BSDF's
+// directions keeps the contributions bounded there.
 #pragma once
 
 #include "common/vec/vec.h"
@@ -21,14 +22,6 @@ template <typename T> MaskOf<T> is_usable_pdf(T pdf) { return (pdf > T(1e-45)) &
 template <typename T> struct AreaSampling {
     Vec3T<T> area_vector, to_plane;
 
-    /// Returns whether the light is so near that it has to be sampled by solid angle, because the density of area
-    /// sampling would vary much over the shape. `center` is the shape's center relative to p. For farther lights area
-    /// sampling is nearly as good at a third of the cost (in the Cornell box a threshold of 0.05 gives 4 % less error
-    /// for 27 % more time).
-    auto near(Vec3T<T> center) const {
-        constexpr double kNear = 0.3; // area over squared distance to the center
-        return length(area_vector) > T(kNear) * length_squared(center);
-    }
     /// Returns whether p lies on an emitting side: the front, and the back of a light that is two-sided there. The
     /// light's own plane is on no side.
     MaskOf<T> emits(MaskOf<T> two_sided) const {
@@ -54,7 +47,6 @@ template <typename T> struct QuadSeen : AreaSampling<T> {
 
     QuadSeen(Vec3T<T> corner, Vec3T<T> u_, Vec3T<T> v_, Vec3T<T> p)
         : AreaSampling<T>{cross(u_, v_), corner - p}, u(u_), v(v_) {}
-    auto near() const { return AreaSampling<T>::near(this->to_plane + (u + v) * T(0.5)); }
     /// Returns the sample at the position a of the quad, for uniform area sampling.
     SolidAngleSampleT<T> sample(Vec2T<T> a) const {
         return AreaSampling<T>::sample(this->to_plane + u * a.x + v * a.y);

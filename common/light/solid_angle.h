@@ -1,4 +1,4 @@
-// This file samples the solid angle that a shape subtends at a point.
+// This file draws directions to a shape from a point, with densities by solid angle.
 #pragma once
 
 #include "common/geometry/shape.h"
@@ -16,16 +16,11 @@ struct LightTriangle {
 AreaSampling<double> area_seen(const LightTriangle& triangle, Vec3d p);
 QuadSeen<double> area_seen(const Quad& quad, Vec3d p);
 
-/// Returns whether the quad's sides are at right angles, up to rounding. Near parallelograms of other angles are
-/// sampled as two triangles.
-bool is_rectangle(const Quad& quad);
-
 // sample_solid_angle draws a direction from p to the shape, with u in [0, 1)². solid_angle_pdf returns the density
 // with which sample_solid_angle draws the direction to the shape's point q. Where p lies in the plane of a flat
 // shape, the sample is empty and the density 0.
 
-/// Near flat shapes are sampled uniformly by solid angle: a rectangle as a spherical rectangle, another quad as two
-/// triangles. Far shapes are sampled uniformly by area, which is nearly the same there.
+/// Flat shapes are sampled uniformly by area.
 std::optional<SolidAngleSample> sample_solid_angle(const LightTriangle& triangle, Vec3d p, Vec2d u);
 double solid_angle_pdf(const LightTriangle& triangle, Vec3d p, Vec3d q);
 

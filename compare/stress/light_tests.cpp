@@ -1,6 +1,5 @@
 // These tests sample lights that are slivers, far away, near or edge-on.
 #include "common/light/light.h"
-#include "common/light/spherical_triangle.h"
 #include "compare/stress/errors.h"
 #include "compare/stress/log_p_value.h"
 #include "compare/stress/trials.h"
@@ -43,41 +42,6 @@ long double exact_solid_angle(Vec3d p, Vec3d a, Vec3d b, Vec3d c) {
     return 2 * std::atan2(volume, nx * ny * nz + dot(x, y) * nz + dot(y, z) * nx + dot(z, x) * ny);
 }
 
-/// Returns the effect on Ω = 2 atan2(V, W) of one rounding of each term, to first order: dΩ = 2 (W dV − V dW) /
-/// (V² + W²). Rounding the corners to unit vectors changes V = a·(b × c) by the sides |a × b| …. V computed from
-/// two edges is rounded in proportion to their lengths, and W = 1 + a·b + b·c + c·a in proportion to 4. V² + W² is
-/// 2 (1 + a·b)(1 + b·c)(1 + c·a), which does not cancel as W does, with 2 + 2a·b = |a + b|².
-double rounded_terms(const SphericalTriangle& t) {
-    const double v = std::abs(dot(t.a, cross(t.b - t.a, t.c - t.a)));
-    const double w = 1 + dot(t.a, t.b) + dot(t.b, t.c) + dot(t.c, t.a);
-    const double squares = length_squared(t.a + t.b) * length_squared(t.b + t.c) * length_squared(t.c + t.a) / 4;
-    const double sides = length(cross(t.a, t.b)) + length(cross(t.b, t.c)) + length(cross(t.c, t.a));
-    const double edges = length(t.b - t.a) * length(t.c - t.a);
-    return 2 * (std::abs(w) * (sides + edges) + v * 4) / squares;
-}
-
-StressResult solid_angles(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        const auto corners = corners_of(random_flat(trial.random));
-        const Vec3d p(viewpoint(trial.random));
-        const SphericalTriangle t{normalize(corners[0] - p), normalize(corners[1] - p), normalize(corners[2] - p)};
-        const long double truth = exact_solid_angle(p, corners[0], corners[1], corners[2]);
-        const double terms = rounded_terms(t);
-        const auto error = [&](double angle) {
-            return static_cast<double>(std::abs(static_cast<long double>(angle) - truth)) / (terms * 0x1p-53);
-        };
-        const auto angle_at = [](Vec3d a, Vec3d b, Vec3d c) {
-            const Vec3d ab = cross(a, b), ac = cross(a, c);
-            return std::acos(dot(ab, ac) / (length(ab) * length(ac)));
-        };
-        trial.note("corners ", exact(Vec3(corners[0])), ", ", exact(Vec3(corners[1])), ", ", exact(Vec3(corners[2])),
-                   " seen from ", exact(Vec3(p)));
-        trial.record(error(t.solid_angle()));
-        trial.record_naive(
-            error(angle_at(t.a, t.b, t.c) + angle_at(t.b, t.c, t.a) + angle_at(t.c, t.a, t.b) - kPiDouble));
-    });
-}
-
 /// Returns the distance of a point from the shape, its plane and its edges, relative to its distance from p.
 double off_shape(const Flat& flat, Vec3d p, Vec3d q) {
     using Wide = Vec3T<long double>; // the normal of a sliver is a difference that cancels
@@ -94,20 +58,6 @@ double off_shape(const Flat& flat, Vec3d p, Vec3d q) {
 /// Returns |cos| of the angle between the shape's normal and wi.
 double slant(const std::array<Vec3d, 4>& corners, Vec3d wi) {
     return std::abs(dot(normalize(cross(corners[1] - corners[0], corners[2] - corners[0])), wi));
-}
-
-/// Returns the divisor of the rounding error of Arvo's cosine. It is about the square of a triangle's solid angle Ω,
-/// or of its complement to a hemisphere, Ω' = min(Ω, 2π − Ω). The cosine is a quotient of terms such as cos(uΩ
-/// − α) − cos α, a difference of size Ω α of numbers near 1, and α ≥ Ω/2. For a quad it is the smaller
-/// value of its two triangles.
-double squared_room(const std::array<Vec3d, 4>& c, Vec3d p) {
-    double least = 2 * kPiDouble;
-    for (const std::size_t i : {std::size_t{1}, std::size_t{2}}) {
-        if (length(c[i + 1] - c[i]) == 0) continue; // the degenerate second half of a triangle
-        const auto angle = static_cast<double>(exact_solid_angle(p, c[0], c[i], c[i + 1]));
-        least = std::min({least, angle, 2 * kPiDouble - angle});
-    }
-    return sqr(least);
 }
 
 StressResult samples(const StressTest& test, const StressSetting& setting) {
@@ -127,10 +77,8 @@ StressResult samples(const StressTest& test, const StressSetting& setting) {
                    ", ", exact(Vec3(corners[2])), " seen from ", exact(Vec3(p)), ", u = (", u.x, ", ", u.y, "): pdf ",
                    s->pdf, " and ", pdf);
         if (!(s->pdf > 0) || !std::isfinite(s->pdf)) return trial.record(std::numeric_limits<double>::infinity());
-        const bool by_solid_angle = pdf_of(corners[0]) == pdf && pdf_of(corners[1]) == pdf && pdf_of(corners[2]) == pdf;
-        const double place = 1 + length(q) / s->distance; // the test itself rounds q
-        const double turned = 1 + (by_solid_angle ? 1 / squared_room(corners, p) : 0);
-        const double terms = place + turned / slant(corners, s->wi); // an error of wi moves the point by this factor
+        const double place = 1 + length(q) / s->distance;       // the test itself rounds q
+        const double terms = place + 1 / slant(corners, s->wi); // an error of wi moves the point by this factor
         trial.record(in_double_roundoffs(relative_error(s->pdf, pdf)) / place);
         trial.record(in_double_roundoffs(off_shape(flat, p, q)) / terms);
         trial.record(in_double_roundoffs(length(s->wi) - 1));
@@ -183,8 +131,8 @@ StressResult far_spheres(const StressTest& test, const StressSetting& setting) {
         trial.record(density_error(s->pdf));
         trial.record(density_error(solid_angle_pdf(sphere, Vec3d(p), Vec3d(sphere.center))));
         // The point is on the sphere, up to the rounding of the center's distance.
-        const double off = length(Vec3d(p) - Vec3d(sphere.center) + s->wi * s->distance) -
-                           static_cast<double>(sphere.radius);
+        const double off =
+            length(Vec3d(p) - Vec3d(sphere.center) + s->wi * s->distance) - static_cast<double>(sphere.radius);
         trial.record(in_double_roundoffs(off) / std::sqrt(static_cast<double>(d2)));
         const Vec3 w = sphere.center - p;
         const float cosine = std::sqrt(1 - sphere.radius * sphere.radius / length_squared(w));
@@ -193,12 +141,10 @@ StressResult far_spheres(const StressTest& test, const StressSetting& setting) {
 }
 
 constexpr StressTest kTests[] = {
-    {"light/solid-angles", "solid angles of triangles, as thin as 1e-5, 0.01 to 1e4 away", 4, "2^-53 of its terms",
-     "each term is rounded 16 times at most, which add up to about √16 (Higham and Mary 2019); judged by long double",
-     "the angles' sum - π", 500'000, solid_angles},
-    {"light/samples", "samples of such triangles and quads lie on them and have the density that is requested", 17,
-     "2^-53 of its terms", "17 roundings: 14 of both densities d³/(A·w), 3 of the point; Arvo's cosine divides by Ω²",
-     "", 500'000, samples},
+    {"light/samples",
+     "samples of triangles and quads, as thin as 1e-5, 0.01 to 1e4 away, lie on them and have the density that is "
+     "requested",
+     17, "2^-53 of its terms", "17 roundings: 14 of both densities d³/(A·w), 3 of the point", "", 500'000, samples},
     {"light/densities", "the mean of 1/pdf is the solid angle", 6, "-log10 odds",
      "odds of a false alarm 1e-6 for the row (Šidák 1967); judged by long double", "", 1'000, densities},
     {"light/far-spheres", "density and samples of spheres 1.001 to 1e6 radii away", 10, "2^-53 of its terms",

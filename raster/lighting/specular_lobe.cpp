@@ -70,7 +70,7 @@ void LobeLookup::set_rows(float alpha) {
         mix(kLobeRows[row][k].at(0), kLobeRows[row + 1][k].at(0), y - static_cast<float>(row), matrix_[k]);
     const GgxAlbedoTables& albedo = kGgxAlbedoTables;
     const auto place = GgxAlbedoTables::roughness_index(alpha);
-    for (const std::size_t half : {0, 1}) {
+    for (std::size_t half = 0; half < 2; ++half) {
         const auto strip = [&](const GgxAlbedoTables::Table& table, std::size_t r) {
             return table[r].data() + half * kPacketSize;
         };

@@ -24,8 +24,7 @@ public:
             choices_[i].index = choice->index;
             choices_[i].probability = choice->probability;
         }
-        const unsigned done =
-            plan.scene.needs.emitter_textures ? 0 : sample_far_rectangles(plan.scene.lights, paths, p);
+        const unsigned done = plan.scene.needs.emitter_textures ? 0 : sample_quads(plan.scene.lights, paths, p);
         for (unsigned left = chosen_ & ~done; left != 0; left &= left - 1) {
             const auto i = static_cast<std::size_t>(std::countr_zero(left));
             if (const auto light = sample_li(plan.scene, *plan.lights, paths[i].state->previous_vertex.receiver,
@@ -56,10 +55,9 @@ private:
         light_[i] = light.light;
     }
 
-    // Samples the lights of the paths whose light is a rectangle that is sampled by area, all together. Returns a bit
-    // mask of these paths.
-    unsigned sample_far_rectangles(const std::vector<Light>& lights, std::span<const BatchPath> paths, const Vec& p) {
-        unsigned rectangles = 0;
+    // Samples the lights of the paths whose light is a quad, all together. Returns a bit mask of these paths.
+    unsigned sample_quads(const std::vector<Light>& lights, std::span<const BatchPath> paths, const Vec& p) {
+        unsigned quads = 0;
         LaneVectors corner, edge_u, edge_v;
         LaneValues ux, uy, two_sided;
         for (unsigned left = chosen_; left != 0; left &= left - 1) {
@@ -67,27 +65,26 @@ private:
             if (choices_[i].index >= lights.size()) continue;
             const auto* light = std::get_if<SurfaceLight>(&lights[choices_[i].index]);
             const Quad* quad = light != nullptr ? std::get_if<Quad>(&light->shape) : nullptr;
-            if (quad == nullptr || !is_rectangle(*quad)) continue;
-            rectangles |= 1u << i;
+            if (quad == nullptr) continue;
+            quads |= 1u << i;
             corner.set(i, quad->corner);
             edge_u.set(i, quad->u);
             edge_v.set(i, quad->v);
             ux.values[i] = paths[i].random_samples->light.x, uy.values[i] = paths[i].random_samples->light.y;
             two_sided.values[i] = light->two_sided ? 1.0f : 0.0f;
         }
-        if (rectangles == 0) return 0;
+        if (quads == 0) return 0;
         const QuadSeen<Doubles> seen(corner.doubles(), edge_u.doubles(), edge_v.doubles(), to_doubles(p));
-        const unsigned far = rectangles & ~lane_bits(seen.near());
         const SolidAngleSampleT<Doubles> sample = seen.sample({ux.doubles(), uy.doubles()});
         const auto emits = seen.emits(two_sided.doubles() > Doubles(0.0));
         const LaneVectors wi(sample.wi);
         const LaneValues distances(sample.distance), pdfs(sample.pdf);
-        for (unsigned left = far & lane_bits(emits & is_usable_pdf(sample.pdf)); left != 0; left &= left - 1) {
+        for (unsigned left = quads & lane_bits(emits & is_usable_pdf(sample.pdf)); left != 0; left &= left - 1) {
             const auto i = static_cast<std::size_t>(std::countr_zero(left));
             const Rgb radiance = std::get<SurfaceLight>(lights[choices_[i].index]).radiance;
             set(i, light_sample({wi.vec(i), distances.values[i], radiance, pdfs.values[i], false}, choices_[i]));
         }
-        return far;
+        return quads;
     }
 
     unsigned chosen_ = 0, valid_ = 0; // bit masks of the paths that have a choice, and a light sample
