@@ -1,8 +1,8 @@
 // The two pipelines behind one type, so that comparison code calls both the same way.
 #pragma once
 
-#include "common/film/rendering.h"
 #include "common/program/render_program.h"
+#include "common/rendering.h"
 #include "common/scene/scene.h"
 
 #include <string>
@@ -20,7 +20,7 @@ struct ComparisonSettings {
 
 /// A renderer prepared for one scene, which must outlive it.
 struct Renderer {
-    std::string name;       ///< "raster" or "raytrace"
+    std::string name;            ///< "raster" or "raytrace"
     RenderFunction render_image; ///< renders the full image
     RenderFunction render_hits;  ///< renders Rendering::hit: one ray per pixel through its center and the lens center,
                                  ///< when the shutter opens

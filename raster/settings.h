@@ -1,7 +1,7 @@
 // Defines the settings of the rasterizer.
 #pragma once
 
-#include "common/film/rendering.h"
+#include "common/rendering.h"
 
 namespace duet::raster {
 
@@ -41,8 +41,8 @@ struct RasterSettings : RenderSettings {
     /// and shades once per primitive. 0 turns it off. It requires samples_per_pixel = 1, and uses the lens center and
     /// the time the shutter opens.
     int multisamples = 0;
-    bool sample_shading = false; ///< with multisamples: shade every sample, i.e. supersample with its pattern
-    bool edges = false; ///< draw lines where depth, normals or objects change (raster/overlay/edges.h)
+    bool sample_shading = false;  ///< with multisamples: shade every sample, i.e. supersample with its pattern
+    bool edges = false;           ///< draw lines where depth, normals or objects change (raster/overlay/edges.h)
     LightComponentSet components; ///< turn parts off to examine the others or to measure their cost
     bool shadows = true; ///< Shading::kLit: use shadow maps; prepare() must be called with this setting as well
     /// A shadow map has this many texels per side, in [64, 8192]. Each face of a cube map has half as many, and an

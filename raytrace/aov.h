@@ -1,7 +1,7 @@
 // AovBuffers accumulates auxiliary images (AOVs) of what the camera rays hit.
 #pragma once
 
-#include "common/film/film.h"
+#include "raytrace/film/film.h"
 #include "raytrace/render_plan.h"
 
 namespace duet::raytrace {

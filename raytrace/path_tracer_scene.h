@@ -1,9 +1,9 @@
 // PathTracerSceneData is what prepare() makes of a scene, once for any number of views.
 #pragma once
 
-#include "common/light/light_sampler.h"
 #include "common/scene/scene.h"
 #include "raytrace/acceleration/accelerator.h"
+#include "raytrace/sampling/light_sampler.h"
 
 #include <optional>
 #include <vector>

@@ -1,7 +1,7 @@
 #include "raytrace/path_tracer_scene.h"
 
-#include "common/scene/used_materials.h"
 #include "raytrace/render.h"
+#include "raytrace/used_materials.h"
 
 namespace duet::raytrace {
 
@@ -18,10 +18,9 @@ bool emits(const Material& material) { return emitter(material) != nullptr; }
 } // namespace
 
 PathTracerSceneData::PathTracerSceneData(const Scene& scene_, int threads)
-    : scene(scene_), accelerator(scene_, threads),
-      lights(scene_.lights, sampled_irradiance(scene_.environment)), finite_lights(scene_.lights, 0),
-      environment_light({}, sampled_irradiance(scene_.environment)), emitters(any_used_material(scene_, emits)),
-      environment(!is_black(scene_.environment)) {
+    : scene(scene_), accelerator(scene_, threads), lights(scene_.lights, sampled_irradiance(scene_.environment)),
+      finite_lights(scene_.lights, 0), environment_light({}, sampled_irradiance(scene_.environment)),
+      emitters(any_used_material(scene_, emits)), environment(!is_black(scene_.environment)) {
     bsdfs.reserve(scene.materials.size());
     for (const Material& material : scene.materials)
         bsdfs.push_back(textured(material) ? std::nullopt

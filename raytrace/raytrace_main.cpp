@@ -3,7 +3,7 @@
 #include "common/program/render_program.h"
 #include "common/system/error.h"
 #include "common/system/file.h"
-#include "raytrace/merge_films.h"
+#include "raytrace/film/merge_films.h"
 #include "raytrace/pixel_debug.h"
 #include "raytrace/render.h"
 
@@ -74,19 +74,20 @@ int main(int argc, char** argv) {
         app.add_option("--error", settings.error_limit, "Stop when the estimated relMSE is below this, between passes")
             ->check(positive_number());
         // This is a flag function, because CLI11 would set an optional flag that is not given to false.
-        app.add_flag_function("--adaptive,!--no-adaptive", [&](std::int64_t times) { adaptive = times > 0; },
-                              "More samples where the error is, --spp in the mean (default with --time or --error, "
-                              "but for --samples and samplers that need to know the number)");
+        app.add_flag_function(
+            "--adaptive,!--no-adaptive", [&](std::int64_t times) { adaptive = times > 0; },
+            "More samples where the error is, --spp in the mean (default with --time or --error, "
+            "but for --samples and samplers that need to know the number)");
         auto* const film_option = app.add_option(
             "--film", film,
-        "Keep all samples in this .exr: written at intervals, at the end and when interrupted; a later run goes on "
-        "from there, to the same bits as one run. What was begun with --adaptive, --error or --aov variance knows its "
-        "error, and goes on with these alone. `raytrace merge` joins films");
+            "Keep all samples in this .exr: written at intervals, at the end and when interrupted; a later run goes on "
+            "from there, to the same bits as one run. What was begun with --adaptive, --error or --aov variance knows "
+            "its "
+            "error, and goes on with these alone. `raytrace merge` joins films");
         app.add_option("--film-interval", settings.film_interval, "Seconds between two writings of it (default 60)")
             ->check(nonnegative_number())
             ->needs(film_option);
-        app.add_option("--samples", samples,
-                       "Samples A:B, from A to B − 1 of each pixel: a shard (in place of --spp)");
+        app.add_option("--samples", samples, "Samples A:B, from A to B − 1 of each pixel: a shard (in place of --spp)");
         app.add_option("--pixel", pixel,
                        "Render that one sample, X,Y[,SAMPLE] (row 0 on top, default sample 0), and print its path: "
                        "needs no -o");

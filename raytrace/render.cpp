@@ -2,7 +2,7 @@
 
 #include "common/system/error.h"
 #include "common/system/stopwatch.h"
-#include "raytrace/film_checkpoint.h"
+#include "raytrace/film/film_checkpoint.h"
 #include "raytrace/render_pass.h"
 #include "raytrace/sample_schedule.h"
 
@@ -101,8 +101,7 @@ Rendering render(const PathTracerScene& prepared, const View& view, const PathTr
     statistics.invalid_samples = film.invalid_samples();
     statistics.estimated_relmse = film.estimated_relmse();
     statistics.skipped = skipped(plan, settings);
-    if (plan.russian_roulette)
-        statistics.skipped.push_back({"paths ended by roulette", "dim ones", rays.ended});
+    if (plan.russian_roulette) statistics.skipped.push_back({"paths ended by roulette", "dim ones", rays.ended});
     statistics.approximations = approximations(plan, settings);
     statistics.seconds.emplace_back("resolve", watch.lap());
     return rendering;

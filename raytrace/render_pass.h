@@ -1,10 +1,10 @@
 // A render consists of passes over the whole image. Each pass takes some samples of its pixels.
 #pragma once
 
-#include "common/film/film.h"
 #include "common/system/control.h"
 #include "raytrace/aov.h"
-#include "raytrace/film_checkpoint.h"
+#include "raytrace/film/film.h"
+#include "raytrace/film/film_checkpoint.h"
 #include "raytrace/integrator/integrator.h"
 
 namespace duet::raytrace {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/camera/pixel_footprint.h"
-#include "common/film/rendering.h"
+#include "common/rendering.h"
 #include "raytrace/batched_surfaces.h"
 #include "raytrace/path_tracer_scene.h"
 #include "raytrace/settings.h"
@@ -25,9 +25,9 @@ struct RenderPlan {
     const LightSampler* lights = nullptr;                    ///< null if no light is sampled
     const Environment* environment = nullptr;                ///< null if rays that escape find no light
     const std::vector<std::optional<Bsdf>>* bsdfs = nullptr; ///< by material; empty where a texture varies it
-    std::vector<SurfaceDetail> details; ///< by material: what its surface points need
+    std::vector<SurfaceDetail> details;                      ///< by material: what its surface points need
     bool emission = false;                                   ///< whether surfaces that are hit may emit
-    bool hits_find_light = false;   ///< whether BSDF samples may find an emitter or the environment
+    bool hits_find_light = false; ///< whether BSDF samples may find an emitter or the environment
     bool specular_light_samples =
         false; ///< whether lights are sampled at mirrors and glass, too, which cannot reflect them
     bool needs_medium_stack =
@@ -35,7 +35,7 @@ struct RenderPlan {
     bool black_shadow_rays = false; ///< whether shadow rays are traced even if the surface reflects none of the light
     BatchedSurfaces batched;        ///< surfaces at which paths are scattered in batches (wavefront/batch.h)
     int max_depth = 0;
-    bool russian_roulette = false;  ///< whether roulette may end paths after more than one scattering
+    bool russian_roulette = false; ///< whether roulette may end paths after more than one scattering
     std::optional<PixelFootprint>
         pixel_footprint; ///< of a ray that covers a whole pixel; empty if no texture is filtered
     bool lens = false;   ///< whether rays start at points sampled on the lens

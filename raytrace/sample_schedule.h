@@ -1,7 +1,7 @@
 // The schedule decides how many samples each pixel gets, pass by pass.
 #pragma once
 
-#include "common/film/film.h"
+#include "raytrace/film/film.h"
 #include "raytrace/settings.h"
 
 namespace duet::raytrace {

@@ -1,9 +1,9 @@
 // Defines the settings of the path tracer.
 #pragma once
 
-#include "common/film/rendering.h"
-#include "common/sampling/pixel_filter.h"
-#include "common/sampling/sampler.h"
+#include "common/rendering.h"
+#include "raytrace/sampling/pixel_filter.h"
+#include "raytrace/sampling/sampler.h"
 
 #include <filesystem>
 #include <string_view>
@@ -39,17 +39,17 @@ struct PathTracerSettings : RenderSettings {
     FilterKind filter = FilterKind::kBox;
     int max_depth = 64; ///< maximum number of scattering events: 0 = emission only, 1 = direct light
     bool russian_roulette = true;
-    bool environment = true;               ///< see raster::RasterSettings::environment
+    bool environment = true; ///< see raster::RasterSettings::environment
     bool adaptive =
         false; ///< more samples where the error is larger; samples_per_pixel in the mean (sample_schedule.h)
     std::uint32_t first_sample = 0; ///< first of the samples_per_pixel samples; more than 0 in a shard
     std::filesystem::path film; ///< file of the film, which is continued if it exists (film_checkpoint.h); empty: none
-    double film_interval = 60;      ///< seconds between two writes of that file
-    double time_limit = 0;   ///< seconds; stops between passes; 0: none
-    double error_limit = 0;  ///< estimated relMSE; stops between passes; 0: none
+    double film_interval = 60;  ///< seconds between two writes of that file
+    double time_limit = 0;      ///< seconds; stops between passes; 0: none
+    double error_limit = 0;     ///< estimated relMSE; stops between passes; 0: none
 
     /// Returns whether the film must estimate its error. Samples then fall into two replicates
-    /// (common/sampling/sampler.h). Otherwise all samples of a pixel are stratified together, which reduces the
+    /// (raytrace/sampling/sampler.h). Otherwise all samples of a pixel are stratified together, which reduces the
     /// error.
     bool estimates_error() const { return adaptive || error_limit > 0 || aovs.variance; }
     std::uint32_t replicates() const { return estimates_error() ? 2 : 1; }

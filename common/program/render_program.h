@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/camera/camera.h"
-#include "common/film/rendering.h"
+#include "common/rendering.h"
 #include "common/scene/scene.h"
 #include "common/system/control.h"
 

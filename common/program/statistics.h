@@ -1,7 +1,7 @@
 // This file writes the statistics of a rendering as JSON, with the same keys for both programs.
 #pragma once
 
-#include "common/film/rendering.h"
+#include "common/rendering.h"
 
 #include <nlohmann/json_fwd.hpp>
 

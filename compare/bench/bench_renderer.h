@@ -3,9 +3,9 @@
 
 #include "common/camera/camera.h"
 #include "common/image/image.h"
-#include "common/sampling/sampler.h"
 #include "common/scene/scene.h"
 #include "common/system/control.h"
+#include "raytrace/sampling/sampler.h"
 
 #include <cstdint>
 #include <functional>

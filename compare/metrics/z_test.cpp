@@ -9,7 +9,7 @@
 
 // How a difference is judged by variances from few replicates
 //
-// A variance from two replicates (common/film/film.h) has one degree of freedom. It is correct on average but
+// A variance from two replicates (raytrace/film/film.h) has one degree of freedom. It is correct on average but
 // useless for a single pixel: a difference divided by its square root has Student's t distribution with one
 // degree of freedom, which is Cauchy's and has infinite variance. Two remedies are used.
 //
@@ -201,8 +201,7 @@ void decide(ZTest& test, const std::vector<Region>& list) {
     for (std::size_t c = 0; c < 3; ++c) {
         const Sums& whole = list.back().sums[c];
         test.mean_z[c] = whole.z();
-        if (whole.count > 0)
-            test.detectable[c] = detectable(whole, threshold);
+        if (whole.count > 0) test.detectable[c] = detectable(whole, threshold);
     }
 }
 

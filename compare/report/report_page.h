@@ -1,8 +1,8 @@
 // The report page: one self-contained HTML file that makes no network requests.
 #pragma once
 
-#include "common/film/rendering.h"
 #include "common/program/statistics.h"
+#include "common/rendering.h"
 #include "common/scene/scene.h"
 #include "compare/hits/hit_agreement.h"
 #include "compare/metrics/image_metrics.h"

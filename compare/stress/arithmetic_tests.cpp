@@ -1,10 +1,10 @@
 // These tests compare robust arithmetic, frames, warps and film sums with exact integers, long double and double.
-#include "common/film/film.h"
 #include "common/sampling/warp.h"
 #include "common/vec/frame.h"
 #include "common/vec/robust.h"
 #include "compare/stress/errors.h"
 #include "compare/stress/trials.h"
+#include "raytrace/film/film.h"
 
 #include <array>
 #include <bit>

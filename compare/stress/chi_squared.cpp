@@ -1,8 +1,8 @@
 #include "compare/stress/chi_squared.h"
 
-#include "common/sampling/sampler.h"
 #include "common/system/error.h"
 #include "common/vec/frame.h"
+#include "raytrace/sampling/sampler.h"
 
 #include <algorithm>
 #include <array>

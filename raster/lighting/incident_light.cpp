@@ -1,6 +1,6 @@
 #include "raster/lighting/incident_light.h"
 
-#include "common/light/form_factor.h"
+#include "raster/lighting/form_factor.h"
 
 namespace duet::raster {
 namespace {

@@ -1,7 +1,7 @@
 // Implements stage 9, resolve, which averages samples into pixels.
 #pragma once
 
-#include "common/film/rendering.h"
+#include "common/rendering.h"
 #include "raster/settings.h"
 #include "raster/shading/sample_attributes.h"
 
@@ -31,7 +31,7 @@ private:
 
     RasterSettings settings_;
     Rendering rendering_;
-    Image<Rgbd> sums_;                   ///< of radiance; empty for a single sample per pixel, which is stored directly
+    Image<Rgbd> sums_; ///< of radiance; empty for a single sample per pixel, which is stored directly
     Image<std::uint32_t> sample_counts_, valid_counts_; ///< samples per pixel, and those of them with valid radiance
     struct AovSums {
         double depth = 0;

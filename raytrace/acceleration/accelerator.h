@@ -1,7 +1,7 @@
 // The accelerator answers ray queries against the whole scene: closest hit and occlusion.
 #pragma once
 
-#include "common/film/rendering.h"
+#include "common/rendering.h"
 #include "common/scene/scene.h"
 #include "raytrace/acceleration/bvh.h"
 

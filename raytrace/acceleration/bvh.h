@@ -3,9 +3,9 @@
 #pragma once
 
 #include "common/geometry/shape.h"
-#include "common/system/huge_pages.h"
 #include "common/vec/box.h"
 #include "common/vec/simd.h"
+#include "raytrace/acceleration/huge_pages.h"
 
 #include <array>
 #include <cstdint>

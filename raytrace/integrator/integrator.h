@@ -2,9 +2,9 @@
 // file of its own.
 #pragma once
 
-#include "common/sampling/sampler.h"
 #include "raytrace/integrator/light_components.h"
 #include "raytrace/render_plan.h"
+#include "raytrace/sampling/sampler.h"
 
 #include <span>
 

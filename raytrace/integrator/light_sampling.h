@@ -1,17 +1,17 @@
 // A vertex draws one light sample, which is weighted against BSDF sampling.
 #pragma once
 
-#include "common/light/light_sampler.h"
 #include "raytrace/integrator/vertex.h"
+#include "raytrace/sampling/light_sampler.h"
 
 namespace duet::raytrace {
 
 /// Holds a light sample: light that arrives at a point from a light or the environment, unless it is occluded. T is
 /// float, or a batch of floats for one light sample per lane.
 template <typename T> struct LightLiSampleT {
-    Vec3T<T> wi;      ///< unit, in world space
-    RgbT<T> radiance; ///< see LightSample::radiance
-    T pdf{};          ///< by solid angle, including the choice of the light; > 0
+    Vec3T<T> wi;                        ///< unit, in world space
+    RgbT<T> radiance;                   ///< see LightSample::radiance
+    T pdf{};                            ///< by solid angle, including the choice of the light; > 0
     MaskOf<T> delta = MaskOf<T>(false); ///< whether BSDF samples cannot find it
 };
 struct LightLiSample : LightLiSampleT<float> {

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "common/image/rgb.h"
-#include "common/vec/robust_batch.h"
-#include "common/vec/widen.h"
 #include "raytrace/wavefront/batch_path.h"
+#include "raytrace/wavefront/robust_batch.h"
+#include "raytrace/wavefront/widen.h"
 
 #include <array>
 #include <span>

@@ -2,10 +2,10 @@
 #include "compare/ladder/ladder.h"
 
 #include "common/image/image_file.h"
-#include "common/light/form_factor.h"
 #include "common/system/file.h"
 #include "compare/ladder/code_lines.h"
 #include "compare/ladder/shares.h"
+#include "raster/lighting/form_factor.h"
 #include "tests/raytrace/scene_builder.h"
 #include "tests/support/scratch.h"
 

@@ -1,10 +1,10 @@
 // Lesson raytrace-04: the lesson's random samples have the mean and the error that theory says, as those of the library
 // have; and a picture of 1920 x 1080 pixels at 100 samples each, with its time.
-#include "common/sampling/sampler.h"
 #include "common/scene/scene.h"
 #include "common/system/stopwatch.h"
 #include "raytrace/lessons/04-antialiasing/sampling.h"
 #include "raytrace/render.h"
+#include "raytrace/sampling/sampler.h"
 
 #include <doctest/doctest.h>
 

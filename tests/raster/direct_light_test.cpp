@@ -1,6 +1,5 @@
 // These tests compare the direct light of deferred shading with closed forms in double, with integrals and BSDFs, and
 // with a loop over all lights.
-#include "common/light/form_factor.h"
 #include "common/material/ggx_albedo.h"
 #include "common/material/metal.h"
 #include "common/sampling/hash.h"
@@ -8,6 +7,7 @@
 #include "raster/gbuffer/gbuffer_pass.h"
 #include "raster/geometry/geometry.h"
 #include "raster/lighting/direct_light.h"
+#include "raster/lighting/form_factor.h"
 #include "raster/lighting/light_set.h"
 #include "raster/lighting/lit_batch.h"
 #include "raster/lighting/polygon_light.h"

@@ -1,8 +1,8 @@
 // These tests check films in files: they are stored, continued with the same bits, and merged.
-#include "raytrace/film_checkpoint.h"
+#include "raytrace/film/film_checkpoint.h"
 
 #include "common/image/image_file.h"
-#include "raytrace/merge_films.h"
+#include "raytrace/film/merge_films.h"
 #include "raytrace/render.h"
 #include "tests/raytrace/scene_builder.h"
 #include "tests/support/errors.h"

@@ -3,9 +3,9 @@
 #include "raytrace/render.h"
 #include "raytrace/render_pass.h"
 
-#include "common/sampling/sampler.h"
 #include "common/sampling/warp.h"
 #include "raytrace/acceleration/accelerator.h"
+#include "raytrace/sampling/sampler.h"
 #include "tests/raytrace/scene_builder.h"
 
 #include <doctest/doctest.h>

@@ -1,7 +1,7 @@
 // This header builds rooms with lights and surfaces of every kind.
 #pragma once
 
-#include "common/sampling/sampler.h"
+#include "raytrace/sampling/sampler.h"
 #include "tests/raytrace/scene_builder.h"
 
 namespace duet::raytrace {
@@ -69,9 +69,12 @@ enum class ObjectCount { kFew, kSome, kMany };
 // vertex normals.
 inline void add_shiny_objects(SceneBuilder& builder, int levels, const Placement& place) {
     const float s = place.scale;
-    const Material materials[] = {Metal{{Rgb(0.9f, 0.6f, 0.3f)}, 0.8f}, Metal{{Rgb(0.8f)}, 0.1f},
-                                  Metal{{}, 0.5f, *find_conductor("gold")},   Metal{{}, 0, *find_conductor("copper")},
-                                  Metal{{Rgb(0.7f, 0.8f, 0.9f)}, 0},    Dielectric{1.5f, {Rgb(0.95f, 0.9f, 1)}},
+    const Material materials[] = {Metal{{Rgb(0.9f, 0.6f, 0.3f)}, 0.8f},
+                                  Metal{{Rgb(0.8f)}, 0.1f},
+                                  Metal{{}, 0.5f, *find_conductor("gold")},
+                                  Metal{{}, 0, *find_conductor("copper")},
+                                  Metal{{Rgb(0.7f, 0.8f, 0.9f)}, 0},
+                                  Dielectric{1.5f, {Rgb(0.95f, 0.9f, 1)}},
                                   Dielectric{1.33f, {Rgb(1.0f)}}};
     float x = -0.85f;
     for (const Material& material : materials) {

@@ -1,10 +1,10 @@
 // These tests check the mapping, the sampling and the irradiance of environments.
 #include "common/geometry/sphere.h"
 #include "common/light/environment.h"
-#include "common/sampling/sampler.h"
 #include "common/sampling/warp.h"
 #include "common/vec/matrix.h"
 #include "compare/stress/chi_squared.h"
+#include "raytrace/sampling/sampler.h"
 
 #include <doctest/doctest.h>
 
@@ -96,8 +96,10 @@ TEST_SUITE("unit") {
                     REQUIRE((std::isfinite(density) && density >= 0));
                     REQUIRE(is_finite(radiance(e, w)));
                     const float light = luminance(radiance(e, w)), mean = luminance(mean_radiance(e));
-                    if (!named.sampled) REQUIRE(density == 0);
-                    else if (light > 20 * mean) REQUIRE(density > 0);
+                    if (!named.sampled)
+                        REQUIRE(density == 0);
+                    else if (light > 20 * mean)
+                        REQUIRE(density > 0);
                     dark += light < 0.5f * mean;
                     dark_sampled += light < 0.5f * mean && density > 0;
                 }

@@ -1,9 +1,9 @@
 // These tests check the emission and the sampling of lights.
-#include "common/light/form_factor.h"
 #include "common/light/light.h"
-#include "common/light/light_sampler.h"
-#include "common/sampling/sampler.h"
 #include "compare/stress/chi_squared.h"
+#include "raster/lighting/form_factor.h"
+#include "raytrace/sampling/light_sampler.h"
+#include "raytrace/sampling/sampler.h"
 
 #include <doctest/doctest.h>
 
@@ -36,7 +36,7 @@ struct Setting {
 std::vector<Setting> settings() {
     // The triangle emits downward because its normal points down.
     const Triangle triangle{{-1, 2, -1}, {1, 2.2f, -0.5f}, {0.2f, 1.8f, 1.5f}};
-    const Quad square{{-0.5f, 1, -0.5f}, {1, 0, 0}, {0, 0, 1}};                 // normal (1,0,0) × (0,0,1) = −y
+    const Quad square{{-0.5f, 1, -0.5f}, {1, 0, 0}, {0, 0, 1}}; // normal (1,0,0) × (0,0,1) = −y
     const Quad slanted{{-1, 1, -1}, {2, 0.3f, 0}, {0.7f, 0, 2}};
     const Sphere ball{{0.3f, 2, -0.4f}, 0.7f};
     const Vec3 up{0, 1, 0}, tilted = normalize(Vec3(0.9f, 0.3f, -0.2f));

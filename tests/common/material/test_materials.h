@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/material/material.h"
-#include "common/sampling/sampler.h"
+#include "raytrace/sampling/sampler.h"
 
 #include <cmath>
 #include <string>
@@ -19,9 +19,9 @@ inline Vec3 direction(float z, float phi) {
 struct NamedBsdf {
     std::string name;
     Bsdf bsdf;
-    float narrowest = 1;    ///< alpha of the narrowest lobe
-    bool lossless = false;  ///< true if it absorbs nothing
-    double found = 0.997;   ///< lower bound of the density's integral; the remaining samples fall below the surface
+    float narrowest = 1;   ///< alpha of the narrowest lobe
+    bool lossless = false; ///< true if it absorbs nothing
+    double found = 0.997;  ///< lower bound of the density's integral; the remaining samples fall below the surface
 };
 
 inline LayeredBsdf layers(Rgb color, float metallic, float roughness, float coat = 0, float coat_roughness = 0) {
@@ -77,7 +77,7 @@ inline std::vector<NamedBsdf> all_materials() {
 
 /// The cosines of wo range from straight above to 1e-7, on both sides.
 inline constexpr float kCosines[] = {1.0f,  0.999f, 0.7f,   0.3f,  0.05f, 1e-3f, 1e-5f,
-                              1e-7f, -1e-7f, -1e-4f, -0.2f, -0.9f, -1.0f};
+                                     1e-7f, -1e-7f, -1e-4f, -0.2f, -0.9f, -1.0f};
 
 /// Calls f(lobe, u) for a jittered set of `n` random samples and for all corners of the unit cube.
 template <typename F> void for_numbers(int n, F f) {

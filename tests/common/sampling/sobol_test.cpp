@@ -1,9 +1,9 @@
 // These tests check the uniformity of Sobol points and of their scrambling.
 #include "common/sampling/hash.h"
-#include "common/sampling/sampler.h"
 #include "common/sampling/sobol.h"
 #include "common/system/error.h"
 #include "compare/stress/chi_squared.h"
+#include "raytrace/sampling/sampler.h"
 
 #include <doctest/doctest.h>
 

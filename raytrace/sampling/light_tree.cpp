@@ -1,4 +1,4 @@
-#include "common/light/light_tree.h"
+#include "raytrace/sampling/light_tree.h"
 
 #include "common/system/error.h"
 

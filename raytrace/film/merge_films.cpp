@@ -1,4 +1,4 @@
-#include "raytrace/merge_films.h"
+#include "raytrace/film/merge_films.h"
 
 #include "common/image/image_file.h"
 #include "common/program/program.h"

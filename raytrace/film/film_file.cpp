@@ -1,4 +1,4 @@
-#include "common/film/film_file.h"
+#include "raytrace/film/film_file.h"
 
 #include "common/image/image_file.h"
 #include "common/system/error.h"

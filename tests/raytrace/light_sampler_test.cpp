@@ -1,8 +1,8 @@
 // These tests check the light tree: its bounds miss no light, and its probabilities match its samples.
-#include "common/light/form_factor.h"
-#include "common/light/light_sampler.h"
-#include "common/sampling/sampler.h"
 #include "compare/stress/chi_squared.h"
+#include "raster/lighting/form_factor.h"
+#include "raytrace/sampling/light_sampler.h"
+#include "raytrace/sampling/sampler.h"
 
 #include <doctest/doctest.h>
 
@@ -27,10 +27,14 @@ Light random_light(Sampler& s, float size) {
     SurfaceLight light;
     light.radiance = Rgb(std::exp(8 * s.get_1d() - 4));
     light.two_sided = s.get_1d() < 0.3f;
-    if (kind < 0.4f) light.shape = Quad{p, u, v};
-    else if (kind < 0.7f) light.shape = SurfaceLight::Triangle{p, p + u, p + v};
-    else if (kind < 0.85f) light.shape = Sphere{p, length(u)};
-    else return PointLight{p, light.radiance};
+    if (kind < 0.4f)
+        light.shape = Quad{p, u, v};
+    else if (kind < 0.7f)
+        light.shape = SurfaceLight::Triangle{p, p + u, p + v};
+    else if (kind < 0.85f)
+        light.shape = Sphere{p, length(u)};
+    else
+        return PointLight{p, light.radiance};
     return light;
 }
 

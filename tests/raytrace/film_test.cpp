@@ -1,4 +1,4 @@
-#include "common/film/film.h"
+#include "raytrace/film/film.h"
 
 #include <doctest/doctest.h>
 

@@ -1,5 +1,5 @@
 // These tests compare closed-form irradiance with published values, laws, limits and hard cases.
-#include "common/light/form_factor.h"
+#include "raster/lighting/form_factor.h"
 
 #include <doctest/doctest.h>
 

@@ -1,6 +1,6 @@
 // These tests check pixel filters as sampling densities.
-#include "common/sampling/pixel_filter.h"
 #include "common/system/error.h"
+#include "raytrace/sampling/pixel_filter.h"
 
 #include <doctest/doctest.h>
 

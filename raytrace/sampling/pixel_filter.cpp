@@ -1,4 +1,4 @@
-#include "common/sampling/pixel_filter.h"
+#include "raytrace/sampling/pixel_filter.h"
 
 #include "common/system/error.h"
 

@@ -1,4 +1,4 @@
-#include "raytrace/film_checkpoint.h"
+#include "raytrace/film/film_checkpoint.h"
 
 #include "common/sampling/digest.h"
 #include "common/scene/scene_hash.h"

@@ -1,4 +1,4 @@
-#include "common/light/light_sampler.h"
+#include "raytrace/sampling/light_sampler.h"
 
 #include <algorithm>
 #include <limits>

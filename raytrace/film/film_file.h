@@ -2,7 +2,7 @@
 // it, and the films of several computers can be merged.
 #pragma once
 
-#include "common/film/film.h"
+#include "raytrace/film/film.h"
 
 #include <filesystem>
 #include <string>
@@ -19,7 +19,7 @@ struct StoredFilm {
     };
 
     Film film;
-    std::vector<Setting> settings;  ///< settings with distinct names, in any order
+    std::vector<Setting> settings; ///< settings with distinct names, in any order
     std::uint32_t first_sample =
         0; ///< index of every pixel's first sample; Film::samples_taken is the number of samples
 };

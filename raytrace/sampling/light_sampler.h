@@ -3,7 +3,7 @@
 
 #include "common/light/environment.h"
 #include "common/light/light.h"
-#include "common/light/light_tree.h"
+#include "raytrace/sampling/light_tree.h"
 
 #include <optional>
 #include <vector>

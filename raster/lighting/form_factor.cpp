@@ -1,4 +1,4 @@
-#include "common/light/form_factor.h"
+#include "raster/lighting/form_factor.h"
 
 #include "common/system/error.h"
 #include "common/vec/robust.h"

@@ -1,8 +1,8 @@
 // These tests check what the random samples depend on, their distribution, and their independence.
 #include "common/sampling/hash.h"
-#include "common/sampling/sampler.h"
 #include "common/system/error.h"
 #include "compare/stress/chi_squared.h"
+#include "raytrace/sampling/sampler.h"
 
 #include <doctest/doctest.h>
 

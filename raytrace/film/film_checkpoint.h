@@ -1,9 +1,9 @@
 // FilmCheckpoint owns the film of a render and saves it to a file while the render runs.
 #pragma once
 
-#include "common/film/film_file.h"
-#include "common/system/stopwatch.h"
 #include "common/scene/scene.h"
+#include "common/system/stopwatch.h"
+#include "raytrace/film/film_file.h"
 #include "raytrace/settings.h"
 
 #include <atomic>

@@ -1,4 +1,4 @@
-#include "common/sampling/sampler.h"
+#include "raytrace/sampling/sampler.h"
 
 #include "common/sampling/hash.h"
 #include "common/sampling/sobol.h"

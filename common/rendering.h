@@ -76,11 +76,11 @@ struct RenderStatistics {
     int samples_per_pixel = 0;                           ///< samples taken; if interrupted, in the finished passes
     int passes = 0;
     std::int64_t camera_rays = 0, indirect_rays = 0, shadow_rays = 0;
-    std::int64_t triangles = 0;       ///< number of triangles, quads and spheres of the flattened scene
-    std::int64_t memory_bytes = 0;    ///< bytes of the data that `prepare` built and of the render's buffers
-    std::int64_t invalid_samples = 0; ///< dropped samples: NaN, infinite or negative
+    std::int64_t triangles = 0;                 ///< number of triangles, quads and spheres of the flattened scene
+    std::int64_t memory_bytes = 0;              ///< bytes of the data that `prepare` built and of the render's buffers
+    std::int64_t invalid_samples = 0;           ///< dropped samples: NaN, infinite or negative
     std::optional<InvalidSample> first_invalid; ///< first invalid sample of this render (path tracer only)
-    double estimated_relmse = -1;     ///< see Film::estimated_relmse; −1: not estimated
+    double estimated_relmse = -1;               ///< see Film::estimated_relmse; −1: not estimated
     BvhStatistics bvh;
     std::vector<SkippedWork> skipped;
     std::vector<std::string> approximations; ///< differences from the path-traced reference, one sentence each
@@ -98,7 +98,7 @@ struct Rendering {
     ImageRgb variance;            ///< variance of the pixel's mean, estimated from the replicates (see Film)
     Image<std::uint32_t> samples; ///< number of samples taken
     // The rasterizer fills these images instead of radiance where raster::Output requests them.
-    Image<Rgba8> srgb;   ///< 8 bits per channel, sRGB-encoded, opaque
+    Image<Rgba8> srgb;         ///< 8 bits per channel, sRGB-encoded, opaque
     ImageFloat reversed_depth; ///< reversed depth near / depth, in (0, 1]; 0 on a miss
     RenderStatistics statistics;
 };

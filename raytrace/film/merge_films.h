@@ -1,7 +1,7 @@
 // These functions implement `raytrace merge`, which merges the films of a rendering's shards.
 #pragma once
 
-#include "common/film/film_file.h"
+#include "raytrace/film/film_file.h"
 
 #include <string>
 #include <vector>
