@@ -68,8 +68,8 @@ PassView pass_view_of(const CameraModel& camera, const View& view, const RasterS
             .time = static_cast<float>(camera.time(pass.time)),
             .viewport = viewport_of(view, pinhole),
             .samples = pass.samples,
-            .samples_per_pixel = std::max(settings.samples_per_pixel,
-                                          settings.sample_shading ? settings.multisamples : 1)};
+            .samples_per_pixel =
+                std::max(settings.samples_per_pixel, settings.sample_shading ? settings.multisamples : 1)};
 }
 
 /// Processes the geometry of a pass.
@@ -111,12 +111,12 @@ void shade_tile(const FrameContext& frame, const PassView& view, const DepthTile
         shader->shade(std::span(packets).first(count), colors.data(), visible.data());
         for (int y = y0; y < std::min(y0 + kRows, rect.y1); ++y)
             for (int x = rect.x0; x < rect.x1; ++x) {
-                const auto strip = static_cast<std::size_t>((x - rect.x0) / kColumns);
+                const auto packet = static_cast<std::size_t>((x - rect.x0) / kColumns);
                 const auto i = static_cast<std::size_t>((y - y0) * kColumns + (x - rect.x0) % kColumns);
-                const ColorPacket& packet_colors = colors[strip];
+                const ColorPacket& packet_colors = colors[packet];
                 framebuffer.add(
                     x, y,
-                    visible[strip] >> i & 1 ? Rgb(packet_colors.r[i], packet_colors.g[i], packet_colors.b[i]) : Rgb());
+                    visible[packet] >> i & 1 ? Rgb(packet_colors.r[i], packet_colors.g[i], packet_colors.b[i]) : Rgb());
             }
     }
 }

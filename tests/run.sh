@@ -15,6 +15,8 @@ command -v python3 >/dev/null || packages="$packages python3"
 if grep -q '^ID=debian' /etc/os-release && ! python3 -B tests/browser/chromium.py >/dev/null 2>&1; then
     packages="$packages chromium"
 fi
+# The sanitizers' build is Clang's, so that two compilers read the code.
+[ "$preset" != asan ] || packages="$packages clang libclang-rt-dev"
 sh common/setup.sh "$preset" $packages
 cmake --build --preset "$preset"
 case $preset in

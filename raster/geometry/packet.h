@@ -63,7 +63,7 @@ using duet::negated_multiply_add;
 /// Writes a cache line from two halves with non-temporal stores. They do not evict data that is needed sooner, and
 /// do not fetch the line before overwriting it. Other threads see the data after finish_streams().
 inline void stream_line(const void* first_half, const void* second_half, void* line) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) // which do not support such stores
+#ifdef DUET_SANITIZED // which do not support such stores
     std::memcpy(line, first_half, 32);
     std::memcpy(static_cast<char*>(line) + 32, second_half, 32);
 #elif defined(__AVX__)

@@ -66,14 +66,14 @@ private:
         }
     };
     struct FromPairs {
-        const PacketSetups& strip;
+        const PacketSetups& setups;
         template <typename T, typename Of> xsimd::batch<T> get(std::size_t i, const Of& of) const {
             const auto of_pair = [&](const auto& pair) {
-                return look_up(of(*pair.first), of(*pair.second), strip.lanes, i);
+                return look_up(of(*pair.first), of(*pair.second), setups.lanes, i);
             };
-            xsimd::batch<T> value = of_pair(strip.pairs[0]);
-            for (std::size_t k = 1; k < strip.pair_count; ++k)
-                value = xsimd::select(lanes_from<T>(strip.pairs[k].samples >> i), of_pair(strip.pairs[k]), value);
+            xsimd::batch<T> value = of_pair(setups.pairs[0]);
+            for (std::size_t k = 1; k < setups.pair_count; ++k)
+                value = xsimd::select(lanes_from<T>(setups.pairs[k].samples >> i), of_pair(setups.pairs[k]), value);
             return value;
         }
     };

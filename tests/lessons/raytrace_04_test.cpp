@@ -64,7 +64,7 @@ TEST_SUITE("lesson") {
     }
 
     TEST_CASE("raytrace-04: 1920 x 1080 pixels at 100 samples each") {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef DUET_SANITIZED
         constexpr int kPerPixel = 2; // with sanitizers a hundred would take a quarter of an hour
 #else
         constexpr int kPerPixel = 100;

@@ -54,8 +54,7 @@ TEST_SUITE("unit") {
         for (int i = 0; i < 12; ++i) {
             const double angle = 0.6 * i;
             const View view{look({4 * std::cos(angle), 1.5, 4 * std::sin(angle)}, {0, 0, 0}, 40), 240, 180};
-            raster::RasterSettings settings;
-            settings.aovs.hit = true;
+            raster::RasterSettings settings = hits_only();
             const Rendering with = render(scene, view, settings);
             settings.skips.frustum = settings.skips.back_faces = false;
             const Rendering without = render(scene, view, settings);

@@ -71,7 +71,7 @@ struct ReversedDepthShader : raster::NoVaryings {
 
 TEST_SUITE("unit") {
 
-    TEST_CASE("strips of pixels get the very codes that single values get") {
+    TEST_CASE("a packet of pixels gets the codes that single values get") {
         std::vector<float> values{0.0f, -1.0f, 1.0f, 2.0f, kInfinity, -kInfinity, std::nanf(""), 1e-30f, 1e-40f};
         for (int code = 0; code < 255; ++code) { // around every change of the code
             const auto middle = static_cast<float>(srgb_decode((code + 0.5) / 255));

@@ -44,9 +44,7 @@ struct Probe {
 
 /// This shader is the example of raster/README.md.
 struct Stripes {
-    template <typename T> struct Varyings {
-        T height;
-    };
+    template <typename T> struct Varyings { T height; };
     template <typename T> Varyings<T> vertex(const VertexInput<T>& v) const { return {v.world_p().y}; }
     template <typename T, typename F> RgbT<T> fragment(const F& f) const {
         return select_each(f.at.height > T(0.5f), f.base_color(), RgbT<T>(T(1)));
@@ -266,7 +264,8 @@ TEST_SUITE("unit") {
         CHECK(wrong <= 3); // samples at a texture's border, due to different rounding
     }
 
-    TEST_CASE("every built-in shading shows a strip of samples as it shows each alone, by itself or with others") {
+    TEST_CASE(
+        "every built-in shading colors a packet of samples as it colors each alone, whatever else is in the packet") {
         for (const bool only_suns : {false, true}) {
             Scene scene = varied_scene(60);
             if (only_suns) scene.lights[1] = SunLight{normalize(Vec3(-1, -0.5f, 0.2f)), Rgb(0.3f, 0.5f, 1)};
@@ -275,6 +274,7 @@ TEST_SUITE("unit") {
                      {raster::Shading::kPhong, raster::Shading::kGouraud, raster::Shading::kFlat,
                       raster::Shading::kToon, raster::Shading::kWireframe, raster::Shading::kNormal,
                       raster::Shading::kAlbedo, raster::Shading::kDepth}) {
+                    if (only_suns && shading >= raster::Shading::kWireframe) break; // these ignore the lights
                     const Compared found = packets_against_single(scene, view, shading);
                     CAPTURE(static_cast<int>(shading));
                     CHECK(found.samples > 30'000);
@@ -289,8 +289,8 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("strips of meshes of any size are shaded as each of their samples alone") {
-        for (const float size : {1e-8f, 1e-6f, 1e-3f, 1e3f, 1e6f}) {
+    TEST_CASE("packets of meshes of any size are shaded as each of their samples alone") {
+        for (const float size : {1e-8f, 1e-3f, 1e6f}) {
             Scene scene;
             Mesh mesh = torus(60, 30); // only face normals, whose lengths depend on the triangles' areas
             for (Vec3& p : mesh.positions) p *= size;
@@ -313,7 +313,7 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("a sphere's vertices have its own unit normals, however it is stretched, in strips and alone") {
+    TEST_CASE("a sphere's vertices have its own unit normals, however it is stretched, in packets and alone") {
         Scene scene;
         add(scene, Sphere{Vec3(0.3f, 0.1f, 0), 0.8f}, Mat4(scaling(Vec3(1.5f, 0.6f, 3))), Diffuse{{Rgb(0.5f)}});
         finish_scene(scene);
@@ -395,7 +395,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE(
-        "lights shine in every shading that shows light, in strips and alone, as materials and lights have them") {
+        "lights shine in every shading that shows light, in packets and alone, as materials and lights have them") {
         Scene scene = varied_scene(60);
         scene.textures.textures.push_back(CheckerTexture{Rgb(0.9f, 0.1f, 0.2f), Rgb(0.1f, 0.8f, 0.3f), 3, true});
         for (Material& material : scene.materials)

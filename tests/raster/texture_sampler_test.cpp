@@ -142,7 +142,7 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("base colors of strips: the same bits together and one by one") {
+    TEST_CASE("base colors of a packet: the same bits together and one by one") {
         for (const TextureFilter filter : {TextureFilter::kTrilinear, TextureFilter::kAnisotropic})
             for (const bool with_coordinates : {true, false}) {
                 const ImageTexture texture{.image = 0, .scale = {1.7f, -0.6f}, .filter = filter};

@@ -296,7 +296,7 @@ TEST_SUITE("unit") {
         CHECK(checks.find("another setting") != std::string::npos);
     }
 
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if defined(__GLIBC__) && !defined(DUET_SANITIZED)
     TEST_CASE("the accelerator's account of its memory is what it has allocated") {
         const KernelScene scene = lump(Arrangement::kAlone, 6); // 81,920 triangles
         const auto allocated = [] {
