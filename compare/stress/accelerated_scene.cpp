@@ -52,7 +52,9 @@ Hit brute_force_hit(const Scene& scene, const Ray& ray) {
     };
     for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
         const Object& object = scene.objects[o];
-        const Ray inside = object.identity ? ray : to_object_space(ray, object.to_world, object.to_object);
+        const ObjectTransform transform = object_transform(object, ray.time);
+        const bool identity = object.identity && !object.moving;
+        const Ray inside = identity ? ray : to_object_space(ray, transform.to_world, transform.to_object);
         const ShearedRay sheared(inside);
         const Shape& shape = scene.shapes[object.shape];
         for (std::uint32_t p = 0; p < primitive_count(shape); ++p) {

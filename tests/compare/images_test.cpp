@@ -148,8 +148,7 @@ TEST_SUITE("unit") {
         const ScratchFolder scratch;
         const std::vector<float> value{0.5f, 0.25f, 1.0f};
         const auto write = [&](const char* name, const std::vector<float>& alpha) {
-            write_exr(scratch / name, 3, 1,
-                      {{"A", alpha, {}}, {"B", value, {}}, {"G", value, {}}, {"R", value, {}}});
+            write_exr(scratch / name, 3, 1, {{"A", alpha, {}}, {"B", value, {}}, {"G", value, {}}, {"R", value, {}}});
         };
         write("a.exr", {1, 0.5f, 0});
         write("b.exr", {1, 1, 1});

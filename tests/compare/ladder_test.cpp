@@ -112,7 +112,7 @@ TEST_SUITE("unit") {
         const Shares s = shares(shown_images);
         CHECK(std::abs(s.sum - 1) < 1e-12);
         CHECK(share_of(s, "shadows") > 0.999);
-        CHECK(others(s, "shadows") < 1e-3);
+        CHECK(others(s, "shadows") < 1e-4);
         const ImageRgb before = shown_images.image(3), after = shown_images.image(4);
         double taken = 0, expected = 0;
         for (int y = 0; y < kSize; ++y)

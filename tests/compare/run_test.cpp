@@ -7,7 +7,6 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-
 using namespace duet;
 using namespace duet::compare;
 using duet::test::ScratchFolder;

@@ -103,7 +103,7 @@ TEST_SUITE("unit") {
         const Shares s = shares(images);
         // ‖(A − B)/2‖² and ‖(A + B)/2‖² are sums of 4096 independent squares of equal variance, so their ratio has a
         // standard error of 3 %.
-        CHECK(s.share[kNoise] == doctest::Approx(1).epsilon(0.15));
+        CHECK(s.share[kNoise] == doctest::Approx(1).epsilon(0.05));
         CHECK(std::abs(s.share[6]) < 0.15);
     }
 
@@ -149,7 +149,7 @@ TEST_SUITE("unit") {
         const ImageRgb image = cause_image(map_causes(images));
         CHECK(image(0, 0).b > image(0, 0).r); // blue: shadows
         CHECK(image(0, 0).b > 0.3f);
-        CHECK(max_component(image(1, 0)) < 0.02f);
+        CHECK(max_component(image(1, 0)) < 0.01f);
         for (std::size_t a = 0; a < kCauseCount; ++a)
             for (std::size_t b = 0; b < a; ++b) CHECK(cause_color(a) != cause_color(b));
     }

@@ -127,7 +127,7 @@ TEST_SUITE("unit") {
         CHECK(floor.inside({50, 80}) > 0);
         // The lower edge is 45 degrees down, and y = 75 is half of that.
         CHECK(floor.at({50, 75}).depth == doctest::Approx(1));
-        CHECK(floor.inside({50, 99}) == doctest::Approx(1));   // the near plane's line is y = 100
+        CHECK(floor.inside({50, 99}) == doctest::Approx(1)); // the near plane's line is y = 100
         CHECK(floor.inside({50, 101}) == doctest::Approx(-1));
         const ProjectedTriangle on_eye_plane(pinhole, {Vec3(-1, -1, 0), Vec3(1, -1, 0), Vec3(0, -1, -10)});
         CHECK(on_eye_plane.inside({50, 90}) > 0);

@@ -31,18 +31,17 @@ TEST_SUITE("unit") {
             const Vec3d middle = kind == kSun ? Vec3d(0.4, 0, 0.2) : Vec3d();
             const double texel = 8.0 / (settings.shadow_map_side / (kind == kPoint ? 2 : 1));
             CAPTURE(kind);
-            check_outline(visible(scene, over_floor(), settings),
-                          [&](Vec3d p) {
-                              const double x = p.x - middle.x + half, z = middle.z + half - p.z; // along u and v
-                              const double beyond = half - max(std::abs(x - half), std::abs(z - half));
-                              if (beyond < 0) return beyond;
-                              const auto to_line = [&](double at) {
-                                  return std::abs(at - std::round(at / cell) * cell);
-                              };
-                              const bool even = (static_cast<int>(x / cell) + static_cast<int>(z / cell)) % 2 == 0;
-                              return even ? min(to_line(x), to_line(z)) : -min(to_line(x), to_line(z));
-                          },
-                          (raster::ShadowMap::kFilterRadius + 1) * texel, 8 * 4 * cell, texel / 2);
+            check_outline(
+                visible(scene, over_floor(), settings),
+                [&](Vec3d p) {
+                    const double x = p.x - middle.x + half, z = middle.z + half - p.z; // along u and v
+                    const double beyond = half - max(std::abs(x - half), std::abs(z - half));
+                    if (beyond < 0) return beyond;
+                    const auto to_line = [&](double at) { return std::abs(at - std::round(at / cell) * cell); };
+                    const bool even = (static_cast<int>(x / cell) + static_cast<int>(z / cell)) % 2 == 0;
+                    return even ? min(to_line(x), to_line(z)) : -min(to_line(x), to_line(z));
+                },
+                (raster::ShadowMap::kFilterRadius + 1) * texel, 8 * 4 * cell, texel / 2);
         }
     }
 

@@ -191,8 +191,8 @@ TEST_SUITE("unit") {
         const TileGrid grid{{0, 0, kWidth, kHeight}};
         for (int i = 0; i < 100; ++i) {
             const auto place = [&] { return random.integer(-kFull, 4 * kFull); };
-            std::vector<GridTriangle> one{{FixedPoint{place(), place()}, FixedPoint{place(), place()},
-                                           FixedPoint{place(), place()}}};
+            std::vector<GridTriangle> one{
+                {FixedPoint{place(), place()}, FixedPoint{place(), place()}, FixedPoint{place(), place()}}};
             if (i % 2 == 0)
                 one[0][1] = {one[0][0].x + random.integer(-300, 300), one[0][0].y + random.integer(-300, 300)};
             if (i % 2 == 0)

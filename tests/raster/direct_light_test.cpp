@@ -235,20 +235,20 @@ TEST_SUITE("unit") {
                 quad ? polygon_form_factor_times_pi<4>(one, true) : polygon_form_factor_times_pi<3>(one, true);
             const float in_lanes = lane(quad ? polygon_form_factor_times_pi<4>(many, kAllLanes)
                                              : polygon_form_factor_times_pi<3>(many, kAllLanes));
-            CHECK(std::abs(in_lanes - signed_result) < 1e-5f);
+            CHECK(std::abs(in_lanes - signed_result) < 2e-6f);
             const double result = std::abs(static_cast<double>(signed_result));
             if (exact > 1e-6) CHECK((signed_result > 0) == (dot(cross(u, v), corner) < 0));
             const double error = std::abs(result - exact);
             // Near the polygon's plane the result changes fast, from 0 to its double on the other side.
             const float height = std::abs(dot(cross(u, v), corner)) / (length(cross(u, v)) * length(corner));
             if (height < 1e-3f) {
-                CHECK(error < 0.05);
+                CHECK(error < 0.015);
                 continue;
             }
             worst = std::max(worst, error);
             if (exact > 1e-9) worst_relative = std::max(worst_relative, std::min(error, error / exact));
         }
-        CHECK(worst < 1e-4);
+        CHECK(worst < 6e-5);
         CHECK(worst_relative < 1e-2);
     }
 
@@ -303,8 +303,8 @@ TEST_SUITE("unit") {
             worst_polygon = std::max(worst_polygon, std::abs(static_cast<double>(polygon) - exact_polygon));
         }
         MESSAGE(worst, " ", worst_polygon);
-        CHECK(worst < 0.04);
-        CHECK(worst_polygon < 0.02);
+        CHECK(worst < 0.016);
+        CHECK(worst_polygon < 0.0035);
     }
 
     TEST_CASE("tables in lanes: as the scalar look-ups") {
@@ -330,7 +330,7 @@ TEST_SUITE("unit") {
                 check(t.mean_lost, ggx_average_albedo(alphas[k]).energy_loss);
             }
         }
-        CHECK(worst < 2e-6);
+        CHECK(worst < 5e-7);
     }
 
     TEST_CASE("delta lights: the BSDF times the cosine; nothing from below the horizon") {
@@ -364,7 +364,7 @@ TEST_SUITE("unit") {
             if (cosine > 0.01f) check(at_sun, f * Rgb(1, 2, 3) * cosine);
             if (cosine > 0.01f) check(at_point, f * Rgb(3, 2, 1) * (cosine / sqr(distance)));
         }
-        CHECK(worst < 1e-4);
+        CHECK(worst < 4e-5);
     }
 
     TEST_CASE("an emitter is dark behind, and does not light points in its own plane") {
@@ -415,8 +415,8 @@ TEST_SUITE("unit") {
         CHECK(bitwise_equal(one.exact, three.exact));
         const Planes3 all = view.all_lights();
         const Difference difference(one.exact, all);
-        CHECK(difference.mean < 5e-4);
-        CHECK(difference.worst < 0.02);
+        CHECK(difference.mean < 2e-4);
+        CHECK(difference.worst < 0.0035);
         const HalfShadows shadows;
         const Difference exact(view.light(2, &shadows).unshadowed, all);
         CHECK(exact.worst < 1e-5);

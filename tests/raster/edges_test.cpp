@@ -67,11 +67,11 @@ TEST_SUITE("unit") {
             return ink_near(image.radiance, static_cast<int>(at.x), static_cast<int>(at.y));
         };
         for (const double along : {-0.7, -0.4, -0.2}) {
-            CHECK(near_point({-1, along, 0.5}));        // the step's left side
-            CHECK(near_point({along, -1, 0.5}));        // the step's lower side
-            CHECK(near_point({0.8, along, 0.6}));       // the crease
-            CHECK(!near_point({-0.5, along, 0.5}));     // inside the square
-            CHECK(!near_point({0.55, along, 0.4}));     // inside a face of the roof
+            CHECK(near_point({-1, along, 0.5}));                // the step's left side
+            CHECK(near_point({along, -1, 0.5}));                // the step's lower side
+            CHECK(near_point({0.8, along, 0.6}));               // the crease
+            CHECK(!near_point({-0.5, along, 0.5}));             // inside the square
+            CHECK(!near_point({0.55, along, 0.4}));             // inside a face of the roof
             CHECK(near_point({-0.5, -along * 0.3 + 0.6, 0.5})); // where two objects meet in one plane
         }
     }

@@ -11,7 +11,7 @@ using namespace duet::test;
 namespace {
 
 /// Renders and compares. At most the fraction `edges` of the pixels may differ because of an edge near the sample.
-Rendering check_hits(const Scene& scene, const View& view, double edges = 0.02, bool cull = true) {
+Rendering check_hits(const Scene& scene, const View& view, double edges = 0.001, bool cull = true) {
     raster::RasterSettings settings = hits_only();
     settings.skips.frustum = settings.skips.back_faces = cull;
     Rendering rendering = render(scene, view, settings);
@@ -66,7 +66,7 @@ TEST_SUITE("unit") {
             Scene scene;
             add(scene, soup(random, 60, 3, 2));
             finish_scene(scene);
-            check_hits(scene, {look(Vec3d(random.vector(2)), Vec3d(random.vector(1)), 70), 64, 48}, 0.1);
+            check_hits(scene, {look(Vec3d(random.vector(2)), Vec3d(random.vector(1)), 70), 64, 48}, 0.005);
         }
     }
 
@@ -80,7 +80,7 @@ TEST_SUITE("unit") {
             scene.objects.erase(scene.objects.begin());
             finish_scene(scene);
             CAPTURE(scale);
-            check_hits(scene, {look(Vec3d(1, 2, 5) * scale, Vec3d(), 40), 64, 48}, 0.1);
+            check_hits(scene, {look(Vec3d(1, 2, 5) * scale, Vec3d(), 40), 64, 48}, 0.005);
         }
     }
 
@@ -108,7 +108,7 @@ TEST_SUITE("unit") {
             mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
             add(scene, mesh);
             finish_scene(scene);
-            check_hits(scene, {look({0, 0, 0}, {0, 0, -1}, 90), 64, 64}, 0.02);
+            check_hits(scene, {look({0, 0, 0}, {0, 0, -1}, 90), 64, 64}, 0.003);
         }
     }
 
@@ -160,7 +160,7 @@ TEST_SUITE("unit") {
         add(scene, soup(random, 30, 2, 3));
         finish_scene(scene);
         const View view{look({0, 0, 5}, {0, 0, 0}, 60), 96, 72};
-        const Rendering rendering = check_hits(scene, view, 0.05);
+        const Rendering rendering = check_hits(scene, view, 0.003);
         const Oracle oracle(scene);
         const Pinhole pinhole = CameraModel(view).pinhole();
         int compared = 0;
@@ -186,9 +186,9 @@ TEST_SUITE("unit") {
         add(scene, Sphere{Vec3(0.5f, 0.2f, 0.3f), 0.7f});
         add(scene, torus(24, 12), Mat4(rotation(normalize(Vec3(1, 1, 0)), 0.8f)));
         finish_scene(scene);
-        check_hits(scene, {orthographic(look({3, 2, 4}, {0, 0, 0}), 4), 80, 60}, 0.1);
+        check_hits(scene, {orthographic(look({3, 2, 4}, {0, 0, 0}), 4), 80, 60}, 0.005);
         // The near plane cuts all objects.
-        check_hits(scene, {orthographic(look({0.1, 0.1, 0.5}, {0, 0, 0}), 2), 80, 60}, 0.1);
+        check_hits(scene, {orthographic(look({0.1, 0.1, 0.5}, {0, 0, 0}), 2), 80, 60}, 0.005);
     }
 
     TEST_CASE("spheres and ellipsoids have the silhouettes that rays see, from everywhere") {
@@ -202,7 +202,7 @@ TEST_SUITE("unit") {
             finish_scene(scene);
             Camera camera = look(Vec3d(random.vector(2.5)), Vec3d(random.vector(0.5)), 75);
             if (i % 3 == 0) camera.near = 0.8; // the near plane cuts spheres
-            check_hits(scene, {camera, 64, 48}, 0.02);
+            check_hits(scene, {camera, 64, 48}, 0.003);
         }
     }
 
@@ -211,7 +211,7 @@ TEST_SUITE("unit") {
         add(scene, Sphere{Vec3(0, 0, 0), 2});
         add(scene, Sphere{Vec3(5, 0, 0), 1}, Mat4(translation(Vec3(-5, 0, 0)) * scaling(Vec3(1, 0.5f, 2))));
         finish_scene(scene);
-        const Rendering rendering = check_hits(scene, {look({0.1, 0.2, 0.3}, {1, 0, 0}, 100), 64, 48}, 0.01);
+        const Rendering rendering = check_hits(scene, {look({0.1, 0.2, 0.3}, {1, 0, 0}, 100), 64, 48}, 0.003);
         CHECK(count_hits(rendering.hit) == 64 * 48);
     }
 
@@ -221,6 +221,6 @@ TEST_SUITE("unit") {
         add(scene, Sphere{Vec3(0.9f, 0, 0.2f), 0.6f});
         add(scene, box_quads(Vec3(-1.2f, -0.2f, -0.5f), Vec3(-0.2f, 0.6f, 1)), Mat4(rotation(Vec3(0, 1, 0), 0.4f)));
         finish_scene(scene);
-        check_hits(scene, {look({1.5, 2, 3}, {0, 0, 0}, 45), 160, 120}, 0.03);
+        check_hits(scene, {look({1.5, 2, 3}, {0, 0, 0}, 45), 160, 120}, 0.003);
     }
 }

@@ -59,7 +59,11 @@ TEST_SUITE("unit") {
 
     TEST_CASE("filtering keeps constant radiance, and the mean of radiance that is linear in the direction") {
         const raster::RadianceMap map(
-            64, [](Vec3 w) { return raster::RadianceMap::Arriving{Rgb(2, 1 + w.y, 3), Rgb(), 5}; }, 2);
+            64,
+            [](Vec3 w) {
+                return raster::RadianceMap::Arriving{Rgb(2, 1 + w.y, 3), Rgb(), 5};
+            },
+            2);
         for (const float alpha : {0.0f, 0.04f, 0.3f, 1.0f})
             for (const Vec3 w : directions()) {
                 const RgbT<Floats> c = map.at(all(w), Floats(alpha));
@@ -106,8 +110,7 @@ TEST_SUITE("unit") {
         const raster::RasterScene prepared = raster::prepare(scene, settings);
         const raster::IrradianceProbes& probes = *prepared.data().irradiance_probes;
         for (const Vec3 n : directions()) {
-            const RgbT<Floats> e =
-                probes.irradiance(Vec3d(), all(n * 0.3f), all(n), Floats(1.0f) > Floats(0.0f));
+            const RgbT<Floats> e = probes.irradiance(Vec3d(), all(n * 0.3f), all(n), Floats(1.0f) > Floats(0.0f));
             CHECK(e.g.get(0) == doctest::Approx(kPi).epsilon(0.03));
         }
     }

@@ -104,8 +104,10 @@ private:
                        (points_[i] - points_[i - 1]) * ((x - points_[i - 1].x) / (points_[i].x - points_[i - 1].x));
         return points_.back();
     }
-    double across(Vec2d p) const { return p.x * to_sun_.y - p.y * to_sun_.x; } ///< coordinate perpendicular to the
-                                                                               ///< light's rays
+    double across(Vec2d p) const {
+        return p.x * to_sun_.y - p.y * to_sun_.x;
+    } ///< coordinate perpendicular to the
+      ///< light's rays
     double beside(double x) const { return across(point(x)); }
     /// Returns whether x is lit. The sun is on the right. A point to the right occludes x if its coordinate across
     /// the rays is the same or farther to the left.
@@ -312,8 +314,8 @@ TEST_SUITE("unit") {
             penumbra += hidden > 0 && hidden < all;
         }
         CHECK(penumbra > 50);
-        CHECK(step < 0.1);   // measured: 0.093
-        CHECK(worst < 0.25); // measured: 0.236
+        CHECK(step < 0.1);                         // measured: 0.093
+        CHECK(worst < 0.25);                       // measured: 0.236
         CHECK(std::sqrt(squares / kRows) < 0.045); // measured: 0.0434
     }
 }

@@ -118,7 +118,7 @@ TEST_SUITE("unit") {
                 CAPTURE(area_light.v.x);
                 CAPTURE(area_light.triangle);
                 CHECK(dark > 50);
-                CHECK(sum / (kSize * kSize / 16) < 0.02);
+                CHECK(sum / (kSize * kSize / 16) < 0.0115);
             }
     }
 

@@ -95,8 +95,8 @@ TEST_SUITE("unit") {
                         const std::size_t lane = static_cast<std::size_t>(x) % Floats::size;
                         const Vec3T<Floats> p = gbuffer.points(x - static_cast<int>(lane), y);
                         const Vec3 n = gbuffer.normal.vector_at(x, y);
-                        const Vec3 at(gbuffer.projection.eye() + Vec3d(Vec3(p.x.get(lane), p.y.get(lane),
-                                                                            p.z.get(lane))));
+                        const Vec3 at(gbuffer.projection.eye() +
+                                      Vec3d(Vec3(p.x.get(lane), p.y.get(lane), p.z.get(lane))));
                         const Vec2 u(static_cast<float>(numbers.between(0, 1)),
                                      static_cast<float>(numbers.between(0, 1)));
                         const auto sample = sample_light(light, at, u);

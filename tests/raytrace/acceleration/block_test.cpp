@@ -107,8 +107,8 @@ struct Counts {
 
 // Returns the block test's result for a lane. Where the block test is uncertain, the exact test decides.
 template <std::size_t kCorners>
-std::optional<TriangleHit> said(BlockTest<kCorners> test, const PolygonBlock<kCorners>& block,
-                                const ShearedRay& ray, std::size_t lane, Counts& counts) {
+std::optional<TriangleHit> said(BlockTest<kCorners> test, const PolygonBlock<kCorners>& block, const ShearedRay& ray,
+                                std::size_t lane, Counts& counts) {
     const auto has = [lane](unsigned lanes) { return (lanes >> lane & 1) != 0; };
     if (!has(test.candidates())) return std::nullopt;
     ++(has(test.certain()) ? counts.certain : has(test.needs_distance()) ? counts.needs_distance : counts.rest);
@@ -338,7 +338,7 @@ TEST_SUITE("unit") {
             CHECK((count > 1) == !accelerator.world().nodes.empty());
             for (int trial = 0; trial < 200; ++trial) {
                 const Ray ray{random.vector() * 3.0f, random.direction()};
-                const Hit expected = brute_force(scene, ray);
+                const Hit expected = brute_force_hit(scene, ray);
                 CHECK(accelerator.closest(ray) == expected);
                 Hit end;
                 end.t = 5;

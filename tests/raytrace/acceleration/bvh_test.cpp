@@ -60,7 +60,7 @@ TEST_SUITE("unit") {
                     std::string first;
                     for (int trial = 0; trial < 4000; ++trial) {
                         Ray ray = soup.ray(scene, trial);
-                        const Hit expected = brute_force(scene, ray), found = accelerator.closest(ray);
+                        const Hit expected = brute_force_hit(scene, ray), found = accelerator.closest(ray);
                         hits += expected.valid();
                         if (!(expected == found) && different++ == 0)
                             first = described(found) + ", expected " + described(expected);
@@ -113,7 +113,7 @@ TEST_SUITE("unit") {
                 const Vec3 target(random.uniform(), random.uniform(), 0);
                 const Vec3 origin = target + Vec3(random.uniform(), random.uniform(), 2);
                 const Ray ray{origin, normalize(target - origin)};
-                CHECK(accelerator.closest(ray) == brute_force(scene, ray));
+                CHECK(accelerator.closest(ray) == brute_force_hit(scene, ray));
             }
         }
     }
@@ -296,7 +296,7 @@ TEST_SUITE("unit") {
         for (int i = 0; i < 300; ++i) {
             const Ray ray{{random.uniform(-1.2f, 1.2f), random.uniform(-1.2f, 1.2f), 3}, {0, 0, -1}};
             const Hit hit = accelerator.closest(ray);
-            REQUIRE(hit == brute_force(scene, ray));
+            REQUIRE(hit == brute_force_hit(scene, ray));
             if (!hit.valid()) continue;
             CHECK_FALSE(accelerator.occluded(ray, hit));
             CHECK(accelerator.occluded(ray, Hit{hit.object + 1, 0, 0, 0, hit.t}));

@@ -4,6 +4,7 @@
 #include "common/geometry/quad.h"
 #include "common/geometry/sphere.h"
 #include "common/system/error.h"
+#include "compare/stress/accelerated_scene.h"
 #include "raytrace/acceleration/bvh_leaf.h"
 #include "tests/raytrace/scene_builder.h"
 
@@ -29,36 +30,7 @@ struct Random {
     }
 };
 
-// Tests every primitive of every object, in the order of `precedes`.
-inline Hit brute_force(const Scene& scene, const Ray& ray) {
-    Hit best;
-    const auto consider = [&](const Hit& hit) {
-        if (precedes(hit, best)) best = hit;
-    };
-    for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
-        const Object& object = scene.objects[o];
-        Ray inside = ray;
-        if (!object.identity || object.moving) {
-            const ObjectTransform transform = object_transform(object, ray.time);
-            inside = to_object_space(ray, transform.to_world, transform.to_object);
-        }
-        const ShearedRay sheared(inside);
-        const Shape& shape = scene.shapes[object.shape];
-        for (std::uint32_t p = 0; p < primitive_count(shape); ++p) {
-            if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-                if (const auto t = intersect_sphere(inside, *sphere)) consider({o, p, 0, 0, *t});
-            } else if (const auto* list = std::get_if<QuadList>(&shape)) {
-                if (const auto h = intersect_quad(sheared, list->quads[p])) consider({o, p, h->u, h->v, h->t});
-            } else {
-                const auto& mesh = std::get<Mesh>(shape);
-                const auto& [a, b, c] = mesh.triangles[p];
-                if (const auto h = intersect_triangle(sheared, mesh.positions[a], mesh.positions[b], mesh.positions[c]))
-                    consider({o, p, h->u, h->v, h->t});
-            }
-        }
-    }
-    return best;
-}
+using compare::brute_force_hit;
 
 struct Soup {
     Random random;

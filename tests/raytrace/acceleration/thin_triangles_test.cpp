@@ -70,7 +70,7 @@ TEST_SUITE("unit") {
                 std::string first;
                 for (int trial = 0; trial < 2000; ++trial) {
                     const Ray ray = hard_ray(random, mesh, scale, offset, trial);
-                    const Hit expected = brute_force(scene, ray), found = accelerator.closest(ray);
+                    const Hit expected = brute_force_hit(scene, ray), found = accelerator.closest(ray);
                     hits += expected.valid();
                     if (!(expected == found) && different++ == 0)
                         first = described(found) + ", expected " + described(expected);
