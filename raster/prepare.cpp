@@ -7,8 +7,8 @@
 #include "raster/probes/reflection_probes.h"
 #include "raster/raster_scene.h"
 #include "raster/shading/deferred.h"
-#include "raster/shadows/map_shadows.h"
-#include "raster/shadows/shadows.h"
+#include "raster/shadows/shadow_map_lookup.h"
+#include "raster/shadows/shadow_maps.h"
 
 #include "common/system/error.h"
 

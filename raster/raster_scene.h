@@ -25,8 +25,8 @@ struct RasterObject {
 
 class DeferredFramePool; // raster/shading/deferred.h
 class GeometryPool; // raster/geometry/geometry.h
-class SoftShadowMaps; // raster/shadows/map_shadows.h
-class Shadows;        // raster/shadows/shadows.h
+class SoftShadowMaps; // raster/shadows/shadow_map_lookup.h
+class Shadows;        // raster/shadows/shadow_maps.h
 class IrradianceProbes; // raster/probes/irradiance_probes.h
 class RadianceMap; // raster/probes/radiance_map.h
 class ReflectionProbes; // raster/probes/reflection_probes.h

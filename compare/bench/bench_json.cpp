@@ -36,7 +36,11 @@ json trials_json(const std::vector<TrialResult>& trials) {
     return list;
 }
 
-json row_json(const Measurement& m, bool with_rest) {
+json dominance_json(const std::optional<Dominance>& d) {
+    return d ? json{{"ratio", estimate_json(d->ratio)}, {"at_most", d->at_most}} : json(nullptr);
+}
+
+json row_json(const SceneResult& result, const Measurement& m, bool with_rest) {
     json row = {{"technique", m.technique},
                 {"sampler", m.sampler},
                 {"note", m.note},
@@ -49,6 +53,7 @@ json row_json(const Measurement& m, bool with_rest) {
                 {"efficiency", estimate_json(m.efficiency)},
                 {"relmse_efficiency", estimate_json(m.relmse_efficiency)},
                 {"variance", number(m.variance)},
+                {"dominates", dominance_json(dominance(result.rows, m))},
                 {"bias_share", number(m.bias_share())},
                 {"reference_share", number(m.reference_share)},
                 {"trials", trials_json(m.trials)}};
@@ -94,7 +99,7 @@ json equal_time_json(const EqualTimeRow& row) {
 
 json scene_json(const SceneResult& result, bool with_rest) {
     json rows = json::array();
-    for (const Measurement& m : result.rows) rows.push_back(row_json(m, with_rest));
+    for (const Measurement& m : result.rows) rows.push_back(row_json(result, m, with_rest));
     json checks = json::array();
     for (const IndependentCheck& c : result.checks) checks.push_back(check_json(c));
     json equal_times = json::array();

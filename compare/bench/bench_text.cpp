@@ -35,6 +35,12 @@ std::string csv_field(const json& value) {
     return quoted;
 }
 
+/// Returns "12.3", "< 12.3" for an upper bound, or "-".
+std::string dominance_text(const std::optional<Dominance>& d) {
+    if (!d) return "-";
+    return (d->at_most ? "< " : "") + formatted("%.3g", d->ratio.value);
+}
+
 std::string verdicts(const BaselineRow& row) {
     std::string text;
     const auto say = [&](bool is, const char* what) {
@@ -93,13 +99,14 @@ void print_scene(std::ostream& out, const SceneResult& result, bool with_rest) {
     if (result.processor_share < 0.9)
         out << formatted("the threads got %.0f %% of the processor time they could use: mistrust the times\n",
                          100 * result.processor_share);
-    out << formatted("%-12s %-12s %6s  %17s  %17s  %9s  %17s  %5s", "technique", "sampler", "spp", "seconds", "MSE",
-                     "relMSE", "1/(MSE s)", "bias");
+    out << formatted("%-12s %-12s %6s  %17s  %17s  %9s  %9s  %17s  %5s", "technique", "sampler", "spp", "seconds",
+                     "MSE", "relMSE", "dominates", "1/(MSE s)", "bias");
     out << (with_rest ? "  MSE of the rest\n" : "\n");
     for (const Measurement& m : result.rows) {
         out << formatted("%-12s %-12s %6d  ", m.technique.c_str(), m.sampler.c_str(), m.spp) << with_band(m.seconds)
-            << "  " << with_band(m.mse) << "  " << formatted("%9.3g", m.relmse.value) << "  " << with_band(m.efficiency)
-            << formatted("  %3.0f %%", 100 * m.bias_share());
+            << "  " << with_band(m.mse) << "  "
+            << formatted("%9.3g  %9s", m.relmse.value, dominance_text(dominance(result.rows, m)).c_str()) << "  "
+            << with_band(m.efficiency) << formatted("  %3.0f %%", 100 * m.bias_share());
         if (with_rest) out << "  " << with_band(m.rest_mse);
         if (!m.counted) out << "  (its other setting counts)";
         if (m.reference_share > 0.1) out << formatted("  %.0f %% of it the reference's", 100 * m.reference_share);
@@ -126,7 +133,8 @@ std::string bench_csv(const json& report) {
     std::string text = "scene,width,height,depth,threads,technique,sampler,spp,repeats";
     static constexpr const char* kEstimates[] = {"seconds", "mse", "relmse", "efficiency"};
     for (const char* const name : kEstimates) text += formatted(",%s,%s_low,%s_high", name, name, name);
-    text += ",variance,bias_share,reference_share,rest_mse,rest_mse_low,rest_mse_high,rest_relmse,rest_efficiency\n";
+    text += ",dominates,variance,bias_share,reference_share";
+    text += ",rest_mse,rest_mse_low,rest_mse_high,rest_relmse,rest_efficiency\n";
     const auto add = [&](const json& value) {
         text += ',';
         text += csv_field(value);
@@ -141,6 +149,7 @@ std::string bench_csv(const json& report) {
                 add(value);
             for (const char* const key : {"technique", "sampler", "spp", "repeats"}) add(row.at(key));
             for (const char* const name : kEstimates) add_estimate(row.at(name));
+            add(row.at("dominates").is_null() ? json(nullptr) : row.at("dominates").at("ratio").at("value"));
             for (const char* const key : {"variance", "bias_share", "reference_share"}) add(row.at(key));
             if (row.contains("rest")) {
                 add_estimate(row.at("rest").at("mse"));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 namespace duet::compare {
@@ -73,6 +74,45 @@ std::vector<EqualTimeRow> at_equal_times(const std::vector<Measurement>& rows,
         }
     }
     return table;
+}
+
+namespace {
+
+/// Returns the time in which `path` with one sampler reaches an error. `rows` are sorted by decreasing error.
+Dominance time_to_reach(double relmse, const std::vector<const Measurement*>& rows) {
+    const auto estimate = [](double seconds, const Measurement& m) {
+        // The error of an unbiased estimate falls as 1 / time, so the relative errors of both count alike.
+        return Estimate{seconds, std::hypot(m.relmse.relative_error, m.seconds.relative_error),
+                        std::min(m.relmse.dof, m.seconds.dof)};
+    };
+    if (relmse >= rows.front()->relmse.value) return {rows.front()->seconds, true};
+    for (std::size_t i = 0; i + 1 < rows.size(); ++i) {
+        const Measurement &a = *rows[i], &b = *rows[i + 1];
+        if (relmse < b.relmse.value) continue;
+        const double t = std::log(a.relmse.value / relmse) / std::log(a.relmse.value / b.relmse.value);
+        return {estimate(a.seconds.value * std::pow(b.seconds.value / a.seconds.value, t), b), false};
+    }
+    const Measurement& last = *rows.back();
+    return {estimate(last.seconds.value * last.relmse.value / relmse, last), false};
+}
+
+} // namespace
+
+std::optional<Dominance> dominance(const std::vector<Measurement>& rows, const Measurement& row) {
+    if (row.technique == "path" || !(row.relmse.value > 0) || !(row.seconds.value > 0)) return std::nullopt;
+    std::map<std::string, std::vector<const Measurement*>> samplers;
+    for (const Measurement& m : rows)
+        if (m.technique == "path" && m.relmse.value > 0 && m.seconds.value > 0) samplers[m.sampler].push_back(&m);
+    std::optional<Dominance> fastest;
+    for (auto& [sampler, measured] : samplers) {
+        std::sort(measured.begin(), measured.end(),
+                  [](const Measurement* a, const Measurement* b) { return a->relmse.value > b->relmse.value; });
+        Dominance time = time_to_reach(row.relmse.value, measured);
+        if (!fastest || time.ratio.value < fastest->ratio.value) fastest = time;
+    }
+    if (!fastest) return std::nullopt;
+    fastest->ratio.relative_error = std::hypot(fastest->ratio.relative_error, row.relmse.relative_error);
+    return Dominance{ratio_of(fastest->ratio, row.seconds), fastest->at_most};
 }
 
 } // namespace duet::compare

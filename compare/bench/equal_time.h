@@ -1,4 +1,4 @@
-// Errors at equal time. Efficiency predicts them only for independent samples.
+// Errors at equal time, and times at equal error. Efficiency predicts them only for independent samples.
 #pragma once
 
 #include "compare/bench/measure.h"
@@ -29,5 +29,17 @@ struct EqualTimeRow {
 /// Returns every renderer at each of the times, in order, compared with `peer` unless that is empty.
 std::vector<EqualTimeRow> at_equal_times(const std::vector<Measurement>& rows,
                                          const std::vector<double>& equal_times_seconds, const std::string& peer);
+
+/// How many times as fast as the path tracer a renderer is, at the renderer's own error.
+struct Dominance {
+    Estimate ratio;       ///< the path tracer's time to the same relMSE over the renderer's; above 1 is faster
+    bool at_most = false; ///< the path tracer's fastest measurement is more accurate, so `ratio` is an upper bound
+};
+
+/// Returns the dominance of one of the rows over those of the technique `path`, by its fastest sampler. Its time is
+/// interpolated linearly in the logarithms between its measurements. Beyond the most accurate one its error is taken
+/// to fall as 1 / time, as that of independent samples does. Returns nothing where `path` was not measured, and for
+/// rows of `path` itself.
+std::optional<Dominance> dominance(const std::vector<Measurement>& rows, const Measurement& row);
 
 } // namespace duet::compare

@@ -4,7 +4,7 @@
 #include "common/system/error.h"
 #include "raster/probes/reflection_probes.h"
 #include "raster/shading/deferred.h"
-#include "raster/shadows/shadows.h"
+#include "raster/shadows/shadow_maps.h"
 
 #include <algorithm>
 

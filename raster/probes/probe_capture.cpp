@@ -5,7 +5,7 @@
 #include "raster/lighting/direct_light.h"
 #include "raster/shadows/cube_map.h"
 #include "raster/shadows/light_views.h"
-#include "raster/shadows/map_shadows.h"
+#include "raster/shadows/shadow_map_lookup.h"
 #include "raster/lighting/shadow_filter.h"
 
 #include "common/system/control.h"

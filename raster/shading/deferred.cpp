@@ -7,7 +7,7 @@
 #include "raster/probes/reflections.h"
 #include "raster/probes/refraction.h"
 #include "raster/lighting/sky_light.h"
-#include "raster/shadows/map_shadows.h"
+#include "raster/shadows/shadow_map_lookup.h"
 #include "raster/lighting/shadow_filter.h"
 
 #include "common/system/control.h"

@@ -30,16 +30,16 @@ inline Vec3 from_face(std::size_t face, Vec3 seen) {
     return w;
 }
 
-/// A cube map holds six shadow maps about a point, rendered by cube_views (raster/shadows/light_views.h). A face
-/// through which no light leaves is null.
+/// A cube map holds six shadow maps about a point, rendered by Shadows (raster/shadows/shadow_maps.h) from the cameras
+/// of cube_views. A face through which no light leaves is null.
 struct CubeMap {
     static constexpr double kGuard = 4; ///< guard texels of the neighboring faces around each face
 
     FrameT<double> frame; ///< the cube's axes
     Vec3d center;
-    float near = 0; ///< depth at which reversed depth is 1
+    float near = 0;   ///< depth at which reversed depth is 1
     float middle = 0; ///< texels from a face's edge to its center
-    float scale = 0; ///< texels from the center to 45° off the axis
+    float scale = 0;  ///< texels from the center to 45° off the axis
     std::array<std::unique_ptr<ShadowMap>, 6> faces;
 };
 

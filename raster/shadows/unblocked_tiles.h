@@ -4,7 +4,7 @@
 
 #include "raster/gbuffer/gbuffer.h"
 #include "raster/raster_scene.h"
-#include "raster/shadows/shadows.h"
+#include "raster/shadows/shadow_maps.h"
 
 #include <vector>
 

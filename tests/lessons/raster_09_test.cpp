@@ -1,6 +1,6 @@
 // Lesson raster-09 and the library: the same depths in the map, and the same shadows away from their edges.
 #include "raster/lessons/09-shadow-maps/shadow.h"
-#include "raster/shadows/sharp_shadow_map.h"
+#include "raster/shadows/pcf.h"
 #include "tests/raster/shadow_floor.h"
 
 #include <doctest/doctest.h>

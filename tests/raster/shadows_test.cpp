@@ -3,7 +3,7 @@
 
 #include "raster/raster_scene.h"
 #include "raster/shadows/shadow_map.h"
-#include "raster/shadows/shadows.h"
+#include "raster/shadows/shadow_maps.h"
 
 #include <doctest/doctest.h>
 

@@ -63,6 +63,13 @@ function efficiencyTable(rows, measure, indexOf) {
         {name: "seconds", cell: row => withBand(row.seconds, duration), key: row => row.seconds.value},
         {name: measure.name, cell: row => withBand(measure.error(row), figure), key: row => measure.error(row).value},
         {
+          name: "dominates",
+          cell: row =>
+              row.dominates ? [row.dominates.at_most ? "< " : "", ...withBand(row.dominates.ratio, figure)] : "–",
+          key: row => row.dominates ? row.dominates.ratio.value : 0,
+          down: true
+        },
+        {
           name: `1 / (${measure.name} × s)`,
           cell: row => withBand(measure.efficiency(row), figure),
           key: row => measure.efficiency(row).value,
@@ -84,7 +91,8 @@ function efficiencyTable(rows, measure, indexOf) {
       ],
       `Efficiency is 1 / (${
           measure
-              .name} × seconds): twice as much is half the error at the same time. ± is half the 95 % band; bias ` +
+              .name} × seconds): twice as much is half the error at the same time. ± is half the 95 % band; ` +
+              `dominates the path tracer's time to the same relMSE over this row's; bias ` +
               `the part of the MSE that more samples would not take away.`);
 }
 

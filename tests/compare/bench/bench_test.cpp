@@ -188,6 +188,26 @@ TEST_SUITE("unit") {
         CHECK_FALSE(table[4].mse);
     }
 
+    TEST_CASE("dominance: the path tracer's time to a row's error over the row's time, also beyond its measurements") {
+        const std::vector<Measurement> rows =
+            measured({synthetic("path", 0, 0.1), synthetic("raster", 0, 0.02), synthetic("wrong", 0.5, 0.02)});
+        REQUIRE(rows.size() == 6);
+        CHECK_FALSE(dominance(rows, rows[0]));
+        for (const std::size_t i : {2u, 3u}) { // the same errors in a fifth of the time
+            const std::optional<Dominance> found = dominance(rows, rows[i]);
+            REQUIRE(found);
+            CHECK(found->ratio.value == doctest::Approx(5).epsilon(0.1));
+            CHECK(found->ratio.low() < 5);
+            CHECK(found->ratio.high() > 5);
+        }
+        Measurement exact = rows[3]; // a tenth of the error of any row
+        exact.relmse.value /= 10;
+        CHECK(dominance(rows, exact)->ratio.value == doctest::Approx(50).epsilon(0.1));
+        const std::optional<Dominance> wrong = dominance(rows, rows[4]);
+        CHECK(wrong->at_most);
+        CHECK(wrong->ratio.value == doctest::Approx(5)); // one sample of a pixel is the path tracer's fastest
+    }
+
     TEST_CASE("the time limit ends the rounds, but two are made; a stop ends all") {
         const Reference truth{ImageRgb(32, 32, Rgb(0.5f)), ImageRgb(32, 32)};
         Control control;

@@ -1,4 +1,4 @@
-#include "raster/shadows/soft_shadow_map.h"
+#include "raster/shadows/pcss.h"
 
 #include "common/sampling/sobol.h"
 

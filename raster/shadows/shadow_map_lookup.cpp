@@ -1,4 +1,4 @@
-#include "raster/shadows/map_shadows.h"
+#include "raster/shadows/shadow_map_lookup.h"
 
 namespace duet::raster {
 namespace {

@@ -1,4 +1,4 @@
-#include "raster/shadows/shadows.h"
+#include "raster/shadows/shadow_maps.h"
 
 #include "raster/gbuffer/screen_projection.h"
 #include "raster/visibility/depth_image.h"

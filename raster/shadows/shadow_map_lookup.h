@@ -3,9 +3,9 @@
 
 #include "raster/gbuffer/gbuffer.h"
 #include "raster/shadows/shadow_lookup.h"
-#include "raster/shadows/shadows.h"
-#include "raster/shadows/sharp_shadow_map.h"
-#include "raster/shadows/soft_shadow_map.h"
+#include "raster/shadows/shadow_maps.h"
+#include "raster/shadows/pcf.h"
+#include "raster/shadows/pcss.h"
 #include "raster/shadows/unblocked_tiles.h"
 
 namespace duet::raster {

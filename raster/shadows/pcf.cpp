@@ -1,4 +1,4 @@
-#include "raster/shadows/sharp_shadow_map.h"
+#include "raster/shadows/pcf.h"
 
 #include <cmath>
 
