@@ -1,19 +1,14 @@
 #include "raster/render.h"
 
-#include "raster/geometry/geometry.h"
+#include "raster/forward_tiles.h"
 #include "raster/output/display_tile.h"
 #include "raster/output/framebuffer.h"
-#include "raster/output/statistics.h"
 #include "raster/overlay/overlay.h"
-#include "raster/shading/alpha_layers.h"
 #include "raster/shading/built_in_shaders.h"
 #include "raster/shading/deferred.h"
-#include "raster/shading/sample_attributes.h"
 #include "raster/visibility/depth_image.h"
-#include "raster/visibility/hit_lists.h"
 #include "raster/visibility/hit_tile.h"
 #include "raster/visibility/multisample.h"
-#include "raster/visibility/packet_primitives.h"
 
 #include "common/image/srgb.h"
 #include "common/system/error.h"
@@ -48,19 +43,6 @@ std::vector<Pass> plan_view(const RasterSceneData& data, const View& view, const
                        camera.has_lens() || !settings.skips.lens || draws_edges(settings),
                        (data.scene.needs.motion && shutter) || !settings.skips.motion);
 }
-
-/// Holds the state that all passes of a rendering share.
-struct FrameContext {
-    const RasterSceneData& data;
-    const RasterSettings& settings;
-    const ShaderProgram* program; ///< null for Shading::kLit
-    TileGrid grid;
-    Geometry& geometry;
-    Geometry* layers; ///< alpha-masked and alpha-blended surfaces; null if there are none
-    StatisticsCollector& collector;
-    Progress& progress;
-    Control& control;
-};
 
 PassView pass_view_of(const CameraModel& camera, const View& view, const RasterSettings& settings, const Pass& pass) {
     const Pinhole pinhole = camera.pinhole(pass.lens);
@@ -97,129 +79,6 @@ void render_pass(const FrameContext& frame, const CameraModel& camera, const Vie
     frame.collector.tiles += tiles_watch.seconds();
 }
 
-/// Shades the samples of a tile with a program, one row of packets at a time.
-void shade_tile(const FrameContext& frame, const PassView& view, const DepthTile& depths, Framebuffer& framebuffer) {
-    const PixelRect& rect = depths.rect();
-    const auto shader = frame.program->for_tile(frame.data, frame.geometry, view, rect);
-    constexpr int kColumns = kPacketWidth, kRows = DepthTile::kPacketRows;
-    std::array<SamplePacket, TileGrid::kTileSize / kColumns> packets;
-    std::array<ColorPacket, TileGrid::kTileSize / kColumns> colors;
-    std::array<std::uint32_t, TileGrid::kTileSize / kColumns> visible;
-    for (int y0 = rect.y0; y0 < rect.y1; y0 += kRows) {
-        std::size_t count = 0;
-        for (int x0 = rect.x0; x0 < rect.x1; x0 += kColumns) packets[count++] = sample_packet(depths, x0, y0);
-        shader->shade(std::span(packets).first(count), colors.data(), visible.data());
-        for (int y = y0; y < std::min(y0 + kRows, rect.y1); ++y)
-            for (int x = rect.x0; x < rect.x1; ++x) {
-                const auto packet = static_cast<std::size_t>((x - rect.x0) / kColumns);
-                const auto i = static_cast<std::size_t>((y - y0) * kColumns + (x - rect.x0) % kColumns);
-                const ColorPacket& packet_colors = colors[packet];
-                framebuffer.add(
-                    x, y,
-                    visible[packet] >> i & 1 ? Rgb(packet_colors.r[i], packet_colors.g[i], packet_colors.b[i]) : Rgb());
-            }
-    }
-}
-
-/// Returns true if alpha-masked or alpha-blended surfaces overlap the tile.
-bool has_layers_in(const FrameContext& frame, std::size_t tile) {
-    return frame.layers != nullptr && overlaps_tile(*frame.layers, tile);
-}
-/// Returns true if the tile's samples are visited one by one: for auxiliary images, and for a program in front of whose
-/// surfaces there are transparent layers.
-bool visits_samples(const FrameContext& frame, std::size_t tile) {
-    return frame.settings.aovs.any() || (frame.program != nullptr && has_layers_in(frame, tile));
-}
-
-/// Visits the samples of a tile one by one. Adds their auxiliary values and, in front of transparent layers, the
-/// program's radiance.
-void visit_samples(const FrameContext& frame, const PassView& view, std::size_t index, const DepthTile& depths,
-                   Framebuffer& framebuffer) {
-    HitTile tile(depths, frame.geometry, view);
-    std::optional<Layers> layers;
-    if (has_layers_in(frame, index))
-        layers.emplace(frame.data, frame.settings, frame.program, *frame.layers, view, depths.offset(), index, tile);
-    const PixelRect& rect = depths.rect();
-    for (int y = rect.y0; y < rect.y1; ++y)
-        for (int x = rect.x0; x < rect.x1; ++x) {
-            ShadedSample shaded = sample_attributes(frame.data, frame.settings, tile, x, y);
-            if (layers) {
-                if (frame.program != nullptr && tile.hit(x, y).valid())
-                    shaded.radiance =
-                        frame.program->shade_hit(frame.data, view, tile.hit(x, y), depths.offset().position(x, y));
-                shaded = layers->over(x, y, shaded);
-            }
-            if (frame.settings.aovs.any()) framebuffer.add_aovs(tile, x, y, shaded);
-            if (layers && frame.program != nullptr) framebuffer.add(x, y, shaded.radiance);
-        }
-}
-
-/// Shades one layer of a multisampled tile. Each primitive is shaded once per pixel and weighted by its number of
-/// samples.
-void shade_layer(const FrameContext& frame, const PassView& view, const LayeredTile& tile, std::size_t layer,
-                 Framebuffer& framebuffer) {
-    const PixelRect& rect = tile.rect();
-    const auto for_each = [&](const auto& visit) { // calls visit() for the pixels in the layer
-        for (int y = rect.y0; y < rect.y1; ++y)
-            for (int x = rect.x0; x < rect.x1; ++x)
-                if (const int count = tile.layer(layer).count(tile.sample_index(x, y)); count > 0) visit(x, y, count);
-    };
-    if (frame.settings.aovs.any()) {
-        const HitTile hits(tile, layer, frame.geometry, view);
-        for_each([&](int x, int y, int count) {
-            const ShadedSample attributes = sample_attributes(frame.data, frame.settings, hits, x, y);
-            for (int i = 0; i < count; ++i) framebuffer.add_aovs(hits, x, y, attributes);
-        });
-    }
-    if (frame.program == nullptr) return; // deferred shading follows
-    const auto shader = frame.program->for_tile(frame.data, frame.geometry, view, rect);
-    LayeredTile::LayerPacket layer_packet;
-    for (int y0 = rect.y0; y0 < rect.y1; y0 += DepthTile::kPacketRows)
-        for (int x0 = rect.x0; x0 < rect.x1; x0 += static_cast<int>(kPacketWidth)) {
-            tile.layer_packet(layer, x0, y0, layer_packet);
-            if (layer_packet.packet.ids == nullptr) continue;
-            ColorPacket colors;
-            const std::uint32_t visible = shader->shade(layer_packet.packet, colors), first = tile.sample_index(x0, y0);
-            for (std::uint32_t i = 0; i < kPacketSize; ++i)
-                if (const int count = tile.layer(layer).count(first + i); count > 0) {
-                    const int x = x0 + static_cast<int>(i % kPacketWidth), y = y0 + static_cast<int>(i / kPacketWidth);
-                    if (x < rect.x1 && y < rect.y1)
-                        framebuffer.add(x, y, visible >> i & 1 ? Rgb(colors.r[i], colors.g[i], colors.b[i]) : Rgb(),
-                                        count);
-                }
-        }
-}
-
-/// Renders one tile with multisampling: determines the coverage of all samples, then shades each primitive once.
-void render_multisampled_tile(const FrameContext& frame, const PassView& view, std::size_t index,
-                              Framebuffer& framebuffer) {
-    const PixelRect rect = frame.grid.tile(index);
-    Stopwatch watch;
-    LayeredTile tile(rect, static_cast<int>(view.samples.size()));
-    DepthTile depths;
-    for (const SampleOffset offset : view.samples) {
-        rasterize_tile(frame.geometry, view, offset, rect, index, depths);
-        tile.add(depths);
-    }
-    frame.collector.coverage_work += static_cast<std::int64_t>(watch.lap() * 1e9);
-    for (std::size_t layer = 0; layer < tile.layers(); ++layer) shade_layer(frame, view, tile, layer, framebuffer);
-    frame.collector.shade_work += static_cast<std::int64_t>(watch.lap() * 1e9);
-}
-
-/// Renders one tile: determines the coverage of each sample, then shades it with the program.
-void render_tile(const FrameContext& frame, const PassView& view, std::size_t index, Framebuffer& framebuffer) {
-    const PixelRect rect = frame.grid.tile(index);
-    DepthTile depths;
-    for (const SampleOffset offset : view.samples) {
-        Stopwatch watch;
-        rasterize_tile(frame.geometry, view, offset, rect, index, depths);
-        frame.collector.coverage_work += static_cast<std::int64_t>(watch.lap() * 1e9);
-        if (visits_samples(frame, index)) visit_samples(frame, view, index, depths, framebuffer);
-        if (!has_layers_in(frame, index)) shade_tile(frame, view, depths, framebuffer);
-        frame.collector.shade_work += static_cast<std::int64_t>(watch.lap() * 1e9);
-    }
-}
-
 /// Adds the edges of a pass, whose geometry has been processed, to the overlay.
 void add_edges(const FrameContext& frame, const CameraModel& camera, const View& view, const Pass& pass,
                Overlay& overlay) {
@@ -232,7 +91,7 @@ void add_edges(const FrameContext& frame, const CameraModel& camera, const View&
         rasterize_tile(frame.geometry, pass_view, offset, frame.grid.tile(i), i, depths);
         edge_buffer.add(depths, frame.geometry,
                         *normals->for_tile(frame.data, frame.geometry, pass_view, frame.grid.tile(i)));
-        if (has_layers_in(frame, i))
+        if (frame.has_layers_in(i))
             edge_buffer.add_layers(frame.data, *frame.layers, pass_view, offset, i,
                                    HitTile(depths, frame.geometry, pass_view), *normals);
     });
@@ -246,11 +105,6 @@ template <typename Visit> void for_each_pixel(const View& view, int threads, con
     });
 }
 
-bool is_multisampled(const FrameContext& frame) {
-    // Transparent layers are sorted per sample, so each sample is shaded.
-    return frame.settings.multisamples > 0 && !frame.settings.sample_shading && frame.layers == nullptr;
-}
-
 /// Calls use(sample) for each sample of a pixel of one pass of Shading::kLit.
 template <typename Use>
 void for_each_lit_sample(const FrameContext& frame, const CameraModel& camera, const View& view, const Pass& pass,
@@ -262,7 +116,7 @@ void for_each_lit_sample(const FrameContext& frame, const CameraModel& camera, c
         if (frame.control.stopped()) break;
         use(SampleView{frame.data, frame.settings, frame.geometry, frame.layers, pass_view, frame.grid, offset,
                        frame.control});
-        if (is_multisampled(frame)) break; // one shading of all samples
+        if (frame.is_multisampled()) break; // one shading of all samples
     }
     frame.collector.tiles += watch.seconds();
     if (frame.control.stopped()) return; // the pass is incomplete
@@ -273,7 +127,7 @@ void for_each_lit_sample(const FrameContext& frame, const CameraModel& camera, c
 void add_aovs(const FrameContext& frame, const SampleView& sample, Framebuffer& framebuffer) {
     if (!frame.settings.aovs.any()) return;
     parallel_for(frame.grid.size(), frame.settings.threads, [&](std::size_t i) {
-        if (is_multisampled(frame)) return render_multisampled_tile(frame, sample.view, i, framebuffer);
+        if (frame.is_multisampled()) return render_multisampled_tile(frame, sample.view, i, framebuffer);
         DepthTile depths;
         rasterize_tile(frame.geometry, sample.view, sample.offset, frame.grid.tile(i), i, depths);
         visit_samples(frame, sample.view, i, depths, framebuffer);
@@ -292,7 +146,7 @@ void render_lit(const FrameContext& frame, const CameraModel& camera, const View
                     framebuffer.add(x, y, radiance.color_at(x, y), samples);
             });
         };
-        if (is_multisampled(frame)) {
+        if (frame.is_multisampled()) {
             shade_multisampled(sample, *images, add);
         } else {
             shade_deferred(sample, *images);
@@ -316,7 +170,7 @@ Rendering render_image(const FrameContext& frame, const CameraModel& camera, con
             render_lit(frame, camera, view, pass, framebuffer);
         else
             render_pass(frame, camera, view, pass, [&](const PassView& pass_view, std::size_t i) {
-                if (is_multisampled(frame))
+                if (frame.is_multisampled())
                     render_multisampled_tile(frame, pass_view, i, framebuffer);
                 else
                     render_tile(frame, pass_view, i, framebuffer);
