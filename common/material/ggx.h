@@ -18,8 +18,8 @@ template <typename T> T sin2_theta(Vec3T<T> w) { return w.x * w.x + w.y * w.y; }
 /// Returns D(h), the density of microfacet normals by solid angle: ∫ D(h) cos θ_h dh = 1 over the hemisphere (Walter
 /// et al., eq. 33).
 template <typename T> T ggx_d(Vec3T<T> h, T alpha) {
-    // The denominator of eq. 33 is cos² (α² − 1) + 1 = sin² + α² cos². It is divided by α once more so that
-    // its square neither overflows nor underflows.
+    // The denominator of eq. 33 is cos² (α² − 1) + 1 = sin² + α² cos². It is divided by α once more so that its
+    // square neither overflows nor underflows.
     const T a = sin2_theta(h) / alpha + alpha * h.z * h.z;
     using Number = std::conditional_t<std::is_same_v<T, double>, double, float>;
     return T(static_cast<Number>(1.0 / kPiDouble)) / (a * a);

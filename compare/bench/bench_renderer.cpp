@@ -23,9 +23,9 @@ double cpu_seconds_so_far() {
     return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-/// The path tracer with adaptive sampling.
+/// This is the path tracer with adaptive sampling.
 constexpr std::string_view kAdaptive = "adaptive";
-/// The path tracer without Russian roulette.
+/// This is the path tracer without Russian roulette.
 constexpr std::string_view kNoRoulette = "no-roulette";
 
 /// Returns what keeps a technique from converging to the reference, as a sentence.

@@ -1,4 +1,4 @@
-// The bench's renderers: each has its own settings and is measured at several sample counts.
+// This file declares the bench's renderers: each has its own settings and is measured at several sample counts.
 #pragma once
 
 #include "common/camera/camera.h"
@@ -15,7 +15,7 @@
 
 namespace duet::compare {
 
-/// One rendered image and its cost.
+/// This is one rendered image and its cost.
 struct TimedImage {
     ImageRgb image;
     double seconds = 0;     ///< wall-clock time of the render alone, without loading, building or writing
@@ -23,7 +23,7 @@ struct TimedImage {
                             ///< unknown (for a peer)
 };
 
-/// A renderer with settings, prepared for one scene and view.
+/// This is a renderer with settings, prepared for one scene and view.
 struct BenchRenderer {
     std::string technique; ///< "raster", an integrator, "adaptive" or "no-roulette" (path), or a peer's name
     std::string sampler;   ///< empty if the technique has no choice of samplers

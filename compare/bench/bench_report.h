@@ -1,4 +1,4 @@
-// The bench's results as JSON, as CSV, as text and as a page.
+// This file declares the bench's results as JSON, as CSV, as text and as a page.
 #pragma once
 
 #include "compare/bench/baseline.h"

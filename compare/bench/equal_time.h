@@ -18,7 +18,7 @@ namespace duet::compare {
 std::optional<Estimate> error_at(const std::vector<Measurement>& rows, const std::string& technique,
                                  const std::optional<std::string>& sampler, double seconds, bool rest);
 
-/// One renderer at one time.
+/// This is one renderer at one time.
 struct EqualTimeRow {
     double seconds = 0;
     std::string name;

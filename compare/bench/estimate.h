@@ -15,10 +15,9 @@ inline double shared_significance(double alpha, std::size_t tests) {
     return alpha / static_cast<double>(tests > 0 ? tests : 1);
 }
 
-/// A positive quantity with a confidence band. The uncertainty is relative, and the band is symmetric on a
-/// logarithmic scale: value · exp(± t · relative_error), with Student's t. To first order in the relative error
-/// this is the usual band (the delta method). It never contains zero, and products and quotients propagate by
-/// adding squares.
+/// This is a positive quantity with a confidence band. The uncertainty is relative, and the band is symmetric on a
+/// logarithmic scale: value · exp(± t · relative_error), with Student's t. To first order in the relative error this is
+/// the usual band (the delta method). It never contains zero, and products and quotients propagate by adding squares.
 struct Estimate {
     double value = 0;          ///< NaN: nothing was measured
     double relative_error = 0; ///< standard error / value; infinity: a single measurement

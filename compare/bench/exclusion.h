@@ -10,7 +10,7 @@
 
 namespace duet::compare {
 
-/// A rectangle [x0, x1) × [y0, y1) from the upper left corner, in pixels or in fractions of the image size.
+/// This is a rectangle [x0, x1) × [y0, y1) from the upper left corner, in pixels or in fractions of the image size.
 struct ExcludedRectangle {
     double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
     bool fractions = false;

@@ -11,7 +11,7 @@ namespace duet::compare {
 
 namespace {
 
-/// A measurement in progress.
+/// This is a measurement in progress.
 struct RunningMeasurement {
     const BenchRenderer* renderer = nullptr;
     Measurement measurement;

@@ -9,7 +9,7 @@
 
 namespace duet::compare {
 
-/// A reference image and its estimated uncertainty.
+/// This is a reference image and its estimated uncertainty.
 struct Reference {
     ImageRgb mean;
     ImageRgb variance; ///< of `mean`, estimated per pixel with at least one degree of freedom
@@ -37,7 +37,7 @@ struct ReferenceKey {
 /// below the system's temporary folder.
 std::filesystem::path default_reference_folder();
 
-/// A folder of references, one EXR file each (R, G, B and variance.R, .G, .B), named SCENE-ESTIMATOR-HASH.exr.
+/// This is a folder of references, one EXR file each (R, G, B and variance.R, .G, .B), named SCENE-ESTIMATOR-HASH.exr.
 class ReferenceCache {
 public:
     explicit ReferenceCache(std::filesystem::path folder) : folder_(std::move(folder)) {}

@@ -1,4 +1,5 @@
-// The references of one scene, by the path tracer and by independent estimators, from the cache or newly rendered.
+// This file declares the references of one scene, by the path tracer and by independent estimators, from the cache or
+// newly rendered.
 #pragma once
 
 #include "common/camera/camera.h"
@@ -20,7 +21,7 @@ struct ReferenceSettings {
     int threads = 0;
 };
 
-/// A reference and its origin.
+/// This is a reference and its origin.
 struct CachedReference {
     Reference reference;
     std::string estimator;

@@ -1,4 +1,4 @@
-// The bench's results for one scene.
+// This file declares the bench's results for one scene.
 #pragma once
 
 #include "compare/bench/bias_check.h"
@@ -11,7 +11,7 @@
 
 namespace duet::compare {
 
-/// The comparison of the reference with another estimator's.
+/// This is the comparison of the reference with another estimator's.
 struct IndependentCheck {
     CachedReference other;
     BiasCheck check;

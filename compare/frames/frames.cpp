@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The rows of one mesh.
+/// These are the rows of one mesh.
 struct MeshRows {
     std::string mesh;
     std::size_t triangles = 0;

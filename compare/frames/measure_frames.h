@@ -10,7 +10,7 @@
 
 namespace duet::compare {
 
-/// The difference between the rasterizer's image and the peer's.
+/// This is the difference between the rasterizer's image and the peer's.
 struct FrameDifference {
     double coverage = 0; ///< fraction of the pixels that exactly one of the two leaves empty
     double mean = 0;     ///< Phong: mean |difference| of encoded values, in [0, 1]; depth: mean |ours/theirs − 1|

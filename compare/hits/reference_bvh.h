@@ -1,4 +1,4 @@
-// A bounding volume hierarchy in double precision, used by the reference ray tracer.
+// This file declares a bounding volume hierarchy in double precision, used by the reference ray tracer.
 #pragma once
 
 #include "common/vec/box.h"

@@ -9,7 +9,7 @@
 
 namespace duet::compare {
 
-/// A ray's hit in double precision. On a miss, object is kNoObject and t is infinite.
+/// This is a ray's hit in double precision. On a miss, object is kNoObject and t is infinite.
 struct ReferenceHit {
     std::uint32_t object = kNoObject, primitive = 0;
     double t = std::numeric_limits<double>::infinity();

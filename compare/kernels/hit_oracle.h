@@ -10,7 +10,7 @@
 
 namespace duet::compare {
 
-/// The judgment of one result.
+/// This is the judgment of one result.
 enum class AnswerVerdict : std::uint8_t {
     kCorrect,  ///< confirmed by the double-precision ray
     kTie,      ///< another triangle is hit at the same distance

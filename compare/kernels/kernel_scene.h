@@ -19,7 +19,7 @@ enum class Arrangement {
 Arrangement parse_arrangement(const std::string& name);
 const char* name_of(Arrangement arrangement);
 
-/// A scene of triangle meshes only: one mesh in world space as the single object, or instances of one mesh
+/// This is a scene of triangle meshes only: one mesh in world space as the single object, or instances of one mesh
 /// followed by a mesh in world space.
 struct KernelScene {
     std::string mesh; ///< file name without its extension

@@ -9,9 +9,9 @@
 
 namespace duet::compare {
 
-/// The order of pixels. Tiles of kTile × kTile are visited from the upper left, each by rows or along a Z-order
-/// curve (Morton 1966), in which the path tracer traces camera rays in bulk. On the curve, 16 consecutive rays
-/// cover 4 × 4 pixels.
+/// This is the order of pixels. Tiles of kTile × kTile are visited from the upper left, each by rows or along a Z-order
+/// curve (Morton 1966), in which the path tracer traces camera rays in bulk. On the curve, 16 consecutive rays cover 4
+/// × 4 pixels.
 enum class PixelOrder { kRows, kZCurve };
 inline constexpr int kTile = 16;
 

@@ -15,7 +15,7 @@
 
 namespace duet::compare {
 
-/// A kernel's result for one ray: the distance and triangle of the closest hit; for a shadow ray, only whether
+/// This is a kernel's result for one ray: the distance and triangle of the closest hit; for a shadow ray, only whether
 /// it is blocked.
 struct RayResult {
     static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();

@@ -14,7 +14,7 @@ namespace {
 /// Contributions of one camera sample to I₁ … I₇.
 using StageValues = std::array<Rgbd, kRungCount>;
 
-/// The rasterizer's light towards the viewer in one pixel.
+/// This is the rasterizer's light towards the viewer in one pixel.
 struct RasterLight {
     Rgbd emission, direct, environment, indirect, reflection, shadowed;
 

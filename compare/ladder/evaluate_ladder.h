@@ -1,14 +1,14 @@
-// The images of the ladder. They lead from the rasterizer's image to the path tracer's by replacing one
-// approximation after the other with the traced quantity.
+// This file declares the images of the ladder. They lead from the rasterizer's image to the path tracer's by replacing
+// one approximation after the other with the traced quantity.
 #pragma once
 
 #include "compare/ladder/rungs.h"
 
 namespace duet::compare {
 
-/// The images of all ladder stages. I₀ is the rasterizer's image. I_k is the same image with its first k
-/// approximations replaced. The last one is path-traced. All except I₀ are traced twice, with independent
-/// halves of the samples, to estimate the effect of noise.
+/// These are the images of all ladder stages. I₀ is the rasterizer's image. I_k is the same image with its first k
+/// approximations replaced. The last one is path-traced. All except I₀ are traced twice, with independent halves of the
+/// samples, to estimate the effect of noise.
 struct LadderImages {
     ImageRgb first;                                         ///< I₀
     std::array<std::array<ImageRgb, kRungCount>, 2> halves; ///< halves[h][k − 1] is I_k of half h

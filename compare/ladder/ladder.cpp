@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// One progress bar for several tasks. The fraction of each is proportional to its cost.
+/// This is one progress bar for several tasks. The fraction of each is proportional to its cost.
 class Tasks {
 public:
     Tasks(double cost, bool quiet, const InterruptFlag& interrupt)

@@ -1,4 +1,5 @@
-// The rungs of the ladder: the quantity that each one compares, and how each pipeline renders it separately.
+// This file declares the rungs of the ladder: the quantity that each one compares, and how each pipeline renders it
+// separately.
 #pragma once
 
 #include "compare/renderer.h"
@@ -11,7 +12,7 @@
 
 namespace duet::compare {
 
-/// The rungs in their fixed order. A cause of difference is named after the rung at which the traced quantity
+/// These are the rungs in their fixed order. A cause of difference is named after the rung at which the traced quantity
 /// replaces the approximation.
 struct RungName {
     const char* id;    ///< identifier in files and keys

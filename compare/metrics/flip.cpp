@@ -16,7 +16,7 @@ using Filters = std::array<SeparableFilter, kFlipFilters>;
 
 // Color --------------------------------------------------------------------------------------------------------------
 
-/// A 3 × 3 matrix for colors, by rows.
+/// This is a 3 × 3 matrix for colors, by rows.
 struct ColorMatrix {
     Vec3 x, y, z;
     Vec3 operator*(Vec3 c) const { return {dot(x, c), dot(y, c), dot(z, c)}; }

@@ -5,12 +5,12 @@
 
 namespace duet::compare {
 
-/// The paper's viewing conditions: a screen 0.7 m wide with 3840 pixels, viewed from 0.7 m.
+/// These are the paper's viewing conditions: a screen 0.7 m wide with 3840 pixels, viewed from 0.7 m.
 inline constexpr double kFlipPixelsPerDegree = 3840 * 3.14159265358979323846 / 180; // 67.02
 
-/// An error map in [0, 1] and its pooled values. A pixel that is not finite in either image is set to black in
-/// both images when its neighbors are filtered. It is NaN in the map and excluded from the pooled values, which
-/// are NaN if no pixel is left.
+/// This is an error map in [0, 1] and its pooled values. A pixel that is not finite in either image is set to black in
+/// both images when its neighbors are filtered. It is NaN in the map and excluded from the pooled values, which are NaN
+/// if no pixel is left.
 struct Flip {
     ImageFloat map;
     double mean = 0;
@@ -26,7 +26,7 @@ struct Flip {
 Flip flip(const ImageRgb& test, const ImageRgb& reference, double pixels_per_degree = kFlipPixelsPerDegree,
           int threads = 0);
 
-/// The maximum of the FLIP error over all exposures, per pixel.
+/// This is the maximum of the FLIP error over all exposures, per pixel.
 struct HdrFlip : Flip {
     double start_exposure = 0, stop_exposure = 0; ///< in stops: radiance is scaled by 2^exposure
     int exposures = 0;                            ///< number of exposures, evenly spaced from start to stop

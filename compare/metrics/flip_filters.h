@@ -1,4 +1,4 @@
-// The filters of FLIP: contrast sensitivity, edge detection and point detection.
+// This file declares the filters of FLIP: contrast sensitivity, edge detection and point detection.
 #pragma once
 
 #include <array>
@@ -9,13 +9,13 @@ namespace duet::compare {
 /// An odd number of filter taps, centered on the pixel.
 using Kernel = std::vector<float>;
 
-/// A two-dimensional filter of one image channel as the product of two one-dimensional filters.
+/// This is a two-dimensional filter of one image channel as the product of two one-dimensional filters.
 struct SeparableFilter {
     std::size_t channel; ///< index into Y, Cx, Cz
     Kernel horizontal, vertical;
 };
 
-/// The eight filters, named by their output.
+/// These are the eight filters, named by their output.
 enum FlipFilter : std::size_t {
     kAchromatic,
     kRedGreen,

@@ -30,7 +30,7 @@ ImageMetrics image_metrics(const ImageRgb& a, const ImageRgb& reference, Encodin
 /// Decodes sRGB-encoded values to linear ones.
 ImageRgb decoded(const ImageRgb& image);
 
-/// One metric as a number with a name.
+/// This is one metric as a number with a name.
 struct MetricValue {
     std::string name; ///< name in the JSON and in METRIC=VALUE
     double value = 0;

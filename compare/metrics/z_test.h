@@ -7,7 +7,7 @@
 
 namespace duet::compare {
 
-/// A linear image and the estimated variance of each of its values.
+/// This is a linear image and the estimated variance of each of its values.
 struct NoisyImage {
     const ImageRgb& values;
     const ImageRgb& variance; ///< empty: the values are taken as exact

@@ -8,7 +8,7 @@
 
 namespace duet::compare {
 
-/// One Blender process with one scene. Its renders run one at a time, and never at the same time as Duet's.
+/// This is one Blender process with one scene. Its renders run one at a time, and never at the same time as Duet's.
 class CyclesPeer {
 public:
     /// Exports the scene to a temporary folder and starts Blender, which must be in PATH, with it. Throws Error

@@ -8,7 +8,8 @@
 
 namespace duet::compare {
 
-/// A triangle mesh with attributes per triangle corner. Triangles are counter-clockwise when seen from the front.
+/// This is a triangle mesh with attributes per triangle corner. Triangles are counter-clockwise when seen from the
+/// front.
 struct TriangleSoup {
     std::vector<Vec3> positions;         ///< shared vertices
     std::vector<std::int32_t> triangles; ///< three indices each

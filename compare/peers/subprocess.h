@@ -1,4 +1,4 @@
-// A subprocess with a line-based text protocol.
+// This file declares a subprocess with a line-based text protocol.
 #pragma once
 
 #include <chrono>

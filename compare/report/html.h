@@ -8,7 +8,7 @@
 
 namespace duet::compare {
 
-/// The sources of one kind of page, embedded by embed.cmake from a folder of .html, .css and .js files.
+/// These are the sources of one kind of page, embedded by embed.cmake from a folder of .html, .css and .js files.
 struct PageSource {
     std::string_view html; ///< with the placeholders {{title}}, {{css}}, {{data}} and {{js}}
     std::string_view css, js;

@@ -18,7 +18,7 @@ struct ReportRendering {
     const RenderStatistics& statistics;
 };
 
-/// One of the two images of the page.
+/// This is one of the two images of the page.
 struct ReportImage {
     std::string name;                              ///< name on the page: "Rasterizer", or a file name
     const ImageRgb& image;                         ///< linear; stored on the page in half precision
@@ -32,7 +32,7 @@ struct ReportHits {
     const HitAgreement& agreement;
 };
 
-/// The contents of the page. All images have the same size. The page omits what is not present: image files
+/// These are the contents of the page. All images have the same size. The page omits what is not present: image files
 /// have neither hits nor times.
 struct ReportPage {
     std::string title;

@@ -8,7 +8,7 @@ namespace duet::compare {
 
 namespace {
 
-/// A closed mesh with its size and center.
+/// This is a closed mesh with its size and center.
 struct ClosedMesh {
     AcceleratedScene accelerated;
     float scale;

@@ -59,7 +59,7 @@ private:
     void fill_packet(const SamplePacket* visible, int x, int y) {
         if (visible == nullptr) return clear_packet(x, y);
         const SamplePacket& packet = *visible;
-                reader_.read(packet.ids, samples_);
+        reader_.read(packet.ids, samples_);
         if (samples_.visible == 0) return clear_packet(x, y);
         shader_.shade(packet, shaded_);
         find_materials();
@@ -236,7 +236,7 @@ private:
     TileShader<AttributeShader> shader_;
     // The current packet:
     PacketPrimitives samples_;
-    StripNormalsAndColors shaded_;
+    PacketNormalsAndColors shaded_;
     PacketOf<std::int32_t> object_, material_;
     bool one_material_ = false;
 };

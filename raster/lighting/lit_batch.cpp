@@ -46,7 +46,7 @@ LitBatch::LitBatch(const GBuffer& gbuffer, int x, int y, const Lanes& lanes, Tab
     const Floats cosine = dot(z_, v);
     const Vec3T<Floats> across = v - z_ * cosine;
     const Floats sine2 = dot(across, across);
-    // The frame's x axis; where the viewer looks along the normal, any perpendicular to the normal does.
+    // This is the frame's x axis; where the viewer looks along the normal, any perpendicular to the normal does.
     const Lanes y_is_far = abs(z_.y) < Floats(0.7f);
     const Vec3T<Floats> other = select(y_is_far, Vec3T<Floats>(-z_.z, kNone, z_.x), Vec3T<Floats>(kNone, z_.z, -z_.y));
     const Vec3T<Floats> side = select(sine2 > Floats(1e-6f), across, other);

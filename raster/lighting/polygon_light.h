@@ -1,7 +1,7 @@
-// The irradiance from triangles and parallelograms in closed form (Lambert 1760; Arvo 1995, "Analytic Methods for
-// Simulated Light Transport", §4.1.1), for one point or a batch of points. After a linear transformation of the polygon
-// it is the light that a specular lobe reflects (Heitz et al. 2016, "Real-Time Polygonal-Light Shading with Linearly
-// Transformed Cosines").
+// This file declares the irradiance from triangles and parallelograms in closed form (Lambert 1760; Arvo 1995,
+// "Analytic Methods for Simulated Light Transport", §4.1.1), for one point or a batch of points. After a linear
+// transformation of the polygon it is the light that a specular lobe reflects (Heitz et al. 2016, "Real-Time
+// Polygonal-Light Shading with Linearly Transformed Cosines").
 #pragma once
 
 #include "raster/geometry/lane_math.h"

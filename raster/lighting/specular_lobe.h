@@ -1,4 +1,5 @@
-// The GGX lobe of a batch of pixels: its linearly transformed cosine and its directional albedo, from tables.
+// This file declares the GGX lobe of a batch of pixels: its linearly transformed cosine and its directional albedo,
+// from tables.
 #pragma once
 
 #include "common/image/rgb.h"

@@ -35,8 +35,8 @@ Floats arc_cosine(const Floats& x) {
 
 Vec3s unit_of(const Vec3s& v) { return v * inverse_sqrt(max(dot(v, v), Floats(1e-30f))); }
 
-/// The integrals over the open arc from the viewer's direction, θ = 0, to a horizon, in the plane of v and t. The
-/// projected normal is at the angle γ. `all` is ∫ cos(θ − γ) sin θ dθ; the others have the factors cos θ and sin θ.
+/// These are the integrals over the open arc from the viewer's direction, θ = 0, to a horizon, in the plane of v and t.
+/// The projected normal is at the angle γ. `all` is ∫ cos(θ − γ) sin θ dθ; the others have the factors cos θ and sin θ.
 struct Arc {
     Floats all, along_v, along_t;
 };

@@ -13,10 +13,10 @@
 namespace duet::raster {
 
 /// Shades the packets of one tile, in any order. `Colors` is what a shader returns for a packet, ColorPacket or
-/// StripNormalsAndColors.
-template <typename Colors> class StripShaderOf {
+/// PacketNormalsAndColors.
+template <typename Colors> class PacketShaderOf {
 public:
-    virtual ~StripShaderOf() = default;
+    virtual ~PacketShaderOf() = default;
     /// Shades packets. colors[k] receives the colors of the samples of packets[k], and visible[k] one bit per sample
     /// with a visible surface; the colors of the others are unspecified. Shading many packets in one call is faster
     /// than one by one.
@@ -28,7 +28,7 @@ public:
     }
 };
 
-using PacketShader = StripShaderOf<ColorPacket>;
+using PacketShader = PacketShaderOf<ColorPacket>;
 
 /// Holds a shader that can shade any tile.
 class ShaderProgram {

@@ -18,7 +18,7 @@ namespace duet::raster {
 inline void store(ColorPacket& to, std::size_t i, const RgbT<Floats>& c) {
     store(to.r, i, c.r), store(to.g, i, c.g), store(to.b, i, c.b);
 }
-inline void store(StripNormalsAndColors& to, std::size_t i, const NormalAndColor<Floats>& c) {
+inline void store(PacketNormalsAndColors& to, std::size_t i, const NormalAndColor<Floats>& c) {
     store(to.normal.x, i, c.normal.x), store(to.normal.y, i, c.normal.y), store(to.normal.z, i, c.normal.z);
     store(to.color, i, c.color);
 }
@@ -31,7 +31,7 @@ inline void copy_lanes(std::uint32_t lanes, const ColorPacket& from, ColorPacket
     for (PacketOf<float> ColorPacket::*c : {&ColorPacket::r, &ColorPacket::g, &ColorPacket::b})
         copy_lanes(lanes, from.*c, to.*c);
 }
-inline void copy_lanes(std::uint32_t lanes, const StripNormalsAndColors& from, StripNormalsAndColors& to) {
+inline void copy_lanes(std::uint32_t lanes, const PacketNormalsAndColors& from, PacketNormalsAndColors& to) {
     using Vector = Vec3T<PacketOf<float>>;
     for (PacketOf<float> Vector::*c : {&Vector::x, &Vector::y, &Vector::z})
         copy_lanes(lanes, from.normal.*c, to.normal.*c);
@@ -43,10 +43,10 @@ template <Shader S>
 using ColorsOf = std::conditional_t<std::same_as<decltype(std::declval<const S&>().template fragment<Floats>(
                                                      std::declval<const FragmentOf<S, Floats>&>())),
                                                  RgbT<Floats>>,
-                                    ColorPacket, StripNormalsAndColors>;
+                                    ColorPacket, PacketNormalsAndColors>;
 
 /// Shades the packets of one tile with shader S.
-template <Shader S> class TileShader final : public StripShaderOf<ColorsOf<S>> {
+template <Shader S> class TileShader final : public PacketShaderOf<ColorsOf<S>> {
     using Colors = ColorsOf<S>;
 
 public:
@@ -62,7 +62,7 @@ public:
             ray_origins_.emplace(view.pinhole.origin, view.pinhole.origin_dx, view.pinhole.origin_dy, tile);
     }
 
-    using StripShaderOf<Colors>::shade;
+    using PacketShaderOf<Colors>::shade;
     void shade(std::span<const SamplePacket> packets, Colors* colors, std::uint32_t* visible) override {
         sub_packets_.clear();
         shade_packets(packets, colors, visible);

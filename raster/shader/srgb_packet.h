@@ -13,7 +13,7 @@ namespace duet::raster {
 using ColorPacket = RgbT<PacketOf<float>>;
 
 /// Stores the shading normals and base colors of sixteen samples.
-struct StripNormalsAndColors {
+struct PacketNormalsAndColors {
     Vec3T<PacketOf<float>> normal;
     ColorPacket color;
 };

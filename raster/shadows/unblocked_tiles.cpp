@@ -121,7 +121,7 @@ bool misses_shaft(const Box3d& a, const Box3d& b, const Box3d& box) {
             };
             const bool high_i = (corner & 1u) != 0, high_j = (corner & 2u) != 0;
             const double ni = along(a, j, high_j) - along(b, j, high_j), nj = along(b, i, high_i) - along(a, i, high_i);
-            // The least or the greatest of n·p over a box.
+            // This is the least or the greatest of n·p over a box.
             const auto bound = [&](const Box3d& from, bool greatest) {
                 return ni * along(from, i, (ni > 0) == greatest) + nj * along(from, j, (nj > 0) == greatest);
             };

@@ -114,7 +114,7 @@ struct NormalVaryings {
 
 namespace packet_detail {
 
-template <typename Strips> Vec3T<Floats> vector(const Strips& v, std::size_t first, std::size_t i) {
+template <typename Packets> Vec3T<Floats> vector(const Packets& v, std::size_t first, std::size_t i) {
     return {load(v[first], i), load(v[first + 1], i), load(v[first + 2], i)};
 }
 

@@ -1,4 +1,5 @@
-// A batch advances several paths at surfaces of one kind (BatchedSurfaces) together with SIMD, one path per lane.
+// A batch advances several paths at surfaces of one kind (BatchedSurfaces) together with SIMD, one
+// path per lane.
 #pragma once
 
 #include "raytrace/wavefront/batch_path.h"

@@ -1,4 +1,4 @@
-// The pipes between the examiner and a worker: each message is its length and its bytes.
+// This file declares the pipes between the examiner and a worker: each message is its length and its bytes.
 #pragma once
 
 #include "tests/grading/wire.h"

@@ -20,7 +20,7 @@ inline std::string describe_number(double value) {
     return out.str();
 }
 
-/// The value's numbers, one after the other; of an optional that is empty, none.
+/// Returns the value's numbers, one after the other; of an optional that is empty, none.
 template <typename T> void append_components(const T& value, std::vector<double>& out) {
     if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {
         out.push_back(static_cast<double>(value));

@@ -174,7 +174,7 @@ struct ItemDefinition {
     std::string title;
     void (*run)(Item&);
 };
-/// The lab's items, in the order of the file.
+/// Returns the lab's items, in the order of the file.
 std::vector<ItemDefinition>& items();
 struct LabTitle {
     std::string id, title;

@@ -115,8 +115,8 @@ Json run_item(const Arguments& arguments, int index, const ItemDefinition& defin
     return result;
 }
 
-/// The item's process: writes its result to the pipe. What an answer could do to the examiner (an index that is out of
-/// range, a list without end) ends this process alone.
+/// Runs the item's process: writes its result to the pipe. What an answer could do to the examiner (an index that is
+/// out of range, a list without end) ends this process alone.
 [[noreturn]] void run_item_process(const Arguments& arguments, int index, const ItemDefinition& definition, int pipe) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     try {

@@ -30,8 +30,8 @@ public:
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 
-    /// The bytes of the function's result. Throws CallFailed where the worker ended, hung, threw or answered nonsense;
-    /// then it is gone, and the next call starts another.
+    /// Returns the bytes of the function's result. Throws CallFailed where the worker ended, hung, threw or answered
+    /// nonsense; then it is gone, and the next call starts another.
     std::string call(const char* function, const std::string& request);
     void limit(double seconds) { limits_.seconds = seconds; }
     /// The processor time of the last call: unlike a clock on the wall it doesn't count what else the computer does.

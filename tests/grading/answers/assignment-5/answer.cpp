@@ -19,7 +19,7 @@ Axes axes_of(Vec3 direction) {
     return {right, cross(right, direction)};
 }
 
-/// A row of a matrix: scale * dot(axis, p - origin) + constant.
+/// Returns a row of a matrix: scale * dot(axis, p - origin) + constant.
 std::array<float, 4> row(Vec3 axis, Vec3 origin, float scale, float constant) {
     return {scale * axis.x, scale * axis.y, scale * axis.z, constant - scale * dot(axis, origin)};
 }

@@ -9,7 +9,7 @@ namespace duet::lab {
 
 namespace {
 
-/// The camera's axes and the size of its image.
+/// These are the camera's axes and the size of its image.
 struct View {
     Vec3 eye, right, up, forward;
     float focal; // the distance of the image in pixels

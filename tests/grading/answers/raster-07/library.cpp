@@ -7,7 +7,7 @@
 namespace duet::lab {
 
 Vec3 perspective_weights(Vec3 weights, Vec3 w) {
-    // A triangle with its corners at (0, 0), (1, 0) and (0, 1) of the image: the weights are coordinates.
+    // This is a triangle with its corners at (0, 0), (1, 0) and (0, 1) of the image: the weights are coordinates.
     const auto planes = raster::triangle_planes<float>({0, w.y, 0}, {0, 0, w.z}, {w.x, w.y, w.z}, {0, 0, 0});
     const auto at = [&](const std::array<float, 3>& plane) {
         return plane[0] * weights.y + plane[1] * weights.z + plane[2];

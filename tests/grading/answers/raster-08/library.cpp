@@ -22,7 +22,7 @@ std::optional<Tangents> tangents(std::array<Vec3, 3> p, std::array<Vec2, 3> uv) 
 }
 
 TangentFrame tangent_frame(Vec3 n, Tangents tangents) {
-    // A triangle with these tangents.
+    // This is a triangle with these tangents.
     const std::array<Vec3, 3> p{Vec3{0, 0, 0}, tangents.along_u, tangents.along_v};
     lesson::Triangle triangle;
     for (std::size_t i = 0; i < 3; ++i) triangle[i].p = p[i];

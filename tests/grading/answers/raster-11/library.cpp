@@ -40,7 +40,7 @@ int mask_of_eight(const Edges& edges, int x, int y) {
 
 namespace {
 
-/// The triangle itself, in front of an orthographic camera at the depth 1.
+/// This is the triangle itself, in front of an orthographic camera at the depth 1.
 struct SourceTriangle : raster::UnclippedTriangles {
     raster::UnclippedTriangle triangle;
     raster::UnclippedTriangle unclipped(std::uint32_t) const override { return triangle; }
