@@ -17,13 +17,13 @@ namespace {
 struct SeriesColor {
     const char *line, *text;
 };
-constexpr std::array<SeriesColor, 7> kSeriesColors{{{"#0072B2", "#005A8E"},
-                                                    {"#D55E00", "#A84A00"},
-                                                    {"#009E73", "#007153"},
-                                                    {"#CC79A7", "#994470"},
-                                                    {"#000000", "#000000"},
-                                                    {"#E69F00", "#855C00"},
-                                                    {"#56B4E9", "#1B6C9C"}}};
+constexpr std::array<SeriesColor, Plot::kMaxSeries> kSeriesColors{{{"#0072B2", "#005A8E"},
+                                                                   {"#D55E00", "#A84A00"},
+                                                                   {"#009E73", "#007153"},
+                                                                   {"#CC79A7", "#994470"},
+                                                                   {"#000000", "#000000"},
+                                                                   {"#E69F00", "#855C00"},
+                                                                   {"#56B4E9", "#1B6C9C"}}};
 constexpr double kFontSize = 13, kTitleSize = 15, kLineHeight = 17;
 
 // Estimates the width of a text in pixels. Letters and the fonts of viewers differ in width; the estimate is large

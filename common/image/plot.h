@@ -22,6 +22,8 @@ struct Series {
 ///     plot.series.push_back({"list", {{10, 0.02}, {100, 0.21}, {1000, 2.3}}});
 ///     write_plot("time.svg", plot);
 struct Plot {
+    static constexpr std::size_t kMaxSeries = 7;
+
     std::string title{}, x_label{}, y_label{};
     bool log_x = false, log_y = false; ///< a logarithmic axis requires values above 0
     std::vector<Series> series{};      ///< up to 7 series

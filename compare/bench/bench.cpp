@@ -130,12 +130,17 @@ private:
     SceneResult result_;
 };
 
-void write_report(const BenchOptions& options, const json& report) {
+void write_report(const BenchOptions& options, const std::vector<SceneResult>& results, const json& report) {
     if (!options.stats.empty()) write_json(options.stats, report);
     if (options.folder.empty()) return;
     write_json(options.folder / "report.json", report);
     write_file(options.folder / "bench.csv", bench_csv(report));
     write_file(options.folder / "index.html", bench_page(report));
+    for (const SceneResult& result : results) {
+        const Plot plot = bench_plot(result);
+        const std::string name = fs::path(result.scene).stem().string() + ".svg";
+        if (!plot.series.empty()) write_plot(options.folder / name, plot);
+    }
 }
 
 BenchOptions with_defaults(BenchOptions options) {
@@ -167,11 +172,12 @@ int bench(const BenchOptions& given) {
         results.push_back(std::move(*result));
     }
 
-    write_report(options, bench_json(options, results, std::nullopt)); // written even if the baseline comparison fails
+    // The report is written even if the comparison with the baseline fails.
+    write_report(options, results, bench_json(options, results, std::nullopt));
     std::optional<BaselineComparison> baseline;
     if (earlier) baseline = compare_with_baseline(results, *earlier, options.drift);
     if (baseline && tables) print_baseline(std::cout, *baseline);
-    if (baseline) write_report(options, bench_json(options, results, baseline));
+    if (baseline) write_report(options, results, bench_json(options, results, baseline));
 
     const bool biased = std::any_of(results.begin(), results.end(), [](const SceneResult& r) {
         return std::any_of(r.checks.begin(), r.checks.end(), [](const IndependentCheck& c) { return c.failed(); });

@@ -16,7 +16,8 @@ Subcommand add_bench(CLI::App& app) {
     const auto excluded = std::make_shared<std::vector<std::string>>();
     BenchOptions& options = *all;
     bench->add_option("SCENE", options.scenes, "Scene files (.json) or bare meshes (.obj)")->required();
-    bench->add_option("-o,--output", options.folder, "The folder for index.html, report.json and bench.csv");
+    bench->add_option("-o,--output", options.folder,
+                      "The folder for index.html, report.json, bench.csv and a plot of each scene, SCENE.svg");
     bench
         ->add_option("--techniques", options.choice.techniques,
                      "Of raster, path, adaptive (path with more samples where the error is), no-roulette (path, no "

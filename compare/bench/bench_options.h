@@ -14,7 +14,7 @@ namespace duet::compare {
 
 struct BenchOptions {
     std::vector<std::filesystem::path> scenes;
-    std::filesystem::path folder;     ///< output folder for index.html, report.json and bench.csv; empty: none
+    std::filesystem::path folder;     ///< output folder for the reports and plots; empty: none
     std::filesystem::path baseline;   ///< report.json of an earlier run to compare with; empty: none
     std::filesystem::path references; ///< cache folder; empty: default_reference_folder()
     ImageSize size{0, 0};             ///< 0 × 0: the scene's aspect ratio with about 65,536 pixels

@@ -1,6 +1,7 @@
 // This file declares the bench's results as JSON, as CSV, as text and as a page.
 #pragma once
 
+#include "common/image/plot.h"
 #include "compare/bench/baseline.h"
 #include "compare/bench/bench_options.h"
 #include "compare/bench/scene_result.h"
@@ -27,6 +28,10 @@ std::string bench_csv(const nlohmann::json& report);
 void print_scene(std::ostream& out, const SceneResult& result, bool with_rest);
 /// Prints the findings of the baseline comparison, one per line.
 void print_baseline(std::ostream& out, const BaselineComparison& comparison);
+
+/// Returns a plot of the relMSE over the time of each technique and sampler (the first Plot::kMaxSeries of them).
+/// Without any positive error it has no series.
+Plot bench_plot(const SceneResult& result);
 
 /// Returns index.html.
 std::string bench_page(const nlohmann::json& report);

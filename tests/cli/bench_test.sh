@@ -20,7 +20,7 @@ one_line_error none.json
 small="--size 16x16 --techniques path --samplers sobol --spp 4 --repeats 5 --threads 1 --reference-spp 256"
 expect 0 "$bin/compare" bench models/cornell.json models/furnace.json $small -o "$scratch/report"
 grep -q consistent "$scratch/stdout" || fail "no bias check in the table"
-for file in index.html report.json bench.csv; do
+for file in index.html report.json bench.csv cornell.svg; do
     [ -s "$scratch/report/$file" ] || fail "$file is missing"
 done
 [ "$(wc -l <"$scratch/report/bench.csv")" -eq 3 ] || fail "bench.csv: expected a header and two lines"
