@@ -35,8 +35,12 @@ bool all_glass(const Scene& scene, const Object& object) {
 }
 
 bool any_emissive(const Scene& scene, const Object& object) {
-    return std::any_of(object.materials.begin(), object.materials.end(),
-                       [&](std::uint32_t material) { return emitter(scene.materials[material]) != nullptr; });
+    return std::ranges::any_of(object.materials,
+                               [&](std::uint32_t material) { return emitter(scene.materials[material]) != nullptr; });
+}
+bool all_emissive(const Scene& scene, const Object& object) {
+    return std::ranges::all_of(object.materials,
+                               [&](std::uint32_t material) { return emitter(scene.materials[material]) != nullptr; });
 }
 
 std::optional<Rgb> uniform_color(const Scene& scene, const Object& object) {
@@ -117,8 +121,8 @@ void prepare_probes(const RasterSettings& settings, RasterSceneData& data) {
     const int side = std::holds_alternative<ImageEnvironment>(scene.environment) ? 256 : 32;
     const bool shown = settings.environment && scene.needs.environment;
     data.environment_map = std::make_shared<const RadianceMap>(side, [&](Vec3 w) {
-        return RadianceMap::Arriving{shown ? radiance(scene.environment, w) : Rgb(), Rgb(), kInfinity};
-    }, settings.threads);
+        return RadianceMap::Arriving{shown ? radiance(scene.environment, w) : Rgb(), kInfinity};
+    }, RadianceMap::Arrival{}, settings.threads);
     data.reflection_probes = std::make_shared<const ReflectionProbes>(data, settings);
     data.glass_shapes = std::make_shared<const GlassShapes>(data, settings);
     data.memory_bytes += static_cast<std::int64_t>(data.environment_map->memory_bytes() +
@@ -151,6 +155,7 @@ RasterScene prepare(const Scene& scene, const RasterSettings& settings) {
         const Shape& shape = scene.shapes[object.shape];
         data.objects.push_back(prepare_object(scene, object));
         data.emits.push_back(any_emissive(scene, object) ? 1 : 0);
+        if (all_emissive(scene, object)) data.emitters.push_back(i);
         const bool sphere = std::holds_alternative<Sphere>(shape);
         if (can_be_seen_through(scene, object))
             (sphere ? data.alpha_spheres : data.alpha_polygonal).push_back(i);

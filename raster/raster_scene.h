@@ -36,6 +36,7 @@ struct RasterSceneData {
     const Scene& scene;
     std::vector<RasterObject> objects;    ///< parallel to Scene::objects
     std::vector<std::int32_t> emits{};    ///< parallel to Scene::objects: 1 if any of its materials emits, else 0
+    std::vector<std::uint32_t> emitters{}; ///< indices of the objects all of whose materials emit, in order
     std::vector<std::uint32_t> polygonal; ///< indices of the mesh and quad objects, in order
     std::vector<std::uint32_t> spheres;   ///< indices of the sphere objects, in order
     /// The two lists hold the alpha-masked and alpha-blended objects, which are in neither list above

@@ -64,12 +64,14 @@ Rgbs RadianceLookup::operator()(const Vec3s& p, const Vec3s& n, const Vec3s& w, 
 
 Rgbs RadianceLookup::from_probe(std::size_t probe, const Query& query) const {
     const Vec3d eye = gbuffer_.projection.eye();
-    const Vec3s hit = probes_->trace(probe, eye, query.p, query.w);
+    const auto trace = [&](const Vec3s& w, bool lights) { return probes_->trace(probe, eye, query.p, w, lights); };
+    Vec3s hit = trace(query.w, xsimd::all(query.mirror));
+    if (probes_->map(probe).has_lights() && xsimd::any(query.mirror) && !xsimd::all(query.mirror))
+        hit = select(query.mirror, trace(query.w, true), hit);
     const Mask sharp = query.alpha < Floats(kSharpest);
     // The axis of a wide lobe meets surfaces elsewhere.
     const Vec3s unit_axis = query.axis * inverse_sqrt(max(dot(query.axis, query.axis), Floats(1e-20f)));
-    const Rgbs from_map = query.at(probes_->map(probe), hit,
-                                   xsimd::all(sharp) ? hit : probes_->trace(probe, eye, query.p, unit_axis));
+    const Rgbs from_map = query.at(probes_->map(probe), hit, xsimd::all(sharp) ? hit : trace(unit_axis, false));
     if (!xsimd::any(sharp)) return from_map;
     const Vec3 center = gbuffer_.projection.relative(probes_->center(probe));
     return on_screen(hit + Vec3s{Floats(center.x), Floats(center.y), Floats(center.z)}, sharp, query.mirror, from_map);
@@ -81,24 +83,25 @@ Rgbs RadianceLookup::on_screen(const Vec3s& q, const Mask& lanes, const Mask& mi
     const auto [xw, yw, depth, w] = gbuffer_.projection.homogeneous(q);
     const Floats over = Floats(1.0f) / w, x = xw * over, y = yw * over, none(0.0f);
     const Floats right(static_cast<float>(gbuffer_.width() - 1)), bottom(static_cast<float>(gbuffer_.height() - 1));
-    const Mask inside = lanes & (depth > Floats(gbuffer_.projection.near())) & (x >= none) & (y >= none) &
-                        (x <= right) & (y <= bottom);
+    const Mask inside =
+        lanes & (depth > Floats(gbuffer_.projection.near())) & (x >= none) & (y >= none) & (x <= right) & (y <= bottom);
     if (!xsimd::any(inside)) return otherwise;
     const Ints index = truncated(xsimd::select(inside, y + Floats(0.5f), none)) * Ints(image_.x.stride()) +
                        truncated(xsimd::select(inside, x + Floats(0.5f), none));
-    const Floats seen = Floats(gbuffer_.projection.near()) /
-                        max(gather(gbuffer_.reversed_depth.row(0), index), Floats(1e-30f));
+    const Floats seen =
+        Floats(gbuffer_.projection.near()) / max(gather(gbuffer_.reversed_depth.row(0), index), Floats(1e-30f));
     // The image does not hold reflections yet. Surfaces that mostly reflect are in the probe's map, with the
     // environment's reflection.
     const auto reflectance = [&](const PlaneFloat& plane) { return gather(plane.row(0), index); };
     const Planes3& specular = gbuffer_.specular;
-    const Mask diffuse = max(reflectance(specular.x), max(reflectance(specular.y), reflectance(specular.z))) <
-                         Floats(kMostlyDiffuse);
+    const Mask diffuse =
+        max(reflectance(specular.x), max(reflectance(specular.y), reflectance(specular.z))) < Floats(kMostlyDiffuse);
     const Ints object = xsimd::max(gather(gbuffer_.object.row(0), index), Ints(0));
     const Mask dark = mirror | xsimd::bool_cast(gather(data_.emits.data(), object) == Ints(0));
     const Mask shows = inside & diffuse & dark & (abs(seen - depth) < Floats(kDepthTolerance) * depth);
-    return blend(shows, {gather(image_.x.row(0), index), gather(image_.y.row(0), index),
-                         gather(image_.z.row(0), index)}, otherwise);
+    return blend(shows,
+                 {gather(image_.x.row(0), index), gather(image_.y.row(0), index), gather(image_.z.row(0), index)},
+                 otherwise);
 }
 
 } // namespace duet::raster

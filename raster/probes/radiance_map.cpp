@@ -81,23 +81,16 @@ template <typename Value> void for_each_texel(OctahedralMap& map, int threads, c
 
 } // namespace
 
-RadianceMap::RadianceMap(int side, const std::function<Arriving(Vec3)>& arriving, int threads)
-    : sharp_(side), bright_(side) {
-    std::atomic<bool> emits = false;
-    parallel_for(static_cast<std::size_t>(side), threads, [&](std::size_t row) {
-        const int y = static_cast<int>(row);
-        for (int x = 0; x < side; ++x) {
-            const Arriving a = arriving(sharp_.direction(x, y));
-            const Rgb rest = a.radiance - a.emitted;
-            // Distances stay finite, so that steps along a ray do.
-            const float distance = min(a.distance, 1e15f);
-            sharp_.texel(x, y) = {rest.r, rest.g, rest.b, distance};
-            bright_.texel(x, y) = {a.radiance.r, a.radiance.g, a.radiance.b, distance};
-            if (!is_black(a.emitted)) emits = true;
-        }
-    });
-    sharp_.finish(), bright_.finish();
-    if (!emits) bright_ = {};
+RadianceMap::RadianceMap(int side, const Arrival& without_lights, const Arrival& with_lights, int threads)
+    : sharp_(side) {
+    const auto sample = [&](const Arrival& arrival, OctahedralMap& map) {
+        for_each_texel(map, threads, [&](Vec3 w) -> OctahedralMap::Texel {
+            const auto [radiance, distance] = arrival(w);
+            return {radiance.r, radiance.g, radiance.b, min(distance, 1e15f)}; // finite, so that steps along a ray are
+        });
+    };
+    sample(without_lights, sharp_);
+    if (with_lights) sample(with_lights, bright_ = OctahedralMap(side));
     std::vector<OctahedralMap> mips{sharp_};
     while (mips.back().side() > 4) mips.push_back(halved(mips.back()));
     for (int k = 0; k < kLevels; ++k) {

@@ -17,30 +17,32 @@ public:
     static constexpr int kLevels = 5;
 
     RadianceMap() = default;
-    /// What arrives from a direction: the radiance, how much of it lights emit, and the distance of where it comes
-    /// from.
+    /// What arrives from a direction, and the distance of where it comes from.
     struct Arriving {
-        Rgb radiance, emitted;
+        Rgb radiance;
         float distance = kInfinity;
     };
-    /// Samples `arriving`, a function of a unit direction, at side × side texels (a power of 2, at least 8), then
-    /// filters what lights do not emit: their reflection on rough surfaces is direct light. The result is the same for
-    /// any number of threads.
-    RadianceMap(int side, const std::function<Arriving(Vec3)>& arriving, int threads);
+    using Arrival = std::function<Arriving(Vec3)>; ///< a function of a unit direction
+    /// Samples `without_lights` at side × side texels (a power of 2, at least 8), and filters it. It is what arrives
+    /// where there are no lights to see, because their reflection on rough surfaces is direct light. `with_lights` is
+    /// what mirrors show; it may be empty if there are no lights. The result is the same for any number of threads.
+    RadianceMap(int side, const Arrival& without_lights, const Arrival& with_lights, int threads);
 
     bool empty() const { return sharp_.empty(); }
-    /// Returns the radiance, without what lights emit, filtered by lobes of GGX width alpha about directions of any
-    /// length.
+    /// Returns the radiance without lights, filtered by lobes of GGX width alpha about directions of any length.
     RgbT<Floats> at(const Vec3T<Floats>& axis, const Floats& alpha) const;
-    /// Returns the sharp radiance, with what lights emit.
+    /// Returns the sharp radiance with lights.
     RgbT<Floats> at(const Vec3T<Floats>& w) const;
-    /// Returns the distance of what is visible in directions of any length.
-    Floats distance(const Vec3T<Floats>& w) const { return sharp_.nearest(w, 3); }
+    bool has_lights() const { return !bright_.empty(); }
+    /// Returns the distance of what is visible in directions of any length, without or with lights.
+    Floats distance(const Vec3T<Floats>& w, bool lights) const {
+        return (lights && has_lights() ? bright_ : sharp_).nearest(w, 3);
+    }
     const OctahedralMap& sharp() const { return sharp_; }
     std::size_t memory_bytes() const;
 
 private:
-    OctahedralMap sharp_, bright_; ///< without and with what lights emit; bright_ is empty if there is none
+    OctahedralMap sharp_, bright_;             ///< without and with lights; bright_ is empty if there are none
     std::array<OctahedralMap, kLevels> rough_; ///< rough_[k] has roughness (k + 1) / kLevels
 };
 

@@ -48,21 +48,44 @@ std::vector<Site> sites_of(const RasterSceneData& data) {
 void add_reflected_light(const RasterSceneData& data, RasterSettings settings, ProbeCapture& capture) {
     settings.threads = 1;
     for (ProbeCapture::Face& face : capture.faces()) {
-        if (data.irradiance_probes)
-            add_indirect_light(settings, face.gbuffer, *data.irradiance_probes, face.direct);
+        if (data.irradiance_probes) add_indirect_light(settings, face.gbuffer, *data.irradiance_probes, face.direct);
         add_reflections(data, settings, face.gbuffer, nullptr, face.direct);
     }
 }
 
-RadianceMap radiance_map(const ProbeCapture& capture, int threads) {
-    const auto arriving = [&](Vec3 w) {
+/// Returns what a capture shows, with or without what its surfaces emit.
+RadianceMap::Arrival arrival(const ProbeCapture& capture, bool emission) {
+    return [&capture, emission](Vec3 w) {
         const ProbeCapture::Pixel pixel = capture.pixel(w);
         const ProbeCapture::Face& face = capture.faces()[pixel.face];
-        const Rgb emitted = face.emission.color_at(pixel.x, pixel.y);
-        return RadianceMap::Arriving{face.direct.color_at(pixel.x, pixel.y) + emitted, emitted,
-                                     capture.distance(pixel)};
+        const Rgb emitted = emission ? face.emission.color_at(pixel.x, pixel.y) : Rgb();
+        return RadianceMap::Arriving{face.direct.color_at(pixel.x, pixel.y) + emitted, capture.distance(pixel)};
     };
-    return RadianceMap(ReflectionProbes::kSide, arriving, threads);
+}
+
+bool shows_light(const ProbeCapture& capture) {
+    return std::ranges::any_of(capture.faces(), [](const ProbeCapture::Face& face) {
+        for (int y = 0; y < face.emission.x.height(); ++y)
+            for (int x = 0; x < face.emission.x.width(); ++x)
+                if (!is_black(face.emission.color_at(x, y))) return true;
+        return false;
+    });
+}
+
+/// Renders the map of one probe, on one thread. What lights hide from the probe is visible from other points, so rough
+/// surfaces, which get the lights' own reflections as direct light, need a map without the lights.
+RadianceMap render_map(const RasterSceneData& data, const RasterSettings& settings, const Site& site) {
+    const auto capture = [&](const std::vector<std::uint32_t>& excluded) {
+        ProbeCapture result(data, settings, site.center, ReflectionProbes::kSide / 2, excluded);
+        add_reflected_light(data, settings, result);
+        return result;
+    };
+    const ProbeCapture all = capture(site.excluded);
+    if (!shows_light(all)) return RadianceMap(ReflectionProbes::kSide, arrival(all, false), {}, 1);
+    std::set<std::uint32_t> excluded(site.excluded.begin(), site.excluded.end());
+    excluded.insert(data.emitters.begin(), data.emitters.end());
+    const ProbeCapture rest = capture({excluded.begin(), excluded.end()});
+    return RadianceMap(ReflectionProbes::kSide, arrival(rest, false), arrival(all, true), 1);
 }
 
 } // namespace
@@ -76,9 +99,7 @@ ReflectionProbes::ReflectionProbes(const RasterSceneData& data, const RasterSett
     if (sites.empty()) return;
     probes_.resize(sites.size());
     parallel_for(sites.size(), settings.threads, [&](std::size_t i) {
-        ProbeCapture capture(data, settings, sites[i].center, kSide / 2, sites[i].excluded);
-        add_reflected_light(data, settings, capture);
-        probes_[i] = {sites[i].center, radiance_map(capture, 1)};
+        probes_[i] = {sites[i].center, render_map(data, settings, sites[i])};
     });
     for (std::uint32_t object = 0; object < data.scene.objects.size(); ++object) {
         const Vec3d center(data.objects[object].bounds.center());

@@ -61,9 +61,9 @@ TEST_SUITE("unit") {
         const raster::RadianceMap map(
             64,
             [](Vec3 w) {
-                return raster::RadianceMap::Arriving{Rgb(2, 1 + w.y, 3), Rgb(), 5};
+                return raster::RadianceMap::Arriving{Rgb(2, 1 + w.y, 3), 5};
             },
-            2);
+            {}, 2);
         for (const float alpha : {0.0f, 0.04f, 0.3f, 1.0f})
             for (const Vec3 w : directions()) {
                 const RgbT<Floats> c = map.at(all(w), Floats(alpha));
@@ -71,16 +71,21 @@ TEST_SUITE("unit") {
                 CHECK(c.b.get(0) == doctest::Approx(3).epsilon(1e-4));
                 CHECK(std::abs(c.g.get(0) - 1) <= std::abs(w.y) + 0.03f); // lobes only blur the slope; measured: 0.027
             }
-        CHECK(map.distance(all({1, 0, 0})).get(0) == 5);
+        CHECK(map.distance(all({1, 0, 0}), true).get(0) == 5);
     }
 
     TEST_CASE("what lights emit shows in mirrors alone") {
         const raster::RadianceMap map(
             16,
+            [](Vec3) {
+                return raster::RadianceMap::Arriving{Rgb(1), 2};
+            },
             [](Vec3 w) {
-                return raster::RadianceMap::Arriving{Rgb(w.y > 0 ? 9.0f : 1.0f), Rgb(w.y > 0 ? 8.0f : 0.0f), 1};
+                return raster::RadianceMap::Arriving{Rgb(w.y > 0 ? 9.0f : 1.0f), w.y > 0 ? 1.0f : 2.0f};
             },
             1);
+        CHECK(map.distance(all({0, 1, 0}), true).get(0) == 1);
+        CHECK(map.distance(all({0, 1, 0}), false).get(0) == 2);
         CHECK(map.at(all({0, 1, 0})).g.get(0) == doctest::Approx(9));
         CHECK(map.at(all({0, 1, 0}), Floats(0.2f)).g.get(0) == doctest::Approx(1));
     }
