@@ -122,7 +122,7 @@ void prepare_probes(const RasterSettings& settings, RasterSceneData& data) {
     const bool shown = settings.environment && scene.needs.environment;
     data.environment_map = std::make_shared<const RadianceMap>(side, [&](Vec3 w) {
         return RadianceMap::Arriving{shown ? radiance(scene.environment, w) : Rgb(), kInfinity};
-    }, RadianceMap::Arrival{}, settings.threads);
+    }, RadianceMap::Source{}, settings.threads);
     data.reflection_probes = std::make_shared<const ReflectionProbes>(data, settings);
     data.glass_shapes = std::make_shared<const GlassShapes>(data, settings);
     data.memory_bytes += static_cast<std::int64_t>(data.environment_map->memory_bytes() +

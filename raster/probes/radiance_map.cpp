@@ -81,11 +81,11 @@ template <typename Value> void for_each_texel(OctahedralMap& map, int threads, c
 
 } // namespace
 
-RadianceMap::RadianceMap(int side, const Arrival& without_lights, const Arrival& with_lights, int threads)
+RadianceMap::RadianceMap(int side, const Source& without_lights, const Source& with_lights, int threads)
     : sharp_(side) {
-    const auto sample = [&](const Arrival& arrival, OctahedralMap& map) {
+    const auto sample = [&](const Source& source, OctahedralMap& map) {
         for_each_texel(map, threads, [&](Vec3 w) -> OctahedralMap::Texel {
-            const auto [radiance, distance] = arrival(w);
+            const auto [radiance, distance] = source(w);
             return {radiance.r, radiance.g, radiance.b, min(distance, 1e15f)}; // finite, so that steps along a ray are
         });
     };

@@ -22,11 +22,11 @@ public:
         Rgb radiance;
         float distance = kInfinity;
     };
-    using Arrival = std::function<Arriving(Vec3)>; ///< a function of a unit direction
+    using Source = std::function<Arriving(Vec3)>; ///< a function of a unit direction
     /// Samples `without_lights` at side × side texels (a power of 2, at least 8), and filters it. It is what arrives
     /// where there are no lights to see, because their reflection on rough surfaces is direct light. `with_lights` is
     /// what mirrors show; it may be empty if there are no lights. The result is the same for any number of threads.
-    RadianceMap(int side, const Arrival& without_lights, const Arrival& with_lights, int threads);
+    RadianceMap(int side, const Source& without_lights, const Source& with_lights, int threads);
 
     bool empty() const { return sharp_.empty(); }
     /// Returns the radiance without lights, filtered by lobes of GGX width alpha about directions of any length.

@@ -54,7 +54,7 @@ void add_reflected_light(const RasterSceneData& data, RasterSettings settings, P
 }
 
 /// Returns what a capture shows, with or without what its surfaces emit.
-RadianceMap::Arrival arrival(const ProbeCapture& capture, bool emission) {
+RadianceMap::Source captured(const ProbeCapture& capture, bool emission) {
     return [&capture, emission](Vec3 w) {
         const ProbeCapture::Pixel pixel = capture.pixel(w);
         const ProbeCapture::Face& face = capture.faces()[pixel.face];
@@ -81,11 +81,11 @@ RadianceMap render_map(const RasterSceneData& data, const RasterSettings& settin
         return result;
     };
     const ProbeCapture all = capture(site.excluded);
-    if (!shows_light(all)) return RadianceMap(ReflectionProbes::kSide, arrival(all, false), {}, 1);
+    if (!shows_light(all)) return RadianceMap(ReflectionProbes::kSide, captured(all, false), {}, 1);
     std::set<std::uint32_t> excluded(site.excluded.begin(), site.excluded.end());
     excluded.insert(data.emitters.begin(), data.emitters.end());
     const ProbeCapture rest = capture({excluded.begin(), excluded.end()});
-    return RadianceMap(ReflectionProbes::kSide, arrival(rest, false), arrival(all, true), 1);
+    return RadianceMap(ReflectionProbes::kSide, captured(rest, false), captured(all, true), 1);
 }
 
 } // namespace
