@@ -28,8 +28,10 @@ public:
     Vec3d center(std::size_t probe) const { return probes_[probe].center; }
     std::size_t memory_bytes() const;
 
-    static constexpr int kMostProbes = 24;
-    static constexpr int kSide = 128; ///< texels of the sharp maps
+    /// The largest reflecting objects have probes of their own; all others use the nearest probe.
+    static constexpr int kMostProbes = 96;
+    /// Texels of the sharp maps: of the kLargest largest objects, and of the others.
+    static constexpr int kLargest = 24, kSide = 256, kSmallSide = 128;
 
 private:
     struct Probe {

@@ -74,18 +74,18 @@ bool shows_light(const ProbeCapture& capture) {
 
 /// Renders the map of one probe, on one thread. What lights hide from the probe is visible from other points, so rough
 /// surfaces, which get the lights' own reflections as direct light, need a map without the lights.
-RadianceMap render_map(const RasterSceneData& data, const RasterSettings& settings, const Site& site) {
+RadianceMap render_map(const RasterSceneData& data, const RasterSettings& settings, const Site& site, int side) {
     const auto capture = [&](const std::vector<std::uint32_t>& excluded) {
-        ProbeCapture result(data, settings, site.center, ReflectionProbes::kSide / 2, excluded);
+        ProbeCapture result(data, settings, site.center, side / 2, excluded);
         add_reflected_light(data, settings, result);
         return result;
     };
     const ProbeCapture all = capture(site.excluded);
-    if (!shows_light(all)) return RadianceMap(ReflectionProbes::kSide, captured(all, false), {}, 1);
+    if (!shows_light(all)) return RadianceMap(side, captured(all, false), {}, 1);
     std::set<std::uint32_t> excluded(site.excluded.begin(), site.excluded.end());
     excluded.insert(data.emitters.begin(), data.emitters.end());
     const ProbeCapture rest = capture({excluded.begin(), excluded.end()});
-    return RadianceMap(ReflectionProbes::kSide, captured(rest, false), captured(all, true), 1);
+    return RadianceMap(side, captured(rest, false), captured(all, true), 1);
 }
 
 } // namespace
@@ -99,7 +99,7 @@ ReflectionProbes::ReflectionProbes(const RasterSceneData& data, const RasterSett
     if (sites.empty()) return;
     probes_.resize(sites.size());
     parallel_for(sites.size(), settings.threads, [&](std::size_t i) {
-        probes_[i] = {sites[i].center, render_map(data, settings, sites[i])};
+        probes_[i] = {sites[i].center, render_map(data, settings, sites[i], i < kLargest ? kSide : kSmallSide)};
     });
     for (std::uint32_t object = 0; object < data.scene.objects.size(); ++object) {
         const Vec3d center(data.objects[object].bounds.center());
