@@ -34,14 +34,6 @@ bool all_glass(const Scene& scene, const Object& object) {
     });
 }
 
-bool any_emissive(const Scene& scene, const Object& object) {
-    return std::ranges::any_of(object.materials,
-                               [&](std::uint32_t material) { return emitter(scene.materials[material]) != nullptr; });
-}
-bool all_emissive(const Scene& scene, const Object& object) {
-    return std::ranges::all_of(object.materials,
-                               [&](std::uint32_t material) { return emitter(scene.materials[material]) != nullptr; });
-}
 
 std::optional<Rgb> uniform_color(const Scene& scene, const Object& object) {
     if (object.materials.size() != 1) return std::nullopt;
@@ -154,8 +146,9 @@ RasterScene prepare(const Scene& scene, const RasterSettings& settings) {
         const Object& object = scene.objects[i];
         const Shape& shape = scene.shapes[object.shape];
         data.objects.push_back(prepare_object(scene, object));
-        data.emits.push_back(any_emissive(scene, object) ? 1 : 0);
-        if (all_emissive(scene, object)) data.emitters.push_back(i);
+        const auto emits = [&](std::uint32_t material) { return emitter(scene.materials[material]) != nullptr; };
+        data.emits.push_back(std::ranges::any_of(object.materials, emits) ? 1 : 0);
+        if (std::ranges::all_of(object.materials, emits)) data.emitters.push_back(i);
         const bool sphere = std::holds_alternative<Sphere>(shape);
         if (can_be_seen_through(scene, object))
             (sphere ? data.alpha_spheres : data.alpha_polygonal).push_back(i);
@@ -165,7 +158,7 @@ RasterScene prepare(const Scene& scene, const RasterSettings& settings) {
         data.primitives += primitive_count(shape);
         const bool stretched = std::holds_alternative<Sphere>(shape) && surface_light_index(scene, i, 0) < 0;
         data.unsampled_emitters =
-            data.unsampled_emitters || ((object.moving || stretched) && any_emissive(scene, object));
+            data.unsampled_emitters || ((object.moving || stretched) && data.emits.back() == 1);
     }
     std::size_t packed = 0;
     for (const PackedShape& shape : data.shapes)

@@ -130,16 +130,19 @@ private:
     SceneResult result_;
 };
 
-void write_report(const BenchOptions& options, const std::vector<SceneResult>& results, const json& report) {
+void write_report(const BenchOptions& options, const json& report) {
     if (!options.stats.empty()) write_json(options.stats, report);
     if (options.folder.empty()) return;
     write_json(options.folder / "report.json", report);
     write_file(options.folder / "bench.csv", bench_csv(report));
     write_file(options.folder / "index.html", bench_page(report));
+}
+
+void write_plots(const fs::path& folder, const std::vector<SceneResult>& results) {
     for (const SceneResult& result : results) {
         const Plot plot = bench_plot(result);
         const std::string name = fs::path(result.scene).stem().string() + ".svg";
-        if (!plot.series.empty()) write_plot(options.folder / name, plot);
+        if (!plot.series.empty()) write_plot(folder / name, plot);
     }
 }
 
@@ -173,11 +176,12 @@ int bench(const BenchOptions& given) {
     }
 
     // The report is written even if the comparison with the baseline fails.
-    write_report(options, results, bench_json(options, results, std::nullopt));
+    write_report(options, bench_json(options, results, std::nullopt));
+    if (!options.folder.empty()) write_plots(options.folder, results);
     std::optional<BaselineComparison> baseline;
     if (earlier) baseline = compare_with_baseline(results, *earlier, options.drift);
     if (baseline && tables) print_baseline(std::cout, *baseline);
-    if (baseline) write_report(options, results, bench_json(options, results, baseline));
+    if (baseline) write_report(options, bench_json(options, results, baseline));
 
     const bool biased = std::any_of(results.begin(), results.end(), [](const SceneResult& r) {
         return std::any_of(r.checks.begin(), r.checks.end(), [](const IndependentCheck& c) { return c.failed(); });

@@ -15,11 +15,10 @@ Plot bench_plot(const SceneResult& result) {
               .timing = true};
     for (const Measurement& m : result.rows) {
         if (!(m.relmse.value > 0) || !(m.seconds.value > 0) || !m.counted) continue;
-        const std::string name = m.sampler.empty() ? m.technique : m.technique + ", " + m.sampler;
-        auto series = std::ranges::find(plot.series, name, &Series::name);
+        auto series = std::ranges::find(plot.series, m.name(), &Series::name);
         if (series == plot.series.end()) {
             if (plot.series.size() == Plot::kMaxSeries) continue;
-            series = plot.series.insert(series, {name, {}});
+            series = plot.series.insert(series, {m.name(), {}});
         }
         series->points.push_back({m.seconds.value, m.relmse.value});
     }

@@ -57,7 +57,7 @@ std::vector<EqualTimeRow> at_equal_times(const std::vector<Measurement>& rows,
         std::set<std::string> seen;
         for (const Measurement& m : rows) {
             const bool is_peer = m.technique == peer;
-            const std::string name = is_peer || m.sampler.empty() ? m.technique : m.technique + ", " + m.sampler;
+            const std::string name = is_peer ? m.technique : m.name();
             if (!seen.insert(name).second) continue;
             const std::optional<std::string> sampler = is_peer ? std::nullopt : std::optional(m.sampler);
             EqualTimeRow row{seconds,

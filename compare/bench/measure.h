@@ -38,6 +38,9 @@ struct Measurement {
     Estimate rest_mse, rest_relmse, rest_efficiency, rest_relmse_efficiency;
     double reference_share = 0; ///< estimated error of the reference as a fraction of `mse`
 
+    /// Returns "technique, sampler", or the technique alone where it has no choice of samplers.
+    std::string name() const { return sampler.empty() ? technique : technique + ", " + sampler; }
+
     bool counted = true; ///< false: another of the peer's settings is more efficient at this sample count
 
     /// Returns the fraction of the error that more samples would not remove: 1 − variance / mse −

@@ -84,6 +84,7 @@ RadianceMap render_map(const RasterSceneData& data, const RasterSettings& settin
     if (!shows_light(all)) return RadianceMap(side, captured(all, false), {}, 1);
     std::set<std::uint32_t> excluded(site.excluded.begin(), site.excluded.end());
     excluded.insert(data.emitters.begin(), data.emitters.end());
+    if (excluded.size() == site.excluded.size()) return RadianceMap(side, captured(all, false), captured(all, true), 1);
     const ProbeCapture rest = capture({excluded.begin(), excluded.end()});
     return RadianceMap(side, captured(rest, false), captured(all, true), 1);
 }
