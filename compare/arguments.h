@@ -1,29 +1,19 @@
 // Subcommands of the program `compare`. Each one's command-line arguments are defined next to the code they configure.
 #pragma once
 
-#include <functional>
-
-namespace CLI {
-class App;
-}
+#include "common/program/command_line.h"
 
 namespace duet::compare {
 
-/// A subcommand: its command-line arguments and the function to call if it was given.
-struct Subcommand {
-    CLI::App* arguments;
-    std::function<int()> run; ///< returns the exit code
-};
-
-Subcommand add_run(CLI::App& app);
-Subcommand add_ladder(CLI::App& app);
-Subcommand add_images(CLI::App& app);
-Subcommand add_skip(CLI::App& app);
-Subcommand add_bench(CLI::App& app);
-Subcommand add_stop(CLI::App& app);
-Subcommand add_kernels(CLI::App& app);
-Subcommand add_frames(CLI::App& app);
-Subcommand add_stress(CLI::App& app);
+void add_run(CommandLine& program);
+void add_ladder(CommandLine& program);
+void add_images(CommandLine& program);
+void add_skip(CommandLine& program);
+void add_bench(CommandLine& program);
+void add_stop(CommandLine& program);
+void add_kernels(CommandLine& program);
+void add_frames(CommandLine& program);
+void add_stress(CommandLine& program);
 
 /// Text appended to each subcommand's --help.
 inline constexpr const char* kExitCodes =

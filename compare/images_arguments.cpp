@@ -3,32 +3,30 @@
 #include "compare/images.h"
 #include "compare/metrics/limits.h"
 
-#include <CLI/CLI.hpp>
 #include <memory>
 
 namespace duet::compare {
 
-Subcommand add_images(CLI::App& app) {
-    CLI::App* images = app.add_subcommand("images", "Compare two image files");
+void add_images(CommandLine& program) {
+    CommandLine& images = program.add_subcommand("images", "Compare two image files");
     const auto all = std::make_shared<ImagesOptions>();
     ImagesOptions& options = *all;
-    images->add_option("A", options.a, "An image (PNG, JPEG, TGA, PPM, PFM, HDR, EXR)")->required();
-    images->add_option("B", options.reference, "The reference, of the same size")->required();
+    images.add("A", options.a, "An image (PNG, JPEG, TGA, PPM, PFM, HDR, EXR)").required();
+    images.add("B", options.reference, "The reference, of the same size").required();
     images
-        ->add_option("--fail-above", options.limits,
-                     "METRIC=VALUE: exit with 1 where the metric is above VALUE, or, of psnr, ssim and z_p, below it; "
-                     "may be given more than once")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    images->add_flag("--decode", options.decode,
-                     "Decode 8-bit files by the sRGB curve and compare linear values throughout: needed to compare an "
-                     "8-bit file with a float one");
-    images->add_option("-o,--output", options.folder,
-                       "A folder for the report page (index.html), difference.png and report.json");
-    images->add_option("--stats", options.stats, "Write the figures as JSON to this file (-: standard output)");
-    images->add_option("--threads", options.threads, "Threads (default: all)")->check(CLI::Range(1, 1024));
-    images->add_flag("--quiet", options.quiet, "No table");
-    images->footer(
+        .add("--fail-above", options.limits,
+             "METRIC=VALUE: exit with 1 where the metric is above VALUE, or, of psnr, ssim and z_p, below it; "
+             "may be given more than once")
+        .repeatable();
+    images.add_flag("--decode", options.decode,
+                    "Decode 8-bit files by the sRGB curve and compare linear values throughout: needed to compare an "
+                    "8-bit file with a float one");
+    images.add("-o,--output", options.folder,
+               "A folder for the report page (index.html), difference.png and report.json");
+    images.add("--stats", options.stats, "Write the figures as JSON to this file (-: standard output)");
+    images.add("--threads", options.threads, "Threads (default: all)").range(1, 1024);
+    images.add_flag("--quiet", options.quiet, "No table");
+    images.set_footer(
         "Metrics: " + metric_names() +
         ".\n\nEXR, PFM and HDR files are linear radiance and so is all that is compared. Of 8-bit files mse, rmse, "
         "mae, psnr, ssim, worst and flip compare stored (sRGB-encoded) values, relmse, smape and mean_signed_error "
@@ -37,7 +35,7 @@ Subcommand add_images(CLI::App& app) {
         "\n\nExample:\n  compare images out/raster.png out/raytrace.png --fail-above rmse=0.1 --fail-above ssim=0.8\n"
         "  compare images before.exr after.exr -o out\nthen open out/index.html in a browser." +
         kExitCodes);
-    return {images, [all] { return compare::compare_images(*all); }};
+    images.set_action([all] { return compare::compare_images(*all); });
 }
 
 } // namespace duet::compare

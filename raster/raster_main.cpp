@@ -1,11 +1,8 @@
 // Implements the program `raster SCENE -o OUT`, which renders a scene by rasterization.
-#include "common/program/option_checks.h"
 #include "common/program/render_program.h"
 #include "raster/render.h"
 #include "raster/shading/built_in_shaders.h"
 #include "raster/visibility/multisample.h"
-
-#include <CLI/CLI.hpp>
 
 int main(int argc, char** argv) {
     using namespace duet;
@@ -21,33 +18,37 @@ int main(int argc, char** argv) {
     program.description = "Renders a scene with the software rasterizer.";
     program.example = "raster models/demo.json -o demo.png --size 1280x720 --spp 4";
     program.spp_help = "Samples per pixel (default 1: its center)";
-    program.add_options = [&](CLI::App& app) {
-        app.add_option("--shading", shading_name, raster::shading_names() + " (default: lit, by materials and lights)");
-        app.add_option(
+    program.add_options = [&](CommandLine& command_line) {
+        command_line.add("--shading", shading_name,
+                         raster::shading_names() + " (default: lit, by materials and lights)");
+        command_line.add(
             "--msaa", multisamples,
             "Multisampling: coverage and depth at 2, 4, 8 or 16 samples a pixel, shading once a primitive (in place "
             "of --spp)");
-        app.add_flag("--edges", edges, "Draw lines over the image where depth, normals or objects change");
-        app.add_flag("--sample-shading", sample_shading, "With --msaa: shade each sample")->needs("--msaa");
-        app.add_flag("--no-environment", no_environment, "Leave out the environment's light and background");
-        app.add_flag("--shadows,!--no-shadows", shadows,
-                     "Shadow maps: sharp ones for point, spot and sun lights, soft ones for area lights (default: on)");
-        app.add_option("--shadow-map", shadow_map_side,
-                       "Texels along a shadow map's side, 64 to 8192; a face of a cube map has half as many, of an "
-                       "area "
-                       "light's a quarter (default 2048); fewer where there would be too many for memory");
-        app.add_option("--shadow-cells", shadow_cells,
-                       "Pieces along each side of a rectangular light, 1 to 8, each with a map of its own (default 2)");
-        app.add_flag("--ambient-occlusion,!--no-ambient-occlusion", occlusion,
-                     "GTAO: near surfaces hide diffuse light, by the image's depths (default: on)");
-        app.add_flag("--indirect,!--no-indirect", indirect,
-                     "Diffuse light between surfaces, from irradiance probes (default: on)");
-        app.add_option("--occlusion-radius", occlusion_radius,
-                       "With --no-indirect: meters up to which surfaces hide the environment (default 0: half of the "
-                       "scene's size or of the camera's distance)")
-            ->check(nonnegative_number());
-        app.add_flag("--no-culling", no_culling,
-                     "Draw back faces of closed meshes and what is outside the frustum, too (same image)");
+        command_line.add_flag("--edges", edges, "Draw lines over the image where depth, normals or objects change");
+        command_line.add_flag("--sample-shading", sample_shading, "With --msaa: shade each sample").needs("--msaa");
+        command_line.add_flag("--no-environment", no_environment, "Leave out the environment's light and background");
+        command_line.add_flag(
+            "--shadows,!--no-shadows", shadows,
+            "Shadow maps: sharp ones for point, spot and sun lights, soft ones for area lights (default: on)");
+        command_line.add("--shadow-map", shadow_map_side,
+                         "Texels along a shadow map's side, 64 to 8192; a face of a cube map has half as many, of an "
+                         "area "
+                         "light's a quarter (default 2048); fewer where there would be too many for memory");
+        command_line.add(
+            "--shadow-cells", shadow_cells,
+            "Pieces along each side of a rectangular light, 1 to 8, each with a map of its own (default 2)");
+        command_line.add_flag("--ambient-occlusion,!--no-ambient-occlusion", occlusion,
+                              "GTAO: near surfaces hide diffuse light, by the image's depths (default: on)");
+        command_line.add_flag("--indirect,!--no-indirect", indirect,
+                              "Diffuse light between surfaces, from irradiance probes (default: on)");
+        command_line
+            .add("--occlusion-radius", occlusion_radius,
+                 "With --no-indirect: meters up to which surfaces hide the environment (default 0: half of the "
+                 "scene's size or of the camera's distance)")
+            .nonnegative();
+        command_line.add_flag("--no-culling", no_culling,
+                              "Draw back faces of closed meshes and what is outside the frustum, too (same image)");
     };
     program.prepare = [&](const Scene& scene, const RenderSettings& common, std::optional<int> spp) -> RenderFunction {
         raster::RasterSettings settings;

@@ -1,13 +1,10 @@
 // The program `raytrace SCENE -o OUT` renders a scene with the path tracer.
-#include "common/program/option_checks.h"
 #include "common/program/render_program.h"
 #include "common/system/error.h"
 #include "common/system/file.h"
 #include "raytrace/film/merge_films.h"
 #include "raytrace/pixel_debug.h"
 #include "raytrace/render.h"
-
-#include <CLI/CLI.hpp>
 
 #include <charconv>
 #include <optional>
@@ -52,46 +49,46 @@ int main(int argc, char** argv) {
     program.description = "Renders a scene with the path tracer.";
     program.example = "raytrace models/cornell.json -o cornell.png --spp 256";
     program.spp_help = "Samples a pixel (default 64; none where --time or --error ends the render)";
-    program.add_options = [&](CLI::App& app) {
-        app.add_option("--depth", settings.max_depth,
-                       "Scattering events at most: 0 = emission only, 1 = direct light (default 64)")
-            ->check(CLI::Range(0, 100000));
-        app.add_option("--integrator", integrator_name,
-                       "path (default), naive (no light sampling), direct, unshadowed (direct light without "
-                       "visibility), lights (emission and direct light of lights), environment (its light on diffuse "
-                       "surfaces), reflection (what is seen by way of "
-                       "metal and glass), normal or albedo");
-        app.add_option(
+    program.add_options = [&](CommandLine& command_line) {
+        command_line
+            .add("--depth", settings.max_depth,
+                 "Scattering events at most: 0 = emission only, 1 = direct light (default 64)")
+            .range(0, 100000);
+        command_line.add("--integrator", integrator_name,
+                         "path (default), naive (no light sampling), direct, unshadowed (direct light without "
+                         "visibility), lights (emission and direct light of lights), environment (its light on diffuse "
+                         "surfaces), reflection (what is seen by way of "
+                         "metal and glass), normal or albedo");
+        command_line.add(
             "--sampler", sampler,
             "sobol (default: Owen-scrambled), blue-noise (the same, ordered so that what noise is left at few "
             "samples is even over the image), stratified, independent, or center (pixel and lens center, "
             "shutter open)");
-        app.add_option("--filter", filter,
-                       "How a pixel weighs the light around its center: box (default, the pixel itself) or "
-                       "blackman-harris (a smooth bell over 3 x 3 pixels)");
-        app.add_option("--time", settings.time_limit, "Stop after this many seconds, between passes")
-            ->check(positive_number());
-        app.add_option("--error", settings.error_limit, "Stop when the estimated relMSE is below this, between passes")
-            ->check(positive_number());
-        // This is a flag function, because CLI11 would set an optional flag that is not given to false.
-        app.add_flag_function(
-            "--adaptive,!--no-adaptive", [&](std::int64_t times) { adaptive = times > 0; },
-            "More samples where the error is, --spp in the mean (default with --time or --error, "
-            "but for --samples and samplers that need to know the number)");
-        auto* const film_option = app.add_option(
+        command_line.add("--filter", filter,
+                         "How a pixel weighs the light around its center: box (default, the pixel itself) or "
+                         "blackman-harris (a smooth bell over 3 x 3 pixels)");
+        command_line.add("--time", settings.time_limit, "Stop after this many seconds, between passes").positive();
+        command_line
+            .add("--error", settings.error_limit, "Stop when the estimated relMSE is below this, between passes")
+            .positive();
+        command_line.add_flag("--adaptive,!--no-adaptive", adaptive,
+                              "More samples where the error is, --spp in the mean (default with --time or --error, "
+                              "but for --samples and samplers that need to know the number)");
+        command_line.add(
             "--film", film,
             "Keep all samples in this .exr: written at intervals, at the end and when interrupted; a later run goes on "
             "from there, to the same bits as one run. What was begun with --adaptive, --error or --aov variance knows "
             "its "
             "error, and goes on with these alone. `raytrace merge` joins films");
-        app.add_option("--film-interval", settings.film_interval, "Seconds between two writings of it (default 60)")
-            ->check(nonnegative_number())
-            ->needs(film_option);
-        app.add_option("--samples", samples, "Samples A:B, from A to B − 1 of each pixel: a shard (in place of --spp)");
-        app.add_option("--pixel", pixel,
-                       "Render that one sample, X,Y[,SAMPLE] (row 0 on top, default sample 0), and print its path: "
-                       "needs no -o");
-        app.add_flag("--no-environment", no_environment, "Leave the environment's light and background out");
+        command_line.add("--film-interval", settings.film_interval, "Seconds between two writings of it (default 60)")
+            .nonnegative()
+            .needs("--film");
+        command_line.add("--samples", samples,
+                         "Samples A:B, from A to B − 1 of each pixel: a shard (in place of --spp)");
+        command_line.add("--pixel", pixel,
+                         "Render that one sample, X,Y[,SAMPLE] (row 0 on top, default sample 0), and print its path: "
+                         "needs no -o");
+        command_line.add_flag("--no-environment", no_environment, "Leave the environment's light and background out");
     };
     const auto apply_options = [&](const RenderSettings& common, std::optional<int> spp) {
         const bool limited = settings.time_limit > 0 || settings.error_limit > 0;

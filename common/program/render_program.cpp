@@ -1,16 +1,13 @@
 #include "common/program/render_program.h"
 
 #include "common/image/image_file.h"
-#include "common/program/option_checks.h"
 #include "common/program/program.h"
 #include "common/program/statistics.h"
 #include "common/system/parallel.h"
 #include "common/system/stopwatch.h"
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include <charconv>
 #include <iostream>
 
 namespace duet {
@@ -18,30 +15,31 @@ namespace duet {
 namespace {
 
 struct Options {
-    std::string scene, output, size, aovs, stats;
+    std::string scene, output, aovs, stats;
+    ImageSize size{0, 0}; ///< zeros: the scene's
     int spp = 0, threads = 0, orbit = 0;
     std::uint64_t seed = 0;
     bool ascii = false, quiet = false;
 };
 
-void add_common_options(CLI::App& app, Options& options, const std::string& spp_help) {
-    app.add_option("SCENE", options.scene,
-                   "A scene file (.json) or a bare mesh (.obj: framed, on a ground under a sky)")
-        ->required();
-    app.add_option("-o,--output", options.output, "The image: .png, .jpg, .tga, .ppm, .pfm, .hdr or .exr");
-    app.add_option("--size", options.size, "Image size WIDTHxHEIGHT (default: the scene's)");
-    app.add_option("--spp", options.spp, spp_help)->check(CLI::Range(1, 1 << 24));
-    app.add_option("--threads", options.threads, "Threads (default: all)")->check(CLI::Range(1, 1024));
-    app.add_option("--seed", options.seed, "Seed of all random numbers (default 0)")->check(unsigned_integer());
-    app.add_option("--stats", options.stats, "Write statistics as JSON to this file (-: standard output)");
-    app.add_option("--aov", options.aovs,
-                   "Auxiliary images, a list of depth,normal,albedo,hit,variance,samples: channels of an "
-                   ".exr, or EXR files beside the image");
-    app.add_option("--orbit", options.orbit,
-                   "Render this many frames around the camera's target; the output's name holds %04d")
-        ->check(CLI::Range(1, 9999));
-    app.add_flag("--ascii", options.ascii, "Write .ppm as text (P3)");
-    app.add_flag("--quiet", options.quiet, "No progress bar");
+void add_common_options(CommandLine& program, Options& options, const std::string& spp_help) {
+    program.add("SCENE", options.scene, "A scene file (.json) or a bare mesh (.obj: framed, on a ground under a sky)")
+        .required();
+    program.add("-o,--output", options.output, "The image: .png, .jpg, .tga, .ppm, .pfm, .hdr or .exr");
+    program.add("--size", options.size, "Image size WIDTHxHEIGHT (default: the scene's)");
+    program.add("--spp", options.spp, spp_help).range(1, 1 << 24);
+    program.add("--threads", options.threads, "Threads (default: all)").range(1, 1024);
+    program.add("--seed", options.seed, "Seed of all random numbers (default 0)");
+    program.add("--stats", options.stats, "Write statistics as JSON to this file (-: standard output)");
+    program.add("--aov", options.aovs,
+                "Auxiliary images, a list of depth,normal,albedo,hit,variance,samples: channels of an "
+                ".exr, or EXR files beside the image");
+    program
+        .add("--orbit", options.orbit,
+             "Render this many frames around the camera's target; the output's name holds %04d")
+        .range(1, 9999);
+    program.add_flag("--ascii", options.ascii, "Write .ppm as text (P3)");
+    program.add_flag("--quiet", options.quiet, "No progress bar");
 }
 
 // Replaces the first %04d of the pattern by the frame's number with at least four digits.
@@ -97,8 +95,6 @@ int render_all(const RenderProgram& program, const Options& options) {
     settings.threads = options.threads;
     settings.seed = options.seed;
     settings.aovs = parse_aovs(options.aovs);
-    ImageSize size{0, 0};
-    if (!options.size.empty()) size = parse_image_size(options.size);
 
     RenderContext context;
     context.program = program.name;
@@ -108,8 +104,8 @@ int render_all(const RenderProgram& program, const Options& options) {
     Stopwatch watch;
     const Scene scene = load_scene(options.scene);
     context.load_seconds = watch.lap();
-    context.width = size.width > 0 ? size.width : scene.width;
-    context.height = size.height > 0 ? size.height : scene.height;
+    context.width = options.size.width > 0 ? options.size.width : scene.width;
+    context.height = options.size.height > 0 ? options.size.height : scene.height;
     const std::optional<int> spp = options.spp > 0 ? std::optional(options.spp) : std::nullopt;
     if (text_only) {
         std::cout << program.text_output(scene, View{scene.camera, context.width, context.height}, settings, spp);
@@ -145,45 +141,16 @@ int render_all(const RenderProgram& program, const Options& options) {
 
 int run_render_program(const RenderProgram& program, int argc, char** argv) {
     return run_program(program.name, [&] {
-        CLI::App app(program.description, program.name);
-        app.footer("Example:\n  " + program.example +
-                   "\n\nExit codes: 0 done, 1 failed, 2 unusable arguments or input, 130 interrupted (what is done is "
-                   "written).");
+        CommandLine command_line(program.name, program.description);
+        command_line.set_footer("Example:\n  " + program.example +
+                                "\n\nExit codes: 0 done, 1 failed, 2 unusable arguments or input, 130 interrupted "
+                                "(what is done is written).");
         Options options;
-        add_common_options(app, options, program.spp_help);
-        program.add_options(app);
-        const ParsedCommandLine parsed = parse_command_line(app, argc, argv);
-        return parsed.proceed ? render_all(program, options) : parsed.exit_code;
+        add_common_options(command_line, options, program.spp_help);
+        program.add_options(command_line);
+        const std::optional<int> exit_code = command_line.parse(argc, argv);
+        return exit_code ? *exit_code : render_all(program, options);
     });
-}
-
-ParsedCommandLine parse_command_line(CLI::App& app, int argc, char** argv) {
-    app.set_version_flag("--version", std::string(DUET_VERSION));
-    try {
-        app.parse(argc, argv);
-        return {true, kExitOk};
-    } catch (const CLI::Success& help) { // --help and --version throw this exception
-        return {false, app.exit(help)};
-    } catch (const CLI::ParseError& error) {
-        throw Error(message(error.what(), " (", app.get_name(), " --help explains)"));
-    }
-}
-
-ImageSize parse_image_size(std::string_view text) {
-    ImageSize size{};
-    const char* const end = text.data() + text.size();
-    const auto width = std::from_chars(text.data(), end, size.width);
-    const auto valid = [&] {
-        if (width.ec != std::errc() || width.ptr == end || *width.ptr != 'x') return false;
-        const auto height = std::from_chars(width.ptr + 1, end, size.height);
-        return height.ec == std::errc() && height.ptr == end && size.width >= 1 && size.width <= kMaxRenderSide &&
-               size.height >= 1 && size.height <= kMaxRenderSide &&
-               static_cast<long long>(size.width) * size.height <= kMaxImagePixels;
-    };
-    if (!valid())
-        throw Error(message("--size: found ", text, ", expected WIDTHxHEIGHT such as 640x480, each from 1 to ",
-                            kMaxRenderSide, ", and at most ", kMaxImagePixels, " pixels"));
-    return size;
 }
 
 AovSet parse_aovs(std::string_view list) {

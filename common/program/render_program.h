@@ -3,6 +3,7 @@
 #pragma once
 
 #include "common/camera/camera.h"
+#include "common/program/command_line.h"
 #include "common/rendering.h"
 #include "common/scene/scene.h"
 #include "common/system/control.h"
@@ -11,10 +12,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-
-namespace CLI {
-class App;
-}
 
 namespace duet {
 
@@ -32,7 +29,7 @@ struct RenderProgram {
     std::string name, description, example;
     std::string spp_help; ///< what --spp means here, and its default
     /// Adds the pipeline's own options.
-    std::function<void(CLI::App&)> add_options;
+    std::function<void(CommandLine&)> add_options;
     /// Where wants_text_output returns true, the program prints text_output() of the view instead of rendering it. Both
     /// may be empty.
     std::function<bool()> wants_text_output;
@@ -46,21 +43,6 @@ struct RenderProgram {
 
 /// Runs the whole program as the body of main, and returns an exit code of program.h.
 int run_render_program(const RenderProgram& program, int argc, char** argv);
-
-/// Parses a command line. The result has proceed = true and exit code 0, or proceed = false after --help and
-/// --version. Throws Error for unusable arguments, which ends the program with exit code 2.
-struct ParsedCommandLine {
-    bool proceed;
-    int exit_code;
-};
-ParsedCommandLine parse_command_line(CLI::App& app, int argc, char** argv);
-
-/// Parses an image size such as "640x480". Throws Error unless each side is in [1, kMaxRenderSide] and the product
-/// is at most kMaxImagePixels.
-struct ImageSize {
-    int width, height;
-};
-ImageSize parse_image_size(std::string_view text);
 
 /// Parses a list of AOVs, a subset of "depth,normal,albedo,hit,variance,samples". Throws Error for another name.
 AovSet parse_aovs(std::string_view list);

@@ -1,7 +1,7 @@
 // Defines the options of `compare bench`.
 #pragma once
 
-#include "common/program/render_program.h"
+#include "common/program/command_line.h"
 #include "compare/bench/bench_renderer.h"
 #include "compare/bench/exclusion.h"
 #include "compare/bench/measure.h"

@@ -1,7 +1,7 @@
 // `compare kernels`: measures the speed of Duet's ray kernels and of Embree's on the same rays.
 #pragma once
 
-#include "common/program/render_program.h"
+#include "common/program/command_line.h"
 #include "compare/kernels/kernel_report.h"
 #include "compare/kernels/kernel_scene.h"
 

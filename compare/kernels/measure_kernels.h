@@ -1,7 +1,7 @@
 // All measurements of one scene: builds, memory, and each kind of ray, with one thread and with many.
 #pragma once
 
-#include "common/program/render_program.h"
+#include "common/program/command_line.h"
 #include "common/system/control.h"
 #include "compare/kernels/kernel_report.h"
 #include "compare/kernels/kernel_scene.h"

@@ -1,7 +1,7 @@
 // `compare stop`: checks whether renders with --error and --time stop at those limits.
 #pragma once
 
-#include "common/program/render_program.h"
+#include "common/program/command_line.h"
 #include "compare/stop/measure_stop.h"
 
 #include <filesystem>

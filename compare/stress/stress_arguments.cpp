@@ -1,30 +1,28 @@
 // This file declares the arguments of `compare stress`.
-#include "common/program/option_checks.h"
 #include "compare/arguments.h"
 #include "compare/stress/suite.h"
 
-#include <CLI/CLI.hpp>
 #include <memory>
 
 namespace duet::compare {
 
-Subcommand add_stress(CLI::App& app) {
-    CLI::App* stress = app.add_subcommand(
+void add_stress(CommandLine& program) {
+    CommandLine& stress = program.add_subcommand(
         "stress", "Test the numerics of both pipelines, and show what the books' way would have done");
     const auto all = std::make_shared<StressOptions>();
     StressOptions& options = *all;
-    stress->add_option("--trials", options.factor, "Times the default number of trials (default 1: about a minute)")
-        ->check(number_in_range(1e-6, 1e6, "a number from 1e-6 to 1e6"));
-    stress->add_option("--only", options.only,
-                       "A test, or how the names of some begin: intersection, departure/self-hits; may be given more "
-                       "than once");
-    stress->add_flag("--list", options.list, "Say what each test is, its bound and the bound's source; run none");
-    stress->add_option("--seed", options.seed, "Seed of all random numbers (default 0)")->check(unsigned_integer());
-    stress->add_option("--threads", options.threads, "Threads (default: all)")->check(CLI::Range(1, 1024));
-    stress->add_option("--stats", options.stats, "Write the rows as JSON to this file (-: standard output)");
-    stress->add_flag("--quiet", options.quiet, "No table, no progress bar; failures are still explained");
-    stress->footer(std::string("Example:\n  compare stress --only intersection --trials 10") + kExitCodes);
-    return {stress, [all] { return compare::stress(*all); }};
+    stress.add("--trials", options.factor, "Times the default number of trials (default 1: about a minute)")
+        .number_range(1e-6, 1e6, "a number from 1e-6 to 1e6");
+    stress.add("--only", options.only,
+               "A test, or how the names of some begin: intersection, departure/self-hits; may be given more "
+               "than once");
+    stress.add_flag("--list", options.list, "Say what each test is, its bound and the bound's source; run none");
+    stress.add("--seed", options.seed, "Seed of all random numbers (default 0)");
+    stress.add("--threads", options.threads, "Threads (default: all)").range(1, 1024);
+    stress.add("--stats", options.stats, "Write the rows as JSON to this file (-: standard output)");
+    stress.add_flag("--quiet", options.quiet, "No table, no progress bar; failures are still explained");
+    stress.set_footer(std::string("Example:\n  compare stress --only intersection --trials 10") + kExitCodes);
+    stress.set_action([all] { return compare::stress(*all); });
 }
 
 } // namespace duet::compare

@@ -1,11 +1,9 @@
 #include "raytrace/film/merge_films.h"
 
 #include "common/image/image_file.h"
+#include "common/program/command_line.h"
 #include "common/program/program.h"
-#include "common/program/render_program.h"
 #include "common/system/error.h"
-
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <iostream>
@@ -100,20 +98,22 @@ StoredFilm merge_films(std::vector<NamedFilm> films) {
 
 int run_merge(int argc, char** argv) {
     return run_program("raytrace merge", [&] {
-        CLI::App app("Joins films of the same image, of different samples, into one image.", "raytrace merge");
-        app.footer("Example, two machines a half each:\n"
-                   "  raytrace models/cornell.json -o a.png --samples 0:128 --film a.exr\n"
-                   "  raytrace models/cornell.json -o b.png --samples 128:256 --film b.exr\n"
-                   "  raytrace merge -o cornell.png a.exr b.exr\n\n"
-                   "Exit codes: 0 done, 1 failed, 2 unusable arguments or input.");
+        CommandLine command_line("raytrace merge",
+                                 "Joins films of the same image, of different samples, into one image.");
+        command_line.set_footer("Example, two machines a half each:\n"
+                                "  raytrace models/cornell.json -o a.png --samples 0:128 --film a.exr\n"
+                                "  raytrace models/cornell.json -o b.png --samples 128:256 --film b.exr\n"
+                                "  raytrace merge -o cornell.png a.exr b.exr\n\n"
+                                "Exit codes: 0 done, 1 failed, 2 unusable arguments or input.");
         Options options;
-        app.add_option("FILM", options.films, "Films that raytrace --film has written")->required();
-        app.add_option("-o,--output", options.output, "The image: .png, .jpg, .tga, .ppm, .pfm, .hdr or .exr")
-            ->required();
-        app.add_option("--film", options.film, "Write the joint film, too: it can be continued, or joined with others");
-        app.add_flag("--quiet", options.quiet, "No summary");
-        const ParsedCommandLine parsed = parse_command_line(app, argc, argv);
-        return parsed.proceed ? merge(options) : parsed.exit_code;
+        command_line.add("FILM", options.films, "Films that raytrace --film has written").required();
+        command_line.add("-o,--output", options.output, "The image: .png, .jpg, .tga, .ppm, .pfm, .hdr or .exr")
+            .required();
+        command_line.add("--film", options.film,
+                         "Write the joint film, too: it can be continued, or joined with others");
+        command_line.add_flag("--quiet", options.quiet, "No summary");
+        const std::optional<int> exit_code = command_line.parse(argc, argv);
+        return exit_code ? *exit_code : merge(options);
     });
 }
 

@@ -1,0 +1,168 @@
+#include "common/program/command_line.h"
+
+#include "common/image/stored_image.h"
+#include "common/rendering.h"
+#include "common/system/error.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <type_traits>
+
+namespace duet {
+
+namespace {
+
+// Returns a check that the text is a finite number for which accepts() is true. `expected` describes those numbers in
+// the message. CLI11's own checks print the largest double as a bound, and accept NaN.
+template <typename Accepts>
+CLI::Validator number_check(const char* name, const char* expected, const Accepts& accepts) {
+    return {[=](std::string& text) -> std::string {
+                char* end = nullptr;
+                const double value = std::strtod(text.c_str(), &end);
+                if (end != text.c_str() && *end == '\0' && std::isfinite(value) && accepts(value)) return {};
+                return "found " + text + ", expected " + expected;
+            },
+            name};
+}
+
+// Returns a check for decimal digits of a number below 2^64. A conversion to unsigned would skip, wrap or truncate
+// other text.
+CLI::Validator unsigned_check() {
+    return {[](std::string& text) -> std::string {
+                std::uint64_t value = 0;
+                const char *const begin = text.data(), *const end = begin + text.size();
+                if (const auto [rest, error] = std::from_chars(begin, end, value); error == std::errc() && rest == end)
+                    return {};
+                return "found " + text + ", expected a whole number from 0 to 2^64 - 1";
+            },
+            ""};
+}
+
+} // namespace
+
+Option& Option::required() {
+    option_->required();
+    return *this;
+}
+Option& Option::comma_separated() {
+    option_->delimiter(',');
+    return *this;
+}
+Option& Option::repeatable() {
+    option_->expected(1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    return *this;
+}
+Option& Option::needs(const std::string& other) {
+    option_->needs(app_->get_option(other));
+    return *this;
+}
+Option& Option::range(std::int64_t low, std::int64_t high) {
+    option_->check(CLI::Range(low, high));
+    return *this;
+}
+Option& Option::number_range(double low, double high, const char* expected) {
+    option_->check(number_check("", expected, [=](double x) { return x >= low && x <= high; }));
+    return *this;
+}
+Option& Option::positive() {
+    option_->check(number_check("POSITIVE", "a finite number above 0", [](double x) { return x > 0; }));
+    return *this;
+}
+Option& Option::nonnegative() {
+    option_->check(number_check("NONNEGATIVE", "a finite number of at least 0", [](double x) { return x >= 0; }));
+    return *this;
+}
+
+CommandLine::CommandLine(const std::string& name, const std::string& description)
+    : program_(std::make_unique<CLI::App>(description, name)), app_(program_.get()) {
+    app_->set_version_flag("--version", std::string(DUET_VERSION));
+}
+CommandLine::CommandLine(CLI::App& subcommand) : app_(&subcommand) {}
+CommandLine::~CommandLine() = default;
+
+template <typename T> Option CommandLine::add(const std::string& names, T& value, const std::string& help) {
+    if constexpr (std::is_same_v<T, ImageSize>) {
+        const auto parse = [&value](const std::string& text) { value = parse_image_size(text); };
+        return {*app_, *app_->add_option_function<std::string>(names, parse, help)};
+    } else {
+        CLI::Option* const option = app_->add_option(names, value, help);
+        if constexpr (std::is_same_v<T, std::uint64_t>) option->check(unsigned_check());
+        return {*app_, *option};
+    }
+}
+template Option CommandLine::add(const std::string&, std::string&, const std::string&);
+template Option CommandLine::add(const std::string&, int&, const std::string&);
+template Option CommandLine::add(const std::string&, std::uint64_t&, const std::string&);
+template Option CommandLine::add(const std::string&, std::int64_t&, const std::string&);
+template Option CommandLine::add(const std::string&, double&, const std::string&);
+template Option CommandLine::add(const std::string&, std::filesystem::path&, const std::string&);
+template Option CommandLine::add(const std::string&, ImageSize&, const std::string&);
+template Option CommandLine::add(const std::string&, std::vector<std::string>&, const std::string&);
+template Option CommandLine::add(const std::string&, std::vector<std::filesystem::path>&, const std::string&);
+template Option CommandLine::add(const std::string&, std::vector<int>&, const std::string&);
+template Option CommandLine::add(const std::string&, std::vector<double>&, const std::string&);
+
+Option CommandLine::add_parsed(const std::string& names,
+                               const std::function<void(const std::vector<std::string>&)>& parse,
+                               const std::string& help) {
+    return {*app_, *app_->add_option_function<std::vector<std::string>>(names, parse, help)};
+}
+
+Option CommandLine::add_flag(const std::string& names, bool& value, const std::string& help) {
+    return {*app_, *app_->add_flag(names, value, help)};
+}
+
+// CLI11 would set an optional flag that is not given to false.
+Option CommandLine::add_flag(const std::string& names, std::optional<bool>& value, const std::string& help) {
+    return {*app_, *app_->add_flag_function(
+                       names, [&value](std::int64_t times) { value = times > 0; }, help)};
+}
+
+CommandLine& CommandLine::add_subcommand(const std::string& name, const std::string& description) {
+    app_->require_subcommand(1);
+    CLI::App& subcommand = *app_->add_subcommand(name, description);
+    return *subcommands_.emplace_back(new CommandLine(subcommand)); // make_unique cannot call a private constructor
+}
+
+void CommandLine::set_footer(const std::string& text) { app_->footer(text); }
+
+std::optional<int> CommandLine::parse(int argc, char** argv) {
+    try {
+        app_->parse(argc, argv);
+        return std::nullopt;
+    } catch (const CLI::Success& help) { // --help and --version throw this exception
+        return app_->exit(help);
+    } catch (const CLI::ParseError& error) {
+        throw Error(message(error.what(), " (", app_->get_name(), " --help explains)"));
+    }
+}
+
+int CommandLine::run_subcommand() const {
+    const auto given = std::find_if(subcommands_.begin(), subcommands_.end(),
+                                    [](const auto& subcommand) { return subcommand->app_->parsed(); });
+    return (*given)->action_(); // parse() has refused a command line without a subcommand
+}
+
+ImageSize parse_image_size(std::string_view text) {
+    ImageSize size{};
+    const char* const end = text.data() + text.size();
+    const auto width = std::from_chars(text.data(), end, size.width);
+    const auto valid = [&] {
+        if (width.ec != std::errc() || width.ptr == end || *width.ptr != 'x') return false;
+        const auto height = std::from_chars(width.ptr + 1, end, size.height);
+        return height.ec == std::errc() && height.ptr == end && size.width >= 1 && size.width <= kMaxRenderSide &&
+               size.height >= 1 && size.height <= kMaxRenderSide &&
+               static_cast<long long>(size.width) * size.height <= kMaxImagePixels;
+    };
+    if (!valid())
+        throw Error(message("--size: found ", text, ", expected WIDTHxHEIGHT such as 640x480, each from 1 to ",
+                            kMaxRenderSide, ", and at most ", kMaxImagePixels, " pixels"));
+    return size;
+}
+
+} // namespace duet
