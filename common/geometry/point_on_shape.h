@@ -44,7 +44,8 @@ inline PointOnShapeT<T> point_on_smooth_triangle(const std::array<Vec3T<T>, 3>& 
     const T w = T(1.0) - u - v;
     point.smooth = true;
     point.ns = normals[0] * w + normals[1] * u + normals[2] * v;
-    point.terminator_offset = shading_terminator_offset<T>(point.p, vertices, normals, {w, u, v}, point.ng, direction);
+    point.terminator_offset =
+        shading_terminator_offset<T>(vertices, normals, {w, u, v}, point.ns, point.ng, direction);
     return point;
 }
 

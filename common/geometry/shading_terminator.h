@@ -8,32 +8,27 @@
 
 namespace duet {
 
-/// Returns the vector from a point p of a triangle to the smooth surface, on the side from which a ray of the given
-/// direction arrives. The smooth point is the weighted mean of the projections of p onto the tangent planes of the
-/// vertices (Hanika 2021; Boubekeur and Alexa 2008, "Phong Tessellation").
+/// Returns the vector from a point of a triangle to the smooth surface, on the side from which a ray of the given
+/// direction arrives (Hanika 2021, "Hacking the Shadow Terminator"). Phong tessellation moves the point p along the
+/// normals nᵢ of the vertices vᵢ, with barycentric weights wᵢ, by Σ wᵢ nᵢ·(vᵢ − p) (Boubekeur and Alexa 2008). That is
+/// a sum over the three edges, Σ wᵢ wⱼ (nᵢ − nⱼ)·(vᵢ − vⱼ), in which each edge that is convex toward the viewer is
+/// positive. Only these count here, so the smooth surface is nowhere below the triangle, and has no gaps at its edges.
 ///
-/// The result is zero unless the surface is convex toward the viewer, that is, unless p lies below all three tangent
-/// planes. As a tolerance, p may lie above a plane by up to a tenth of its largest depth below another plane. The
-/// result is thus zero for flat, concave and saddle-shaped surfaces, and where all vertex normals only tilt in one
-/// direction.
-///
-/// `normals` are the unit vertex normals, `weights` are the barycentric coordinates of p, and `ng` is the geometric
-/// normal of the triangle. `ng` and the direction may have any length. T is double or a batch of doubles.
+/// The result is zero for flat and concave surfaces, and where all vertex normals only tilt in one direction.
+/// `normals` are the unit vertex normals, `weights` are the barycentric coordinates of p, `ns` is the interpolated and
+/// `ng` the geometric normal. `ns`, `ng` and the direction may have any length. T is double or a batch of doubles.
 template <typename T>
-Vec3T<T> shading_terminator_offset(const Vec3T<T>& p, const std::array<Vec3T<T>, 3>& vertices,
-                                   const std::array<Vec3T<T>, 3>& normals, const std::array<T, 3>& weights,
-                                   const Vec3T<T>& ng, const Vec3T<T>& direction) {
-    const T zero(0.0), side = select(dot(ng, direction) > zero, T(-1.0), T(1.0));
-    Vec3T<T> offset(zero, zero, zero);
-    T max_below = zero, min_below = zero;
+Vec3T<T> shading_terminator_offset(const std::array<Vec3T<T>, 3>& vertices, const std::array<Vec3T<T>, 3>& normals,
+                                   const std::array<T, 3>& weights, const Vec3T<T>& ns, const Vec3T<T>& ng,
+                                   const Vec3T<T>& direction) {
+    const T zero(0.0), side = select(dot(ns, ng) * dot(ng, direction) > zero, T(-1.0), T(1.0));
+    T height = zero;
     for (std::size_t i = 0; i < 3; ++i) {
-        const Vec3T<T> n = normals[i] * select(dot(normals[i], ng) < zero, -side, side);
-        const T below = dot(vertices[i] - p, n);
-        max_below = max(max_below, below);
-        min_below = min(min_below, below);
-        offset = select(below > zero, offset + n * (below * weights[i]), offset);
+        const std::size_t j = (i + 1) % 3;
+        const T bulge = dot(normals[i] - normals[j], vertices[i] - vertices[j]) * side;
+        height += weights[i] * weights[j] * max(bulge, zero);
     }
-    return select(min_below < T(-0.1) * max_below, Vec3T<T>(zero, zero, zero), offset);
+    return normalize(ns) * (side * height);
 }
 
 } // namespace duet

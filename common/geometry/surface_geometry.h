@@ -28,16 +28,27 @@ template <typename T> inline Vec3T<T> offset_origin(Vec3T<T> p, Vec3T<T> p_error
     return rounded_away(p + offset, offset);
 }
 
-/// Returns the origin for a ray in direction w. The origin lies off the surface on the side of w, just beyond the error
-/// bound of p, so no scene-wide epsilon is needed (Pharr, Jakob and Humphreys 2023, §6.8.6). For a direction above the
-/// plane of point.terminator_normal, the ray starts from the smooth surface (p + terminator_offset) instead of the
-/// triangle. Triangles near the shading terminator then do not cast stepped shadows on each other (Hanika 2021,
-/// "Hacking the Shadow Terminator").
-template <typename T> inline Vec3T<T> offset_origin(const SurfaceGeometryT<T>& point, Vec3T<T> w) {
-    const T zero(0), side = dot(point.terminator_offset, point.ng); // 0 if there is no terminator_offset
+/// Returns the fraction of point.terminator_offset by which a ray in direction w starts off the triangle. It is 1 below
+/// the triangle's plane, as long as w is above the plane of point.terminator_normal. Above, it falls to 0, because
+/// there the triangles around a convex one are not in the way.
+template <typename T> inline T terminator_fraction(const SurfaceGeometryT<T>& point, Vec3T<T> w) {
+    constexpr float kHighest = 0.25f; // sine of the elevation from which on the fraction is 0
+    const T zero(0), one(1), side = dot(point.terminator_offset, point.ng); // 0 if there is no terminator_offset
+    const T elevation = select(side < zero, -dot(w, point.ng), dot(w, point.ng));
     const MaskOf<T> lifted = dot(w, point.terminator_normal) * side > zero;
-    const MaskOf<T> below = select(lifted, side, dot(w, point.ng)) < zero;
-    return offset_origin(select(lifted, point.p + point.terminator_offset, point.p), point.p_error,
+    return select(lifted, clamp(one - elevation * T(1 / kHighest), zero, one), zero);
+}
+
+/// Returns the origin for a ray in direction w. The origin lies off the surface on the side of w, just beyond the error
+/// bound of p, so no scene-wide epsilon is needed (Pharr, Jakob and Humphreys 2023, §6.8.6). For directions near or
+/// below the triangle's plane, the ray starts from the smooth surface (p + terminator_offset) instead of the triangle.
+/// Triangles near the shading terminator then do not cast stepped shadows on each other (Hanika 2021, "Hacking the
+/// Shadow Terminator").
+template <typename T> inline Vec3T<T> offset_origin(const SurfaceGeometryT<T>& point, Vec3T<T> w) {
+    const T zero(0), fraction = terminator_fraction(point, w);
+    const MaskOf<T> below =
+        select(fraction > zero, dot(point.terminator_offset, point.ng), dot(w, point.ng)) < zero;
+    return offset_origin(point.p + point.terminator_offset * fraction, point.p_error,
                          select(below, -point.ng, point.ng));
 }
 

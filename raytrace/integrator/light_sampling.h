@@ -53,7 +53,7 @@ private:
 /// Returns whether the light is visible from the vertex. This counts as one shadow ray.
 bool unoccluded(const RenderPlan& plan, const Ray& ray, const ShadowRayEnd& end); ///< `ray` leads to `end`
 inline bool unoccluded(const RenderPlan& plan, const Vertex& vertex, const LightLiSample& light_sample) {
-    const Ray ray = spawn_ray(vertex, light_sample.wi);
+    const Ray ray = spawn_ray(plan, vertex, light_sample.wi);
     return unoccluded(plan, ray, ShadowRayEnd(plan.scene, ray, vertex.point.p, light_sample));
 }
 

@@ -224,7 +224,7 @@ private:
             state_.previous_vertex.receiver = light_receiver(vertex);
             state_.previous_vertex.pdf = next.sample->pdf;
         }
-        ray.origin = offset_origin(vertex.point, next.wi);
+        ray.origin = ray_origin(plan_, vertex.point, next.wi, vertex.point.time);
         ray.direction = next.wi;
         ray.t_min = 0;
         return true;

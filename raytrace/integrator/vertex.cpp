@@ -24,6 +24,17 @@ const Bsdf& bsdf_of(const RenderPlan& plan, std::uint32_t material, const Surfac
 
 } // namespace
 
+Vec3 origin_on_smooth_surface(const RenderPlan& plan, const SurfaceGeometryT<float>& point, Vec3 offset, float time) {
+    const Vec3 n = dot(offset, point.ng) < 0 ? -point.ng : point.ng;
+    const float distance = length(offset);
+    Ray ray{offset_origin(point.p, point.p_error, n), offset / distance};
+    ray.time = time;
+    Hit end;
+    end.t = distance;
+    if (plan.prepared.accelerator.occluded(ray, end)) return ray.origin;
+    return offset_origin(point.p + offset, point.p_error, n);
+}
+
 std::optional<RayFootprint> camera_footprint(const RenderPlan& plan, const Ray& ray, const Hit& hit,
                                              std::uint32_t sample) {
     return plan.pixel_footprint ? std::optional(plan.pixel_footprint->at(ray, hit.t) * footprint_width(sample))

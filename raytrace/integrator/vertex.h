@@ -37,6 +37,9 @@ private:
            std::uint32_t material_index);
 };
 
+/// Returns an origin off point.p + offset, or off point.p if another surface lies between. The offset must not be 0.
+Vec3 origin_on_smooth_surface(const RenderPlan& plan, const SurfaceGeometryT<float>& point, Vec3 offset, float time);
+
 // The functions below are templates over the vertex: a Vertex, or the vertices of several paths in SIMD lanes
 // (BatchVertex), with the same members. T is the number type.
 
@@ -77,9 +80,17 @@ std::optional<RayFootprint> camera_footprint(const RenderPlan& plan, const Ray& 
 /// Returns the surface point that this camera ray hits.
 SurfacePoint camera_surface_point(const RenderPlan& plan, const Ray& ray, const Hit& hit, std::uint32_t sample);
 
+/// Returns the origin of a ray that leaves a point toward w (world space, unit): offset_origin(point, w), unless
+/// another surface lies between that and the point. From beyond it, the ray would miss it, or hit it from within.
+inline Vec3 ray_origin(const RenderPlan& plan, const SurfaceGeometryT<float>& point, Vec3 w, float time) {
+    const float fraction = terminator_fraction(point, w);
+    return fraction > 0 ? origin_on_smooth_surface(plan, point, point.terminator_offset * fraction, time)
+                        : offset_origin(point, w);
+}
+
 /// Returns a ray that leaves the vertex toward w (world space, unit). Its origin is offset from the surface.
-inline Ray spawn_ray(const Vertex& vertex, Vec3 w) {
-    Ray ray{offset_origin(vertex.point, w), w};
+inline Ray spawn_ray(const RenderPlan& plan, const Vertex& vertex, Vec3 w) {
+    Ray ray{ray_origin(plan, vertex.point, w, vertex.point.time), w};
     ray.time = vertex.point.time;
     return ray;
 }

@@ -107,7 +107,7 @@ public:
         if (lit == 0) return;
         const Floats weight = light_sample_weight(vertex_, light);
         const LaneVectors found(path_.throughput * scattered * (weight / light.pdf)),
-            origins(offset_origin(vertex_.point, light.wi)), p(vertex_.point.p);
+            origins(ray_origins(light.wi)), p(vertex_.point.p);
         for (; lit != 0; lit &= lit - 1) {
             const auto i = static_cast<std::size_t>(std::countr_zero(lit));
             ++counts.shadow;
@@ -129,7 +129,7 @@ public:
             counts.ended += std::popcount(continuing & ~survivors & used_lanes);
             continuing &= survivors;
         }
-        const LaneVectors origins(offset_origin(vertex_.point, next.wi)), directions(next.wi),
+        const LaneVectors origins(ray_origins(next.wi)), directions(next.wi),
             throughputs(path_.throughput);
         const LaneValues pdfs(next.sample->pdf), refractions(path_.refraction);
         for (std::size_t i = 0; i < paths_.size(); ++i) {
@@ -148,6 +148,23 @@ public:
     }
 
 private:
+    // Returns the origins of rays toward wi, one per path, as ray_origin() does.
+    LaneVectors ray_origins(const Vec& wi) const {
+        const SurfaceGeometryT<Floats>& point = vertex_.point;
+        LaneVectors origins(offset_origin(point, wi));
+        const Floats fraction = terminator_fraction(point, wi);
+        const unsigned used_lanes = (1u << paths_.size()) - 1;
+        unsigned smooth = lane_bits(fraction > Floats(0.0f)) & used_lanes;
+        if (smooth == 0) return origins;
+        const LaneVectors p(point.p), p_error(point.p_error), ng(point.ng), offsets(point.terminator_offset * fraction);
+        for (; smooth != 0; smooth &= smooth - 1) {
+            const auto i = static_cast<std::size_t>(std::countr_zero(smooth));
+            SurfaceGeometryT<float> own;
+            own.p = p.vec(i), own.p_error = p_error.vec(i), own.ng = ng.vec(i);
+            origins.set(i, origin_on_smooth_surface(plan_, own, offsets.vec(i), paths_[i].ray->time));
+        }
+        return origins;
+    }
     VertexRandomSamplesT<Floats> random_samples() const {
         const auto [bsdf_x, bsdf_y, light_x, light_y] =
             load_four(paths_, [](const BatchPath& path) -> const float& { return path.random_samples->bsdf.x; });
