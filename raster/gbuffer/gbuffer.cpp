@@ -3,15 +3,16 @@
 namespace duet::raster {
 
 GBuffer::GBuffer(const ScreenProjection& view, int width, int height, bool coats)
-    : projection(view), reversed_depth(width, height), normal(width, height), diffuse(width, height),
-      specular(width, height), alpha(width, height), object(width, height, -1), material(width, height, -1) {
+    : projection(view), reversed_depth(width, height), normal(width, height), bulge(width, height),
+      diffuse(width, height), specular(width, height), alpha(width, height), object(width, height, -1),
+      material(width, height, -1) {
     if (coats) coat = PlaneFloat(width, height), coat_alpha = PlaneFloat(width, height);
 }
 
 std::size_t GBuffer::memory_bytes() const {
-    return reversed_depth.memory_bytes() + normal.memory_bytes() + diffuse.memory_bytes() + specular.memory_bytes() +
-           alpha.memory_bytes() + coat.memory_bytes() + coat_alpha.memory_bytes() + object.memory_bytes() +
-           material.memory_bytes() + position.memory_bytes();
+    return reversed_depth.memory_bytes() + normal.memory_bytes() + bulge.memory_bytes() + diffuse.memory_bytes() +
+           specular.memory_bytes() + alpha.memory_bytes() + coat.memory_bytes() + coat_alpha.memory_bytes() +
+           object.memory_bytes() + material.memory_bytes() + position.memory_bytes();
 }
 
 } // namespace duet::raster

@@ -15,6 +15,10 @@ struct GBuffer {
     ScreenProjection projection;
     PlaneFloat reversed_depth;  ///< near / depth, in (0, 1]; 0 for the background
     Planes3 normal;             ///< unit shading normal on the viewer's side, in world space
+    /// Height of the smooth surface above the flat triangle that stands for it, in meters along the normal; 0 in
+    /// hollows. Shadows are looked up there, or coarse meshes would shade themselves (Hanika 2021, "Hacking the Shadow
+    /// Terminator").
+    PlaneFloat bulge;
     /// Fraction of diffusely incident light that the diffuse lobe sends to this viewer; what layers above it absorb or
     /// reflect is already taken off.
     Planes3 diffuse;

@@ -17,10 +17,29 @@ namespace duet::raster {
 namespace {
 
 /// Computes the attributes that vary over a surface.
-struct AttributeShader : NormalVaryings {
-    static constexpr bool kDirections = false;
-    template <typename T, typename F> NormalAndColor<T> fragment(const F& f) const {
-        return {f.normal(f.at.n).unit(), f.base_color()};
+struct AttributeShader {
+    static constexpr bool kTextureCoordinates = false;
+    template <typename T> struct Varyings {
+        Vec3T<T> n;
+        T plane; ///< of the tangent plane: its distance from the eye times the length of its normal
+    };
+    template <typename T> Varyings<T> vertex(const VertexInput<T>& v) const {
+        return {v.n, dot(v.object.normal(v.n), v.world_p() - broadcast<T>(v.object.eye))};
+    }
+    template <typename T, typename F> SurfaceAttributes<T> fragment(const F& f) const {
+        const Vec3T<T> normal = f.normal(f.at.n).unit();
+        return {normal, bulge<T>(f, normal), f.base_color()};
+    }
+
+private:
+    /// Phong tessellation moves the point p along the normals nᵢ of the vertices vᵢ, with barycentric weights wᵢ, by
+    /// Σ wᵢ nᵢ·(vᵢ − p) (common/geometry/shading_terminator.h), which is Σ wᵢ nᵢ·vᵢ − p·Σ wᵢ nᵢ: the difference of what
+    /// is interpolated.
+    template <typename T, typename F> static T bulge(const F& f, const Vec3T<T>& normal) {
+        const Vec3T<T> n = f.object.normal(f.at.n);
+        const T height = f.at.plane - dot(n, f.p() - broadcast<T>(f.object.eye)), zero(0.0f);
+        const T outward = select(dot(n, normal) < zero, -height, height);
+        return max(outward, zero) * inverse_sqrt(max(dot(n, n), T(std::numeric_limits<float>::min())));
     }
 };
 
@@ -136,6 +155,7 @@ private:
         store_packet(shaded_.normal.x, packet.x, packet.y, gbuffer_.normal.x);
         store_packet(shaded_.normal.y, packet.x, packet.y, gbuffer_.normal.y);
         store_packet(shaded_.normal.z, packet.x, packet.y, gbuffer_.normal.z);
+        store_packet(shaded_.bulge, packet.x, packet.y, gbuffer_.bulge);
     }
 
     /// Turns normals that interpolate to zero, between opposite ones, to the viewer.
@@ -236,7 +256,7 @@ private:
     TileShader<AttributeShader> shader_;
     // The current packet:
     PacketPrimitives samples_;
-    PacketNormalsAndColors shaded_;
+    PacketAttributes shaded_;
     PacketOf<std::int32_t> object_, material_;
     bool one_material_ = false;
 };
@@ -258,6 +278,7 @@ void store_surface(const Scene& scene, const VisibleSurface& surface, bool emits
     const SurfaceLobes lobes = surface_lobes(surface.bsdf, cosine);
     gbuffer.reversed_depth(x, y) = surface.reversed_depth;
     gbuffer.normal.set_at(x, y, n);
+    gbuffer.bulge(x, y) = max(dot(point.terminator_offset, n), 0.0f);
     gbuffer.diffuse.set_at(x, y, lobes.diffuse);
     gbuffer.specular.set_at(x, y, lobes.specular);
     gbuffer.alpha(x, y) = lobes.alpha;

@@ -12,14 +12,17 @@ constexpr int kTileSide = 16, kBatch = static_cast<int>(Floats::size);
 class PixelLighter {
 public:
     PixelLighter(const GBuffer& gbuffer, std::span<const FrameLight> lights, const LightSet& light_set,
-                 const ShadowLookup* shadows, DirectLight& result)
-        : gbuffer_(gbuffer), lights_(lights), light_set_(light_set), shadows_(shadows), result_(result) {}
+                 const ShadowLookup* shadows, std::size_t most_lights, DirectLight& result)
+        : gbuffer_(gbuffer), lights_(lights), light_set_(light_set), shadows_(shadows), most_lights_(most_lights),
+          result_(result) {
+        for (const std::uint32_t i : light_set.lights()) all_lights_.push_back({i, 1});
+    }
 
     /// Lights a row of pixels by all lights.
     void light_row(int y) {
         for (int x = 0; x < gbuffer_.width(); x += kBatch)
             if (const auto lanes = gbuffer_.visible(x, y); lane_bits(lanes) != 0)
-                store(x, y, light_batch(x, y, lanes, light_set_.lights()));
+                store(x, y, light_batch(x, y, lanes, all_lights_));
     }
 
     /// Lights the tile that starts at column x of row y by the lights that reach it.
@@ -58,11 +61,13 @@ private:
         const std::size_t distant_before = distant_.size(), fields_before = field_count_;
         for (const std::uint32_t column : own.found.far) distant_.push_back(around.lights()[column]);
         if (!own.found.far.empty()) fields_[field_count_++] = own.found.field;
-        const bool many = own.found.near.size() > LightSet::kFewLights && level + 1 < kLevels;
+        const bool divides = most_lights_ == kAllLights && level + 1 < kLevels,
+                   many = divides && own.found.near.size() > LightSet::kFewLights;
         const auto edge = many ? split_at_edge(gbuffer_, cluster, *surfaces) : std::nullopt;
         if (!edge && (!many || cluster.rows == 1)) {
-            own.lights.clear();
-            for (const std::uint32_t column : own.found.near) own.lights.push_back(around.lights()[column]);
+            constexpr float kGoldenRatio = 0.618034f; // its multiples spread evenly
+            random_ += kGoldenRatio - (random_ + kGoldenRatio < 1 ? 0.0f : 1.0f);
+            around.choose(own.found, most_lights_, random_, own.lights);
             light_pixels(cluster, own.lights);
         } else {
             own.near.assign(around, own.found.near);
@@ -79,7 +84,7 @@ private:
         for (int i = 0; i < kDivision; ++i, cluster.y += cluster.rows) light_cluster(cluster, around, level);
     }
 
-    void light_pixels(const Cluster& cluster, std::span<const std::uint32_t> near) {
+    void light_pixels(const Cluster& cluster, std::span<const WeightedLight> near) {
         for_each_batch_of(gbuffer_, cluster, [&](int x, int y) {
             const xsimd::batch_bool<float> lanes = cluster.lanes(gbuffer_, x, y);
             if (lane_bits(lanes) == 0) return;
@@ -87,26 +92,29 @@ private:
         });
     }
 
-    Sum light_batch(int x, int y, const xsimd::batch_bool<float>& lanes, std::span<const std::uint32_t> near) {
+    Sum light_batch(int x, int y, const xsimd::batch_bool<float>& lanes, std::span<const WeightedLight> near) {
         const LitBatch batch(gbuffer_, x, y, lanes, tables_);
         Sum sum;
-        for (const std::uint32_t i : near) add(batch, lights_[i], LitBatch::Lobes::kAll, x, y, sum);
+        for (const WeightedLight& light : near)
+            add(batch, lights_[light.index], light.weight, LitBatch::Lobes::kAll, x, y, sum);
         for (const LightField& field : std::span(fields_).first(field_count_))
             sum.exact += batch.diffuse(field.irradiance(batch.p(), batch.n()));
         if (batch.specular())
-            for (const std::uint32_t i : distant_) add(batch, lights_[i], LitBatch::Lobes::kSpecular, x, y, sum);
+            for (const std::uint32_t i : distant_) add(batch, lights_[i], 1, LitBatch::Lobes::kSpecular, x, y, sum);
         return sum;
     }
 
-    void add(const LitBatch& batch, const FrameLight& light, LitBatch::Lobes lobes, int x, int y, Sum& sum) const {
-        const RgbT<Floats> reflected = batch.reflected(light, lobes);
+    void add(const LitBatch& batch, const FrameLight& light, float weight, LitBatch::Lobes lobes, int x, int y,
+             Sum& sum) const {
+        const RgbT<Floats> reflected = batch.reflected(light, lobes) * Floats(weight);
         if (shadows_ == nullptr || !shadows_->shadows(light.index)) {
             sum.exact += reflected;
             return;
         }
         const xsimd::batch_bool<float> lit = max_component(reflected) > Floats(0.0f);
         if (lane_bits(lit) == 0) return;
-        const Floats visible = shadows_->visibility(light.index, batch.p(), batch.n(), x, y, lit);
+        const Floats visible = shadows_->visibility(light.index, batch.p() + batch.n() * load(gbuffer_.bulge, x, y),
+                                                      batch.n(), x, y, lit);
         const RgbT<Floats> seen = reflected * xsimd::select(lit, visible, Floats(0.0f));
         if (shadows_->noisy(light.index))
             sum.unshadowed += reflected, sum.shadowed += seen;
@@ -127,12 +135,15 @@ private:
     std::span<const FrameLight> lights_;
     const LightSet& light_set_;
     const ShadowLookup* shadows_;
+    std::size_t most_lights_;
     DirectLight& result_;
+    std::vector<WeightedLight> all_lights_;
+    float random_ = 0; ///< in [0, 1), new for each cluster
     LitBatch::Tables tables_;
     struct Level {
         LightsOfCluster found;
         LightSet near;                     ///< what `found` lists, for the parts of the cluster
-        std::vector<std::uint32_t> lights; ///< the same as indices of lights
+        std::vector<WeightedLight> lights; ///< those of them that light the pixels
     };
     std::array<Level, kLevels> levels_;
     std::array<LightField, kLevels> fields_; ///< of the distant lights of all clusters around the pixels
@@ -144,7 +155,7 @@ private:
 } // namespace
 
 DirectLight direct_light(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
-                         const ShadowLookup* shadows) {
+                         const ShadowLookup* shadows, std::size_t most_lights) {
     const int width = gbuffer.width(), height = gbuffer.height();
     DirectLight result;
     result.exact = Planes3(width, height);
@@ -159,7 +170,7 @@ DirectLight direct_light(const RasterSceneData& data, const RasterSettings& sett
     const LightSet light_set(lights, shadows);
     const bool few = lights.size() <= LightSet::kFewLights; // which lists would not make fewer
     parallel_for(static_cast<std::size_t>((height + kTileSide - 1) / kTileSide), settings.threads, [&](std::size_t i) {
-        PixelLighter lighter(gbuffer, lights, light_set, shadows, result);
+        PixelLighter lighter(gbuffer, lights, light_set, shadows, most_lights, result);
         const int first = static_cast<int>(i) * kTileSide;
         if (few)
             for (int y = first; y < std::min(first + kTileSide, height); ++y) lighter.light_row(y);

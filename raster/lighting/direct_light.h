@@ -7,6 +7,8 @@
 #include "raster/raster_scene.h"
 #include "raster/shadows/shadow_lookup.h"
 
+#include <limits>
+
 namespace duet::raster {
 
 /// Holds radiance towards the viewer, for each pixel.
@@ -19,8 +21,10 @@ struct DirectLight {
 };
 
 /// Computes the direct light of all pixels; it is 0 for the background. Lobes whose alpha is below
-/// MetalBsdf::kSmoothAlpha are mirrors, which the reflections show. `shadows` may be null.
+/// MetalBsdf::kSmoothAlpha are mirrors, which the reflections show. `shadows` may be null. If a cluster of pixels has
+/// more than `most_lights` near lights, about so many stand for all (LightSet::choose).
+inline constexpr std::size_t kAllLights = std::numeric_limits<std::size_t>::max();
 DirectLight direct_light(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
-                         const ShadowLookup* shadows);
+                         const ShadowLookup* shadows, std::size_t most_lights = kAllLights);
 
 } // namespace duet::raster

@@ -101,7 +101,7 @@ LightSet::LightSet(std::span<const FrameLight> lights, const ShadowLookup* shado
 
 void LightSet::reach(const SurfaceBounds& surfaces, float other_irradiance, LightsOfCluster& result) const {
     result.near.clear(), result.far.clear();
-    result.error.resize(stride_), result.distant.resize(stride_);
+    result.error.resize(stride_), result.distant.resize(stride_), result.most.resize(stride_);
     const auto wide = [](Vec3 v) { return broadcast<Floats>(v); };
     const Vec3T<Floats> p_low = wide(surfaces.p_low), p_high = wide(surfaces.p_high), n_low = wide(surfaces.n_low),
                         n_high = wide(surfaces.n_high), p = wide(surfaces.center()), n = wide(surfaces.mean_normal());
@@ -120,6 +120,8 @@ void LightSet::reach(const SurfaceBounds& surfaces, float other_irradiance, Ligh
                                along * number(kConeSine); // distance from a spot's cone
         const Floats intensity = number(kIntensity), plane = number(kPlane);
         const Lanes reaches = (above.high > kNone) & (front.high > plane) & (outside <= radius) & (intensity > kNone);
+        const Vec3T<Floats> zero(kNone, kNone, kNone), apart = max(max(low - p_high, p_low - high), zero);
+        min(intensity / max(dot(apart, apart), Floats(1e-12f)), number(kMost)).store_aligned(result.most.data() + i);
         Floats error(kHuge);
         if (divided) {
             const Floats inverse = inverse_sqrt(squared), over = inverse * inverse;
@@ -147,6 +149,26 @@ void LightSet::reach(const SurfaceBounds& surfaces, float other_irradiance, Ligh
         add(lane_bits(far), result.far), add(lane_bits(reaches) & ~lane_bits(far), result.near);
     }
     if (!result.far.empty()) result.field = sum(surfaces, result.distant);
+}
+
+void LightSet::choose(const LightsOfCluster& cluster, std::size_t most, float u,
+                      std::vector<WeightedLight>& result) const {
+    result.clear();
+    if (cluster.near.size() <= most) {
+        for (const std::uint32_t column : cluster.near) result.push_back({lights_[column], 1});
+        return;
+    }
+    double sum = 0;
+    for (const std::uint32_t column : cluster.near) sum += static_cast<double>(cluster.most[column]);
+    const double step = sum / static_cast<double>(most);
+    double next = static_cast<double>(u) * step, end = 0; // of the intervals, whose lengths are the bounds
+    for (const std::uint32_t column : cluster.near) {
+        const auto length = static_cast<double>(cluster.most[column]);
+        end += length;
+        int times = 0;
+        for (; next < end; next += step) ++times;
+        if (times > 0) result.push_back({lights_[column], static_cast<float>(times * step / length)});
+    }
 }
 
 LightField LightSet::sum(const SurfaceBounds& surfaces, std::span<const float> distant) const {

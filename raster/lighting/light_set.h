@@ -32,7 +32,14 @@ struct LightField {
 struct LightsOfCluster {
     std::vector<std::uint32_t> near, far; ///< columns of a LightSet; `field` holds the irradiance of the far ones
     LightField field;
+    std::vector<float, CacheAlignedAllocator<float>> most;  ///< bounds of the lights' irradiance, by column
     std::vector<float, CacheAlignedAllocator<float>> error, distant; ///< scratch memory, one number per light
+};
+
+/// Refers to a light that stands for several.
+struct WeightedLight {
+    std::uint32_t index; ///< among the frame's lights
+    float weight;
 };
 
 /// Holds bounds of lights as a structure of arrays.
@@ -61,6 +68,11 @@ public:
     /// horizon of all surfaces and the error of a linear field is small enough. `other_irradiance` is the irradiance
     /// from lights that are not in the set.
     void reach(const SurfaceBounds& surfaces, float other_irradiance, LightsOfCluster& result) const;
+
+    /// Returns the near lights of a cluster or, if there are more than `most`, about that many of them: each in
+    /// proportion to its greatest irradiance, and weighted so that the expected light is the same, for `u` uniform in
+    /// [0, 1) (systematic sampling; Shirley, Wang and Zimmerman 1996, "Monte Carlo Techniques for Direct Lighting").
+    void choose(const LightsOfCluster& cluster, std::size_t most, float u, std::vector<WeightedLight>& result) const;
 
 private:
     enum Row {

@@ -1,7 +1,6 @@
 #include "raster/probes/irradiance_probes.h"
 
 #include "raster/geometry/lane_math.h"
-#include "raster/probes/solid_test.h"
 #include "raster/visibility/shader.h"
 
 #include "common/system/parallel.h"
@@ -23,6 +22,9 @@ constexpr int kDistanceSide = 16; ///< texels of an octahedral map of distances
 /// Points are lifted off their surface by this fraction of the distance between probes before their visibility is
 /// judged, as the maps of distances are coarse (Majercik et al., §5.2).
 constexpr float kBias = 0.4f;
+/// Points beyond the outermost probes are interpolated where they would be this fraction of a cell further in, since
+/// the outermost probes may be hidden.
+constexpr float kInset = 0.02f;
 
 /// The polynomials of the real spherical harmonics of orders 0, 1 and 2, without constant factors (Ramamoorthi and
 /// Hanrahan 2001, "An Efficient Representation for Irradiance Environment Maps", eq. 3).
@@ -128,17 +130,21 @@ Vec3d IrradianceProbes::grid_point(std::size_t probe) const {
                            step_.z * (i / (size_[0] * size_[1])));
 }
 
-/// Moves a probe that lies inside an object along an axis, by up to three steps. Returns false if all of that is
-/// inside, too.
-bool IrradianceProbes::move_out_of_solids(const RasterSceneData& data, Vec3d& position) const {
-    if (!inside_solid(data, position)) return true;
-    for (int quarters = 1; quarters <= 12; ++quarters)
-        for (std::size_t axis = 0; axis < 3; ++axis)
-            for (const double side : {1.0, -1.0}) {
-                Vec3d moved = position;
-                moved[axis] += side * 0.25 * quarters * step_[axis];
-                if (inside_solid(data, moved)) continue;
-                position = moved;
+/// Moves a probe that lies inside an object along an axis, by up to a step. Returns false if a step leads nowhere
+/// outside.
+bool IrradianceProbes::move_out_of_solids(const SolidTest& solids, Vec3d& position) const {
+    if (!solids.inside(position)) return true;
+    std::vector<Vec3d> steps; // that lead outside
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        for (const double side : {1.0, -1.0}) {
+            Vec3d step;
+            step[axis] = side * step_[axis];
+            if (!solids.inside(position + step)) steps.push_back(step);
+        }
+    for (const double part : {0.25, 0.5, 0.75, 1.0})
+        for (const Vec3d& step : steps)
+            if (part == 1 || !solids.inside(position + step * part)) {
+                position += step * part;
                 return true;
             }
     return false;
@@ -148,10 +154,11 @@ float IrradianceProbes::spacing() const { return static_cast<float>(std::max({st
 
 IrradianceProbes::IrradianceProbes(const RasterSceneData& data, const RasterSettings& settings) {
     place(data);
+    const SolidTest solids(data);
     std::vector<std::unique_ptr<ProbeCapture>> captures(probes_.size());
     parallel_for(probes_.size(), settings.threads, [&](std::size_t i) {
         Vec3d& position = probes_[i].position = grid_point(i);
-        if (!move_out_of_solids(data, position)) return;
+        if (!move_out_of_solids(solids, position)) return;
         captures[i] = std::make_unique<ProbeCapture>(data, settings, position, kSide, data.glass);
         set_distances(*captures[i], probes_[i]);
     });
@@ -161,11 +168,48 @@ IrradianceProbes::IrradianceProbes(const RasterSceneData& data, const RasterSett
             if (captures[i]) next[i] = gather(*captures[i], k);
         });
         for (std::size_t i = 0; i < probes_.size(); ++i) probes_[i].irradiance = next[i];
+        fill_solids();
     }
-    const auto count = static_cast<float>(std::max<std::ptrdiff_t>(
-        std::ranges::count_if(captures, [](const auto& capture) { return capture != nullptr; }), 1));
-    for (const Probe& probe : probes_)
-        for (std::size_t c = 0; c < 9; ++c) mean_[c] += probe.irradiance[c] / count;
+}
+
+/// Gives probes inside objects the mean irradiance of their neighbors, from the surfaces inwards. They count where a
+/// point sees no other probe.
+void IrradianceProbes::fill_solids() {
+    std::vector<bool> filled(probes_.size());
+    for (std::size_t i = 0; i < probes_.size(); ++i) filled[i] = !probes_[i].distance.empty();
+    for (bool any = true; any;) {
+        any = false;
+        const std::vector<bool> before = filled;
+        for (std::size_t i = 0; i < probes_.size(); ++i) {
+            if (before[i]) continue;
+            Harmonics sum{};
+            float count = 0;
+            for_each_neighbor(i, [&](std::size_t neighbor) {
+                if (!before[neighbor]) return;
+                for (std::size_t c = 0; c < 9; ++c) sum[c] += probes_[neighbor].irradiance[c];
+                ++count;
+            });
+            if (count == 0) continue;
+            for (std::size_t c = 0; c < 9; ++c) probes_[i].irradiance[c] = sum[c] / count;
+            filled[i] = any = true;
+        }
+    }
+}
+
+/// Calls visit for the up to 26 probes of the cells about a probe.
+template <typename Visit> void IrradianceProbes::for_each_neighbor(std::size_t probe, const Visit& visit) const {
+    const auto i = static_cast<int>(probe);
+    const std::array<int, 3> at{i % size_[0], i / size_[0] % size_[1], i / (size_[0] * size_[1])};
+    const auto range = [&](std::size_t axis) {
+        return std::pair(std::max(at[axis] - 1, 0), std::min(at[axis] + 1, size_[axis] - 1));
+    };
+    const auto [x0, x1] = range(0);
+    const auto [y0, y1] = range(1);
+    const auto [z0, z1] = range(2);
+    for (int z = z0; z <= z1; ++z)
+        for (int y = y0; y <= y1; ++y)
+            for (int x = x0; x <= x1; ++x)
+                if (const int n = x + size_[0] * (y + size_[1] * z); n != i) visit(static_cast<std::size_t>(n));
 }
 
 void IrradianceProbes::set_distances(const ProbeCapture& capture, Probe& probe) const {
@@ -220,6 +264,19 @@ struct IrradianceProbes::Corner {
 
     Corner(const Probe& probe, const Vec3s& to_probe, const Vec3s& n, const std::array<Floats, 9>& basis,
            const Floats& trilinear) {
+        weight = trilinear * (probe.distance.empty() ? Floats(kInside) : visibility(probe, to_probe, n));
+        irradiance = RgbT<Floats>(Floats(0.0f));
+        for (std::size_t i = 0; i < 9; ++i) irradiance += broadcast<Floats>(probe.irradiance[i]) * basis[i];
+        const Floats none(0.0f);
+        irradiance = {max(irradiance.r, none), max(irradiance.g, none), max(irradiance.b, none)};
+    }
+
+private:
+    /// Weights of probes inside objects, and of those that a point does not see. Where they are the nearest, light
+    /// changes over this fraction of a cell.
+    static constexpr float kInside = 1e-2f, kHidden = 1e-4f;
+
+    static Floats visibility(const Probe& probe, const Vec3s& to_probe, const Vec3s& n) {
         const Floats squared = max(dot(to_probe, to_probe), Floats(1e-20f)), over = inverse_sqrt(squared);
         const Floats distance = squared * over, cosine = dot(to_probe, n) * over, half(0.5f), one(1.0f);
         // Probes behind the surface count less, but smoothly, so that no edge shows (Majercik et al., §5.2).
@@ -228,11 +285,7 @@ struct IrradianceProbes::Corner {
         const Floats variance = max(mean_square - mean * mean, Floats(1e-4f) * mean_square);
         const Floats behind = max(distance - mean, Floats(0.0f));
         const Floats seen = variance / (variance + behind * behind); // Chebyshev's inequality
-        weight = trilinear * (front * front + Floats(0.2f)) * max(seen * seen * seen, Floats(1e-4f));
-        irradiance = RgbT<Floats>(Floats(0.0f));
-        for (std::size_t i = 0; i < 9; ++i) irradiance += broadcast<Floats>(probe.irradiance[i]) * basis[i];
-        const Floats none(0.0f);
-        irradiance = {max(irradiance.r, none), max(irradiance.g, none), max(irradiance.b, none)};
+        return max((front * front + Floats(0.2f)) * seen * seen * seen, Floats(kHidden));
     }
 };
 
@@ -242,8 +295,8 @@ RgbT<Floats> IrradianceProbes::irradiance(const Vec3d& eye, const Vec3s& p, cons
     std::array<Floats, 3> f;
     const std::array<Floats, 3> at{p.x, p.y, p.z};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        const Floats g = clamp((at[axis] - Floats(first[axis])) * Floats(1 / step[axis]), Floats(0.0f),
-                               Floats(static_cast<float>(size_[axis] - 1)));
+        const Floats g = clamp((at[axis] - Floats(first[axis])) * Floats(1 / step[axis]), Floats(kInset),
+                               Floats(static_cast<float>(size_[axis] - 1) - kInset));
         cell[axis] = xsimd::min(truncated(g), Ints(size_[axis] - 2));
         f[axis] = g - xsimd::batch_cast<float>(cell[axis]);
     }
@@ -256,20 +309,17 @@ RgbT<Floats> IrradianceProbes::irradiance(const Vec3d& eye, const Vec3s& p, cons
         const std::int32_t base = cells[static_cast<std::size_t>(std::countr_zero(left))];
         const auto own = Ints::load_aligned(cells.data()) == Ints(base);
         left &= ~lane_bits(own);
-        // The mean counts where no probe stands about a point, since all would lie within objects.
-        Floats sum(1e-9f);
+        Floats sum(0.0f);
         RgbT<Floats> light(Floats(0.0f));
-        for (std::size_t c = 0; c < 9; ++c) light += broadcast<Floats>(mean_[c]) * basis[c] * sum;
         for (int corner = 0; corner < 8; ++corner) {
             const int dx = corner & 1, dy = corner >> 1 & 1, dz = corner >> 2;
             const auto probe = static_cast<std::size_t>(base + dx + size_[0] * (dy + size_[1] * dz));
-            if (probes_[probe].distance.empty()) continue; // inside an object
             const Vec3 q(probes_[probe].position - eye);
             const float bias = kBias * std::min({step.x, step.y, step.z});
             const auto part = [&](std::size_t axis, int far) { return far ? f[axis] : Floats(1.0f) - f[axis]; };
             const Corner c(probes_[probe],
                            Vec3s{Floats(q.x) - p.x, Floats(q.y) - p.y, Floats(q.z) - p.z} - n * Floats(bias), n, basis,
-                           part(0, dx) * part(1, dy) * part(2, dz) + Floats(1e-4f));
+                           part(0, dx) * part(1, dy) * part(2, dz));
             sum += c.weight;
             light += c.irradiance * c.weight;
         }

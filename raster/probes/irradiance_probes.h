@@ -5,6 +5,7 @@
 
 #include "raster/probes/octahedral_map.h"
 #include "raster/probes/probe_capture.h"
+#include "raster/probes/solid_test.h"
 #include "raster/raster_scene.h"
 
 #include <array>
@@ -40,16 +41,17 @@ private:
 
     void place(const RasterSceneData& data);
     Vec3d grid_point(std::size_t probe) const;
-    bool move_out_of_solids(const RasterSceneData& data, Vec3d& position) const;
+    bool move_out_of_solids(const SolidTest& solids, Vec3d& position) const;
     void set_distances(const ProbeCapture& capture, Probe& probe) const;
     Harmonics gather(const ProbeCapture& capture, int bounce) const;
+    void fill_solids();
+    template <typename Visit> void for_each_neighbor(std::size_t probe, const Visit& visit) const;
     struct Corner;
 
     Vec3d origin_;              ///< position of the first probe
     Vec3d step_;                ///< between probes, by axis
     std::array<int, 3> size_{}; ///< number of probes, by axis; at least 2
     std::vector<Probe> probes_; ///< x fastest
-    Harmonics mean_{};          ///< irradiance averaged over the probes, for points with none about them
 };
 
 } // namespace duet::raster

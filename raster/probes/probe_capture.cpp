@@ -43,7 +43,10 @@ ProbeCapture::Face capture(const RasterSceneData& data, const RasterSettings& se
     std::optional<MapShadows> shadows;
     if (settings.shadows && data.soft_shadows)
         shadows.emplace(data, face.gbuffer, pass.time, 1);
-    add_direct_light(face.gbuffer, direct_light(data, settings, face.gbuffer, shadows ? &*shadows : nullptr), 1,
+    // The pixels of a probe are far apart, so almost all lights are near to some. Its light is a mean over all pixels.
+    constexpr std::size_t kMostLights = 8;
+    add_direct_light(face.gbuffer,
+                     direct_light(data, settings, face.gbuffer, shadows ? &*shadows : nullptr, kMostLights), 1,
                      face.direct);
     return face;
 }

@@ -1,57 +1,101 @@
 #include "raster/probes/solid_test.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 namespace duet::raster {
 namespace {
 
-/// Returns whether the ray from p along +y meets the triangle, seen along y: an edge belongs to one of its sides.
-bool above(Vec3d p, Vec3d a, Vec3d b, Vec3d c) {
-    const auto left = [&](Vec3d from, Vec3d to) { // of the edge, as seen from p
-        return (to.x - from.x) * (p.z - from.z) - (to.z - from.z) * (p.x - from.x) > 0;
-    };
-    const bool ab = left(a, b), bc = left(b, c), ca = left(c, a);
-    if (ab != bc || bc != ca) return false;
-    const Vec3d n = cross(b - a, c - a);
-    return n.y != 0 && dot(n, a - p) / n.y > 0;
+/// Counts how often the six rays from a point along the axes leave a shape; crossings into it count as -1.
+class AxisRays {
+public:
+    explicit AxisRays(Vec3d p) : p_(p) {}
+    void cross(Vec3d a, Vec3d b, Vec3d c) {
+        std::array<bool, 3> beside; // of p along this axis; most triangles are along two
+        for (std::size_t i = 0; i < 3; ++i)
+            beside[i] = p_[i] < std::min({a[i], b[i], c[i]}) || p_[i] > std::max({a[i], b[i], c[i]});
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            if (!beside[(axis + 1) % 3] && !beside[(axis + 2) % 3]) cross(a, b, c, axis);
+    }
+    /// Returns whether all rays but one agree that p is inside or outside.
+    bool agree() const { return leaving(0) >= 5 || leaving(1) >= 5; }
+    bool inside() const { return leaving(1) >= 5; }
+
+private:
+    std::ptrdiff_t leaving(int times) const { return std::ranges::count(crossings_, times); }
+
+    /// An edge belongs to one of its two sides, as seen along the axis.
+    void cross(Vec3d a, Vec3d b, Vec3d c, std::size_t axis) {
+        const std::size_t i = (axis + 1) % 3, j = (axis + 2) % 3;
+        const auto left = [&](Vec3d from, Vec3d to) { // of the edge, as seen from p
+            return (to[i] - from[i]) * (p_[j] - from[j]) - (to[j] - from[j]) * (p_[i] - from[i]) > 0;
+        };
+        const bool ab = left(a, b), bc = left(b, c), ca = left(c, a);
+        if (ab != bc || bc != ca) return;
+        const Vec3d n = duet::cross(b - a, c - a);
+        const double behind = dot(n, a - p_);
+        crossings_[2 * axis + (behind * n[axis] > 0)] += (behind > 0) - (behind < 0);
+    }
+
+    Vec3d p_;
+    std::array<int, 6> crossings_{};
+};
+
+/// Returns the solid angle that a triangle subtends at p; negative if p sees its front (Van Oosterom and Strackee 1983,
+/// "The Solid Angle of a Plane Triangle").
+double solid_angle(Vec3d p, Vec3d a, Vec3d b, Vec3d c) {
+    const Vec3d u = a - p, v = b - p, w = c - p;
+    const double lu = length(u), lv = length(v), lw = length(w);
+    return 2 * std::atan2(dot(u, cross(v, w)), lu * lv * lw + dot(u, v) * lw + dot(v, w) * lu + dot(w, u) * lv);
+}
+
+template <typename Visit> void for_each_triangle(const Mesh& mesh, const Visit& visit) {
+    for (const auto& t : mesh.triangles)
+        visit(Vec3d(mesh.positions[t[0]]), Vec3d(mesh.positions[t[1]]), Vec3d(mesh.positions[t[2]]));
+}
+template <typename Visit> void for_each_triangle(const QuadList& list, const Visit& visit) {
+    for (const Quad& quad : list.quads) {
+        const auto c = corners(quad);
+        visit(Vec3d(c[0]), Vec3d(c[1]), Vec3d(c[2]));
+        visit(Vec3d(c[0]), Vec3d(c[2]), Vec3d(c[3]));
+    }
 }
 
 bool contains(const Sphere& sphere, Vec3d p) {
     return length(p - Vec3d(sphere.center)) < static_cast<double>(sphere.radius);
 }
-/// Counts the crossings of a ray to infinity (Shimrat 1962, "Algorithm 112: Position of Point Relative to Polygon").
-bool contains(const Mesh& mesh, Vec3d p) {
-    bool inside = false;
-    for (const auto& t : mesh.triangles)
-        if (above(p, Vec3d(mesh.positions[t[0]]), Vec3d(mesh.positions[t[1]]), Vec3d(mesh.positions[t[2]])))
-            inside = !inside;
-    return inside;
+/// The generalized winding number is the mean of the signed crossings over all rays from p. Six rays along the axes
+/// that agree decide. Else it is computed from the solid angles.
+template <typename Triangles> bool contains(const Triangles& shape, Vec3d p) {
+    AxisRays rays(p);
+    for_each_triangle(shape, [&](Vec3d a, Vec3d b, Vec3d c) { rays.cross(a, b, c); });
+    if (rays.agree()) return rays.inside();
+    double sum = 0;
+    for_each_triangle(shape, [&](Vec3d a, Vec3d b, Vec3d c) { sum += solid_angle(p, a, b, c); });
+    return sum > 0.5 * 4 * kPiDouble;
 }
-bool contains(const QuadList& list, Vec3d p) {
-    bool inside = false;
-    for (const Quad& quad : list.quads) {
-        const auto c = corners(quad);
-        if (above(p, Vec3d(c[0]), Vec3d(c[1]), Vec3d(c[2])) != above(p, Vec3d(c[0]), Vec3d(c[2]), Vec3d(c[3])))
-            inside = !inside;
-    }
-    return inside;
+
+bool contains(const RasterSceneData& data, std::uint32_t i, Vec3d p) {
+    const Box3& box = data.objects[i].bounds;
+    const Vec3 q(p);
+    if (q.x < box.low.x || q.y < box.low.y || q.z < box.low.z || q.x > box.high.x || q.y > box.high.y ||
+        q.z > box.high.z)
+        return false;
+    const Object& object = data.scene.objects[i];
+    const Vec3d local = object.identity ? p : transform_point(Mat4d(object.to_object), p);
+    return std::visit([&](const auto& shape) { return contains(shape, local); }, data.scene.shapes[object.shape]);
 }
 
 } // namespace
 
-bool inside_solid(const RasterSceneData& data, Vec3d p) {
-    const Scene& scene = data.scene;
-    for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-        if (!data.objects[i].closed) continue;
-        const Box3& box = data.objects[i].bounds;
-        const Vec3 q(p);
-        if (q.x < box.low.x || q.y < box.low.y || q.z < box.low.z || q.x > box.high.x || q.y > box.high.y ||
-            q.z > box.high.z)
-            continue;
-        const Object& object = scene.objects[i];
-        const Vec3d local = object.identity ? p : transform_point(Mat4d(object.to_object), p);
-        if (std::visit([&](const auto& shape) { return contains(shape, local); }, scene.shapes[object.shape]))
-            return true;
-    }
-    return false;
+SolidTest::SolidTest(const RasterSceneData& data) : data_(data) {
+    for (std::uint32_t i = 0; i < data.objects.size(); ++i)
+        if (!contains(data, i, data.scene.camera.eye)) solids_.push_back(i);
+}
+
+bool SolidTest::inside(Vec3d p) const {
+    return std::ranges::any_of(solids_, [&](std::uint32_t i) { return contains(data_, i, p); });
 }
 
 } // namespace duet::raster

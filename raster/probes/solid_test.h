@@ -5,7 +5,19 @@
 
 namespace duet::raster {
 
-/// Returns whether the world-space point lies inside a closed object: a sphere, a box of quads or a closed mesh.
-bool inside_solid(const RasterSceneData& data, Vec3d p);
+/// Tests whether points lie inside objects: spheres, boxes of quads, and meshes that are oriented outwards. Meshes may
+/// have holes: a point is inside if its generalized winding number is above 1/2 (Jacobson et al. 2013, "Robust
+/// Inside-Outside Segmentation using Generalized Winding Numbers"). An object around the camera is a room, not a solid.
+class SolidTest {
+public:
+    /// Refers to the data.
+    explicit SolidTest(const RasterSceneData& data);
+    /// Returns whether the world-space point lies inside an object.
+    bool inside(Vec3d p) const;
+
+private:
+    const RasterSceneData& data_;
+    std::vector<std::uint32_t> solids_;
+};
 
 } // namespace duet::raster

@@ -13,7 +13,7 @@
 namespace duet::raster {
 
 /// Shades the packets of one tile, in any order. `Colors` is what a shader returns for a packet, ColorPacket or
-/// PacketNormalsAndColors.
+/// PacketAttributes.
 template <typename Colors> class PacketShaderOf {
 public:
     virtual ~PacketShaderOf() = default;

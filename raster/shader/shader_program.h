@@ -18,8 +18,9 @@ namespace duet::raster {
 inline void store(ColorPacket& to, std::size_t i, const RgbT<Floats>& c) {
     store(to.r, i, c.r), store(to.g, i, c.g), store(to.b, i, c.b);
 }
-inline void store(PacketNormalsAndColors& to, std::size_t i, const NormalAndColor<Floats>& c) {
+inline void store(PacketAttributes& to, std::size_t i, const SurfaceAttributes<Floats>& c) {
     store(to.normal.x, i, c.normal.x), store(to.normal.y, i, c.normal.y), store(to.normal.z, i, c.normal.z);
+    store(to.bulge, i, c.bulge);
     store(to.color, i, c.color);
 }
 /// Copies the marked samples of a packet's components.
@@ -31,10 +32,11 @@ inline void copy_lanes(std::uint32_t lanes, const ColorPacket& from, ColorPacket
     for (PacketOf<float> ColorPacket::*c : {&ColorPacket::r, &ColorPacket::g, &ColorPacket::b})
         copy_lanes(lanes, from.*c, to.*c);
 }
-inline void copy_lanes(std::uint32_t lanes, const PacketNormalsAndColors& from, PacketNormalsAndColors& to) {
+inline void copy_lanes(std::uint32_t lanes, const PacketAttributes& from, PacketAttributes& to) {
     using Vector = Vec3T<PacketOf<float>>;
     for (PacketOf<float> Vector::*c : {&Vector::x, &Vector::y, &Vector::z})
         copy_lanes(lanes, from.normal.*c, to.normal.*c);
+    copy_lanes(lanes, from.bulge, to.bulge);
     copy_lanes(lanes, from.color, to.color);
 }
 
@@ -43,7 +45,7 @@ template <Shader S>
 using ColorsOf = std::conditional_t<std::same_as<decltype(std::declval<const S&>().template fragment<Floats>(
                                                      std::declval<const FragmentOf<S, Floats>&>())),
                                                  RgbT<Floats>>,
-                                    ColorPacket, PacketNormalsAndColors>;
+                                    ColorPacket, PacketAttributes>;
 
 /// Shades the packets of one tile with shader S.
 template <Shader S> class TileShader final : public PacketShaderOf<ColorsOf<S>> {

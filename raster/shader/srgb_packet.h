@@ -12,9 +12,10 @@ namespace duet::raster {
 /// Stores sixteen linear colors.
 using ColorPacket = RgbT<PacketOf<float>>;
 
-/// Stores the shading normals and base colors of sixteen samples.
-struct PacketNormalsAndColors {
+/// Stores the SurfaceAttributes of sixteen samples.
+struct PacketAttributes {
     Vec3T<PacketOf<float>> normal;
+    PacketOf<float> bulge;
     ColorPacket color;
 };
 

@@ -292,10 +292,11 @@ template <typename S, typename T> VaryingsOf<S, T> varyings(const std::array<T, 
         return std::bit_cast<VaryingsOf<S, T>>(floats);
 }
 
-/// Holds what a shader of the G-buffer returns for a sample: the unit shading normal and the base color.
-template <typename T> struct NormalAndColor {
-    Vec3T<T> normal;
-    RgbT<T> color;
+/// Holds what a shader of the G-buffer returns for a sample.
+template <typename T> struct SurfaceAttributes {
+    Vec3T<T> normal; ///< unit shading normal
+    T bulge;         ///< GBuffer::bulge
+    RgbT<T> color;   ///< base color
 };
 
 /// A VertexShader has varyings and a vertex function, for single points and SIMD batches.
@@ -305,7 +306,7 @@ concept VertexShader = requires(const S& s, const VertexInput<float>& one, const
     { s.vertex(many) } -> std::same_as<VaryingsOf<S, Floats>>;
 };
 template <typename O, typename T>
-concept FragmentOutput = std::same_as<O, RgbT<T>> || std::same_as<O, NormalAndColor<T>>;
+concept FragmentOutput = std::same_as<O, RgbT<T>> || std::same_as<O, SurfaceAttributes<T>>;
 /// A Shader is a vertex shader with a fragment function. It returns linear radiance, in W/(m² sr) if it is to be
 /// compared with light.
 template <typename S>

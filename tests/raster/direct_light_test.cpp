@@ -100,9 +100,9 @@ struct Frame1 {
         Planes3 emission(width, height);
         fill_gbuffer(prepared->data(), settings, *geometry, pass, grid, SampleOffset(), Control{}, *gbuffer, emission);
     }
-    DirectLight light(int threads, const ShadowLookup* shadows = nullptr) {
+    DirectLight light(int threads, const ShadowLookup* shadows = nullptr, std::size_t most = kAllLights) {
         settings.threads = threads;
-        return direct_light(prepared->data(), settings, *gbuffer, shadows);
+        return direct_light(prepared->data(), settings, *gbuffer, shadows, most);
     }
     /// Evaluates all lights at all pixels.
     Planes3 all_lights() const {
@@ -420,5 +420,47 @@ TEST_SUITE("unit") {
         const HalfShadows shadows;
         const Difference exact(view.light(2, &shadows).unshadowed, all);
         CHECK(exact.worst < 1e-5);
+    }
+
+    TEST_CASE("a few lights stand for a thousand: the mean over an image stays") {
+        Frame1 view(model("lanterns.json"), 200, 112);
+        const auto mean = [](const Planes3& image) {
+            double sum = 0;
+            for (int y = 0; y < image.x.height(); ++y)
+                for (int x = 0; x < image.x.width(); ++x) sum += static_cast<double>(average(image.color_at(x, y)));
+            return sum / (image.x.width() * image.x.height());
+        };
+        const double all = mean(view.light(1).exact);
+        const Planes3 few = view.light(1, nullptr, 8).exact;
+        CHECK(mean(few) == doctest::Approx(all).epsilon(0.02));
+        CHECK(bitwise_equal(few, view.light(3, nullptr, 8).exact));
+        CHECK(!bitwise_equal(few, view.light(1).exact));
+    }
+
+    TEST_CASE("chosen lights have the expected light of all") {
+        std::vector<FrameLight> lights;
+        Numbers numbers(5);
+        for (int i = 0; i < 200; ++i) {
+            FrameLight& light = lights.emplace_back(FrameLight::Kind::kPoint, Rgb(numbers.log_range(0.01f, 10)));
+            light.index = static_cast<std::size_t>(i);
+            light.position = {numbers.range(-3, 3), numbers.range(0.5f, 2), numbers.range(-3, 3)};
+        }
+        const LightSet set(lights, nullptr);
+        LightsOfCluster cluster;
+        set.reach({{-1, 0, -1}, {1, 0, 1}, {0, 1, 0}, {0, 1, 0}}, 0, cluster);
+        double all = 0, expected = 0;
+        for (const std::uint32_t i : cluster.near) all += static_cast<double>(lights[set.lights()[i]].emitted.g);
+        REQUIRE(cluster.near.size() > 100);
+        constexpr int kTries = 4096;
+        std::vector<WeightedLight> chosen;
+        for (int k = 0; k < kTries; ++k) {
+            set.choose(cluster, 12, (static_cast<float>(k) + 0.5f) / kTries, chosen);
+            CHECK(chosen.size() <= 12);
+            for (const WeightedLight& light : chosen)
+                expected += static_cast<double>(light.weight * lights[light.index].emitted.g) / kTries;
+        }
+        CHECK(expected == doctest::Approx(all).epsilon(0.002));
+        set.choose(cluster, cluster.near.size(), 0.5f, chosen);
+        for (const WeightedLight& light : chosen) CHECK(light.weight == 1);
     }
 }

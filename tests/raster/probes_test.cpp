@@ -7,6 +7,8 @@
 #include "raster/probes/solid_test.h"
 #include "raster/raster_scene.h"
 
+#include "compare/stress/accelerated_scene.h"
+
 #include <doctest/doctest.h>
 
 using namespace duet;
@@ -96,12 +98,12 @@ TEST_SUITE("unit") {
         add(scene, torus(24, 12));
         finish_scene(scene);
         const raster::RasterScene prepared = raster::prepare(scene, raster::RasterSettings{});
-        const raster::RasterSceneData& data = prepared.data();
-        CHECK(raster::inside_solid(data, {5.9, 0, 0.1}));
-        CHECK_FALSE(raster::inside_solid(data, {6.1, 0, 0}));
-        CHECK(raster::inside_solid(data, {1.01, 0.02, 0.03}));
-        CHECK_FALSE(raster::inside_solid(data, {0.01, 0.02, 0.03})); // in the hole
-        CHECK_FALSE(raster::inside_solid(data, {1.01, 0.9, 0.03}));
+        const raster::SolidTest solids(prepared.data());
+        CHECK(solids.inside({5.9, 0, 0.1}));
+        CHECK_FALSE(solids.inside({6.1, 0, 0}));
+        CHECK(solids.inside({1.01, 0.02, 0.03}));
+        CHECK_FALSE(solids.inside({0.01, 0.02, 0.03})); // in the hole
+        CHECK_FALSE(solids.inside({1.01, 0.9, 0.03}));
     }
 
     // The irradiance of radiance 1 from everywhere is π, wherever the probes stand.
@@ -117,6 +119,24 @@ TEST_SUITE("unit") {
         for (const Vec3 n : directions()) {
             const RgbT<Floats> e = probes.irradiance(Vec3d(), all(n * 0.3f), all(n), Floats(1.0f) > Floats(0.0f));
             CHECK(e.g.get(0) == doctest::Approx(kPi).epsilon(0.03));
+        }
+    }
+
+    // The inside of a mesh with a hole is dark, and says nothing about the light outside.
+    TEST_CASE("probes inside a mesh with a hole do not darken its surface") {
+        Scene scene;
+        Mesh ball = compare::icosphere(3);
+        ball.triangles.erase(ball.triangles.begin(), ball.triangles.begin() + 4);
+        add(scene, ball, Mat4(), Diffuse{{Rgb(0.2f)}});
+        scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        scene.camera = look({0, 0, 6}, {0, 0, 0});
+        finish_scene(scene);
+        const raster::RasterScene prepared = raster::prepare(scene, raster::RasterSettings{});
+        const raster::IrradianceProbes& probes = *prepared.data().irradiance_probes;
+        for (const Vec3 n : directions()) {
+            const RgbT<Floats> e = probes.irradiance(Vec3d(), all(n), all(n), Floats(1.0f) > Floats(0.0f));
+            CHECK(e.g.get(0) > 0.85f * kPi);
+            CHECK(e.g.get(0) < 1.02f * kPi);
         }
     }
 

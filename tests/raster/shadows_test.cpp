@@ -5,6 +5,8 @@
 #include "raster/shadows/shadow_map.h"
 #include "raster/shadows/shadow_maps.h"
 
+#include "compare/stress/accelerated_scene.h"
+
 #include <doctest/doctest.h>
 
 using namespace duet;
@@ -81,6 +83,31 @@ TEST_SUITE("unit") {
                 if (lift == 1.0f) continue;
                 for (const float part : visible(scene, over_floor(), settings)) CHECK(part > 0.95f); // measured: 0.965
             }
+    }
+
+    // Some facets face away from the sun, although their smooth normals do not.
+    TEST_CASE("a smooth convex mesh of coarse facets does not shade itself") {
+        Scene scene;
+        Mesh ball = compare::icosphere(1);
+        ball.normals = ball.positions;
+        add(scene, ball);
+        const Vec3 way = normalize(Vec3(-1, -0.3f, 0.2f));
+        scene.lights.push_back(SunLight{way, Rgb(2)});
+        scene.camera = look({0, 0, 6}, {0, 0, 0}, 24);
+        finish_scene(scene);
+        raster::RasterSettings open = direct_light_only();
+        open.shadows = false;
+        const View view{scene.camera, 160, 160};
+        const ImageRgb shaded = render(scene, view, direct_light_only()).radiance,
+                       lit = render(scene, view, open).radiance;
+        int seen = 0, dark = 0;
+        for (int y = 0; y < view.height; ++y)
+            for (int x = 0; x < view.width; ++x) {
+                seen += lit(x, y).g > 0.01f;
+                dark += lit(x, y).g > 0.01f && shaded(x, y).g < 0.99f * lit(x, y).g;
+            }
+        CHECK(seen > 4000);
+        CHECK(dark < 4); // measured: 0; without the bulge of the smooth surface 501
     }
 
     TEST_CASE("no leaks: a smooth mesh of coarse facets in the shade of a roof is dark, facets that are turned "
