@@ -1,6 +1,7 @@
 #include "raster/probes/irradiance_probes.h"
 
 #include "raster/geometry/lane_math.h"
+#include "raster/lighting/background.h"
 #include "raster/visibility/shader.h"
 
 #include "common/system/parallel.h"
@@ -15,9 +16,6 @@ namespace {
 using Mask = Floats::batch_bool_type;
 using Vec3s = Vec3T<Floats>;
 
-/// The time to render probes grows with their number times the triangles. These bounds keep it within about a second.
-constexpr double kMostTriangles = 1e8;
-constexpr int kMostProbes = 512, kFewestProbes = 27;
 constexpr int kDistanceSide = 16; ///< texels of an octahedral map of distances
 /// Points are lifted off their surface by this fraction of the distance between probes before their visibility is
 /// judged, as the maps of distances are coarse (Majercik et al., §5.2).
@@ -80,75 +78,13 @@ const Projection& projection() {
     return table;
 }
 
-/// Returns the region that probes fill: the scene without what is very large, and not far beyond what its camera looks
-/// at. Points outside use the nearest probes.
-Box3d region_of(const RasterSceneData& data) {
-    const Scene& scene = data.scene;
-    const Camera& camera = scene.camera;
-    const double view = length(camera.look_at - camera.eye), reach = 2 * view;
-    Box3 bounds;
-    for (const RasterObject& object : data.objects)
-        if (static_cast<double>(length(object.bounds.diagonal())) < 10 * view) bounds.extend(object.bounds);
-    if (bounds.empty()) bounds = scene.bounds;
-    Box3d box;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto low = static_cast<double>(bounds.low[axis]), high = static_cast<double>(bounds.high[axis]);
-        box.low[axis] = std::clamp(camera.look_at[axis] - reach, low, high);
-        box.high[axis] = std::clamp(camera.look_at[axis] + reach, low, high);
-        // A flat scene, too, has room above and below.
-        const double least = 0.05 * view, short_of = least - (box.high[axis] - box.low[axis]);
-        if (short_of > 0) box.low[axis] -= short_of / 2, box.high[axis] += short_of / 2;
-    }
-    return box;
+template <typename T> RgbT<T> positive_sum(const std::array<Rgb, 9>& coefficients, const std::array<T, 9>& basis) {
+    RgbT<T> sum(T(0.0f));
+    for (std::size_t i = 0; i < 9; ++i) sum += broadcast<T>(coefficients[i]) * basis[i];
+    return {max(sum.r, T(0.0f)), max(sum.g, T(0.0f)), max(sum.b, T(0.0f))};
 }
 
 } // namespace
-
-/// Spreads the probes so that cells are close to cubes. The outermost probes stand half a cell within the region, so
-/// that none lies in an outer wall.
-void IrradianceProbes::place(const RasterSceneData& data) {
-    const Box3d box = region_of(data);
-    const Vec3d extent = box.high - box.low;
-    const double most = std::clamp(kMostTriangles / (6 * static_cast<double>(data.primitives) + 1e3),
-                                   static_cast<double>(kFewestProbes), static_cast<double>(kMostProbes));
-    double cell = std::cbrt(extent.x * extent.y * extent.z / most);
-    const auto count = [&](std::size_t axis) {
-        return std::clamp(static_cast<int>(std::lround(extent[axis] / cell)), 2, 64);
-    };
-    while (count(0) * count(1) * count(2) > static_cast<int>(1.2 * most)) cell *= 1.1;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        size_[axis] = count(axis);
-        step_[axis] = extent[axis] / size_[axis];
-        origin_[axis] = box.low[axis] + step_[axis] / 2;
-    }
-    probes_.resize(static_cast<std::size_t>(size_[0] * size_[1] * size_[2]));
-}
-
-Vec3d IrradianceProbes::grid_point(std::size_t probe) const {
-    const auto i = static_cast<int>(probe);
-    return origin_ + Vec3d(step_.x * (i % size_[0]), step_.y * (i / size_[0] % size_[1]),
-                           step_.z * (i / (size_[0] * size_[1])));
-}
-
-/// Moves a probe that lies inside an object along an axis, by up to a step. Returns false if a step leads nowhere
-/// outside.
-bool IrradianceProbes::move_out_of_solids(const SolidTest& solids, Vec3d& position) const {
-    if (!solids.inside(position)) return true;
-    std::vector<Vec3d> steps; // that lead outside
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        for (const double side : {1.0, -1.0}) {
-            Vec3d step;
-            step[axis] = side * step_[axis];
-            if (!solids.inside(position + step)) steps.push_back(step);
-        }
-    for (const double part : {0.25, 0.5, 0.75, 1.0})
-        for (const Vec3d& step : steps)
-            if (part == 1 || !solids.inside(position + step * part)) {
-                position += step * part;
-                return true;
-            }
-    return false;
-}
 
 float IrradianceProbes::spacing() const { return static_cast<float>(std::max({step_.x, step_.y, step_.z})); }
 
@@ -160,8 +96,12 @@ IrradianceProbes::IrradianceProbes(const RasterSceneData& data, const RasterSett
         Vec3d& position = probes_[i].position = grid_point(i);
         if (!move_out_of_solids(solids, position)) return;
         captures[i] = std::make_unique<ProbeCapture>(data, settings, position, kSide, data.glass);
-        set_distances(*captures[i], probes_[i]);
     });
+    drop_strays(captures);
+    parallel_for(probes_.size(), settings.threads, [&](std::size_t i) {
+        if (captures[i]) set_distances(*captures[i], probes_[i]);
+    });
+    find_sky(data, settings, captures);
     for (int k = 0; k <= kBounces; ++k) {
         std::vector<Harmonics> next(probes_.size());
         parallel_for(probes_.size(), settings.threads, [&](std::size_t i) {
@@ -172,44 +112,31 @@ IrradianceProbes::IrradianceProbes(const RasterSceneData& data, const RasterSett
     }
 }
 
-/// Gives probes inside objects the mean irradiance of their neighbors, from the surfaces inwards. They count where a
-/// point sees no other probe.
-void IrradianceProbes::fill_solids() {
-    std::vector<bool> filled(probes_.size());
-    for (std::size_t i = 0; i < probes_.size(); ++i) filled[i] = !probes_[i].distance.empty();
-    for (bool any = true; any;) {
-        any = false;
-        const std::vector<bool> before = filled;
-        for (std::size_t i = 0; i < probes_.size(); ++i) {
-            if (before[i]) continue;
-            Harmonics sum{};
-            float count = 0;
-            for_each_neighbor(i, [&](std::size_t neighbor) {
-                if (!before[neighbor]) return;
-                for (std::size_t c = 0; c < 9; ++c) sum[c] += probes_[neighbor].irradiance[c];
-                ++count;
-            });
-            if (count == 0) continue;
-            for (std::size_t c = 0; c < 9; ++c) probes_[i].irradiance[c] = sum[c] / count;
-            filled[i] = any = true;
-        }
+/// Far points are lit by the environment alone, if the probes see it. Over open ground, with objects about them, they
+/// see it in a quarter of all directions or more.
+void IrradianceProbes::find_sky(const RasterSceneData& data, const RasterSettings& settings,
+                                const std::vector<std::unique_ptr<ProbeCapture>>& captures) {
+    if (!shows_environment(data, settings)) return;
+    sky_ = data.irradiance.scaled_coefficients(data.scene.environment);
+    float seen = 0, all = 0;
+    for (const auto& capture : captures) {
+        if (!capture) continue;
+        for_each_pixel(1, [&](const ProbeCapture::Pixel& pixel) {
+            const float solid_angle = ProbeCapture::solid_angle(pixel, kSide);
+            all += solid_angle;
+            if (capture->distance(pixel) == kInfinity) seen += solid_angle;
+        });
     }
+    openness_ = all > 0 ? min(4 * seen / all, 1.0f) : 0;
 }
 
-/// Calls visit for the up to 26 probes of the cells about a probe.
-template <typename Visit> void IrradianceProbes::for_each_neighbor(std::size_t probe, const Visit& visit) const {
-    const auto i = static_cast<int>(probe);
-    const std::array<int, 3> at{i % size_[0], i / size_[0] % size_[1], i / (size_[0] * size_[1])};
-    const auto range = [&](std::size_t axis) {
-        return std::pair(std::max(at[axis] - 1, 0), std::min(at[axis] + 1, size_[axis] - 1));
-    };
-    const auto [x0, x1] = range(0);
-    const auto [y0, y1] = range(1);
-    const auto [z0, z1] = range(2);
-    for (int z = z0; z <= z1; ++z)
-        for (int y = y0; y <= y1; ++y)
-            for (int x = x0; x <= x1; ++x)
-                if (const int n = x + size_[0] * (y + size_[1] * z); n != i) visit(static_cast<std::size_t>(n));
+/// `cells` is the distance of points from the grid.
+RgbT<Floats> IrradianceProbes::faded_to_sky(const RgbT<Floats>& irradiance, const std::array<Floats, 9>& basis,
+                                            const Floats& cells) const {
+    constexpr float kNear = 0.5f, kFar = 3; // the region ends half a cell beyond its outermost probes
+    const Floats fade = clamp((cells - Floats(kNear)) * Floats(1 / (kFar - kNear)), Floats(0.0f), Floats(openness_));
+    if (!xsimd::any(fade > Floats(0.0f))) return irradiance;
+    return irradiance + (positive_sum(sky_, basis) - irradiance) * fade;
 }
 
 void IrradianceProbes::set_distances(const ProbeCapture& capture, Probe& probe) const {
@@ -265,10 +192,7 @@ struct IrradianceProbes::Corner {
     Corner(const Probe& probe, const Vec3s& to_probe, const Vec3s& n, const std::array<Floats, 9>& basis,
            const Floats& trilinear) {
         weight = trilinear * (probe.distance.empty() ? Floats(kInside) : visibility(probe, to_probe, n));
-        irradiance = RgbT<Floats>(Floats(0.0f));
-        for (std::size_t i = 0; i < 9; ++i) irradiance += broadcast<Floats>(probe.irradiance[i]) * basis[i];
-        const Floats none(0.0f);
-        irradiance = {max(irradiance.r, none), max(irradiance.g, none), max(irradiance.b, none)};
+        irradiance = positive_sum(probe.irradiance, basis);
     }
 
 private:
@@ -294,9 +218,12 @@ RgbT<Floats> IrradianceProbes::irradiance(const Vec3d& eye, const Vec3s& p, cons
     std::array<Ints, 3> cell;
     std::array<Floats, 3> f;
     const std::array<Floats, 3> at{p.x, p.y, p.z};
+    Floats beyond(0.0f); // the grid, in cells
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        const Floats g = clamp((at[axis] - Floats(first[axis])) * Floats(1 / step[axis]), Floats(kInset),
-                               Floats(static_cast<float>(size_[axis] - 1) - kInset));
+        const Floats unclamped = (at[axis] - Floats(first[axis])) * Floats(1 / step[axis]);
+        const Floats g =
+            clamp(unclamped, Floats(kInset), Floats(static_cast<float>(size_[axis] - 1) - kInset));
+        beyond = max(beyond, abs(unclamped - g));
         cell[axis] = xsimd::min(truncated(g), Ints(size_[axis] - 2));
         f[axis] = g - xsimd::batch_cast<float>(cell[axis]);
     }
@@ -328,7 +255,7 @@ RgbT<Floats> IrradianceProbes::irradiance(const Vec3d& eye, const Vec3s& p, cons
         result = {xsimd::select(lanes, light.r * over, result.r), xsimd::select(lanes, light.g * over, result.g),
                   xsimd::select(lanes, light.b * over, result.b)};
     }
-    return result;
+    return faded_to_sky(result, basis, beyond);
 }
 
 std::size_t IrradianceProbes::memory_bytes() const {

@@ -44,7 +44,12 @@ private:
     bool move_out_of_solids(const SolidTest& solids, Vec3d& position) const;
     void set_distances(const ProbeCapture& capture, Probe& probe) const;
     Harmonics gather(const ProbeCapture& capture, int bounce) const;
+    void drop_strays(std::vector<std::unique_ptr<ProbeCapture>>& captures) const;
     void fill_solids();
+    void find_sky(const RasterSceneData& data, const RasterSettings& settings,
+                  const std::vector<std::unique_ptr<ProbeCapture>>& captures);
+    RgbT<Floats> faded_to_sky(const RgbT<Floats>& irradiance, const std::array<Floats, 9>& basis,
+                              const Floats& cells) const;
     template <typename Visit> void for_each_neighbor(std::size_t probe, const Visit& visit) const;
     struct Corner;
 
@@ -52,6 +57,8 @@ private:
     Vec3d step_;                ///< between probes, by axis
     std::array<int, 3> size_{}; ///< number of probes, by axis; at least 2
     std::vector<Probe> probes_; ///< x fastest
+    Harmonics sky_{};           ///< irradiance of the environment alone, for points far beyond the probes
+    float openness_ = 0;        ///< how much of it counts there, in [0, 1]; 0 in a closed room
 };
 
 } // namespace duet::raster

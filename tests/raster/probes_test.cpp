@@ -140,6 +140,29 @@ TEST_SUITE("unit") {
         }
     }
 
+    TEST_CASE("points far from all objects see the environment, but not in a closed room") {
+        const auto at_floor = [](bool room) {
+            Scene scene;
+            add(scene, Sphere{Vec3(0, 0.5f, 0), 0.5f}, Mat4(), Diffuse{{Rgb(0.5f)}});
+            if (room)
+                for (const Quad& wall : box_quads(Vec3(-40, 0, -40), Vec3(40, 80, 40)).quads)
+                    add(scene, QuadList{{Quad{wall.corner, wall.v, wall.u}}}, Mat4(), Diffuse{{Rgb(0.5f)}});
+            else
+                add(scene, QuadList{{{Vec3(-40, 0, 40), Vec3(80, 0, 0), Vec3(0, 0, -80)}}}, Mat4(),
+                    Diffuse{{Rgb(0.5f)}});
+            scene.environment = SkyEnvironment{Rgb(1, 2, 3), Rgb(0.5f)};
+            scene.camera = look({0, 1, 3}, {0, 0, 0});
+            finish_scene(scene);
+            const raster::RasterScene prepared = raster::prepare(scene, raster::RasterSettings{});
+            const RgbT<Floats> e = prepared.data().irradiance_probes->irradiance(
+                Vec3d(), all({20, 0, 10}), all({0, 1, 0}), Floats(1.0f) > Floats(0.0f));
+            const Rgb open = irradiance_closed_form(scene.environment, Vec3(0, 1, 0)).value();
+            return Vec3(e.r.get(0) / open.r, e.g.get(0) / open.g, e.b.get(0) / open.b);
+        };
+        CHECK(length(at_floor(false) - Vec3(1, 1, 1)) < 0.01f);
+        CHECK(length(at_floor(true)) < 1e-3f);
+    }
+
     // What a narrow lobe reflects of a light is direct light. The image's pixels, which show the light, must not add it
     // again.
     TEST_CASE("a polished floor reflects a light once") {
