@@ -37,7 +37,8 @@ private:
     /// is interpolated.
     template <typename T, typename F> static T bulge(const F& f, const Vec3T<T>& normal) {
         const Vec3T<T> n = f.object.normal(f.at.n);
-        const T height = f.at.plane - dot(n, f.p() - broadcast<T>(f.object.eye)), zero(0.0f);
+        const Vec3T<T> p = (f.origin - broadcast<T>(f.object.eye)) + f.direction * f.depth; // relative to the eye
+        const T height = f.at.plane - dot(n, p), zero(0.0f);
         const T outward = select(dot(n, normal) < zero, -height, height);
         return max(outward, zero) * inverse_sqrt(max(dot(n, n), T(std::numeric_limits<float>::min())));
     }

@@ -12,8 +12,8 @@ constexpr int kTileSide = 16, kBatch = static_cast<int>(Floats::size);
 class PixelLighter {
 public:
     PixelLighter(const GBuffer& gbuffer, std::span<const FrameLight> lights, const LightSet& light_set,
-                 const ShadowLookup* shadows, std::size_t most_lights, DirectLight& result)
-        : gbuffer_(gbuffer), lights_(lights), light_set_(light_set), shadows_(shadows), most_lights_(most_lights),
+                 const ShadowLookup* shadows, const ChosenLights& chosen, DirectLight& result)
+        : gbuffer_(gbuffer), lights_(lights), light_set_(light_set), shadows_(shadows), chosen_(chosen),
           result_(result) {
         for (const std::uint32_t i : light_set.lights()) all_lights_.push_back({i, 1});
     }
@@ -61,13 +61,13 @@ private:
         const std::size_t distant_before = distant_.size(), fields_before = field_count_;
         for (const std::uint32_t column : own.found.far) distant_.push_back(around.lights()[column]);
         if (!own.found.far.empty()) fields_[field_count_++] = own.found.field;
-        const bool divides = most_lights_ == kAllLights && level + 1 < kLevels,
+        const bool divides = chosen_.most == ChosenLights::kAll && level + 1 < kLevels,
                    many = divides && own.found.near.size() > LightSet::kFewLights;
         const auto edge = many ? split_at_edge(gbuffer_, cluster, *surfaces) : std::nullopt;
         if (!edge && (!many || cluster.rows == 1)) {
             constexpr float kGoldenRatio = 0.618034f; // its multiples spread evenly
-            random_ += kGoldenRatio - (random_ + kGoldenRatio < 1 ? 0.0f : 1.0f);
-            around.choose(own.found, most_lights_, random_, own.lights);
+            chosen_.random += kGoldenRatio - (chosen_.random + kGoldenRatio < 1 ? 0.0f : 1.0f);
+            around.choose(own.found, chosen_.most, chosen_.random, own.lights);
             light_pixels(cluster, own.lights);
         } else {
             own.near.assign(around, own.found.near);
@@ -113,13 +113,24 @@ private:
         }
         const xsimd::batch_bool<float> lit = max_component(reflected) > Floats(0.0f);
         if (lane_bits(lit) == 0) return;
-        const Floats visible = shadows_->visibility(light.index, batch.p() + batch.n() * load(gbuffer_.bulge, x, y),
-                                                      batch.n(), x, y, lit);
+        const Floats visible = shadows_->visibility(light.index, receiver(batch, light, x, y), batch.n(), x, y, lit);
         const RgbT<Floats> seen = reflected * xsimd::select(lit, visible, Floats(0.0f));
         if (shadows_->noisy(light.index))
             sum.unshadowed += reflected, sum.shadowed += seen;
         else
             sum.exact += seen;
+    }
+
+    /// Returns the points at which a light's shadows are looked up. They lie on the smooth surface that coarse facets
+    /// stand for if the light is low, or facets would shade themselves; else on the facets, for the sake of contacts.
+    Vec3T<Floats> receiver(const LitBatch& batch, const FrameLight& light, int x, int y) const {
+        constexpr float kLow = 0.4f, kHigh = 0.8f; // cosines between which the height falls
+        const Vec3T<Floats> n = batch.n(), p = batch.p();
+        const Vec3T<Floats> wi = light.kind == FrameLight::Kind::kSun ? broadcast<Floats>(light.axis)
+                                                                      : broadcast<Floats>(light.position) - p;
+        const Floats cosine = dot(n, wi) * inverse_sqrt(max(dot(wi, wi), Floats(1e-20f)));
+        const Floats low = clamp((Floats(kHigh) - cosine) * Floats(1 / (kHigh - kLow)), Floats(0.0f), Floats(1.0f));
+        return p + n * (load(gbuffer_.bulge, x, y) * low);
     }
 
     Sum& sum_at(int x, int y) {
@@ -135,10 +146,9 @@ private:
     std::span<const FrameLight> lights_;
     const LightSet& light_set_;
     const ShadowLookup* shadows_;
-    std::size_t most_lights_;
+    ChosenLights chosen_; ///< its random number is new for each cluster
     DirectLight& result_;
     std::vector<WeightedLight> all_lights_;
-    float random_ = 0; ///< in [0, 1), new for each cluster
     LitBatch::Tables tables_;
     struct Level {
         LightsOfCluster found;
@@ -155,7 +165,7 @@ private:
 } // namespace
 
 DirectLight direct_light(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
-                         const ShadowLookup* shadows, std::size_t most_lights) {
+                         const ShadowLookup* shadows, const ChosenLights& chosen) {
     const int width = gbuffer.width(), height = gbuffer.height();
     DirectLight result;
     result.exact = Planes3(width, height);
@@ -170,7 +180,7 @@ DirectLight direct_light(const RasterSceneData& data, const RasterSettings& sett
     const LightSet light_set(lights, shadows);
     const bool few = lights.size() <= LightSet::kFewLights; // which lists would not make fewer
     parallel_for(static_cast<std::size_t>((height + kTileSide - 1) / kTileSide), settings.threads, [&](std::size_t i) {
-        PixelLighter lighter(gbuffer, lights, light_set, shadows, most_lights, result);
+        PixelLighter lighter(gbuffer, lights, light_set, shadows, chosen, result);
         const int first = static_cast<int>(i) * kTileSide;
         if (few)
             for (int y = first; y < std::min(first + kTileSide, height); ++y) lighter.light_row(y);

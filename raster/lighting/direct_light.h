@@ -20,11 +20,17 @@ struct DirectLight {
     Planes3 unshadowed, shadowed;
 };
 
+/// Says how many lights stand for all. If a cluster of pixels has more near lights than `most`, about so many are
+/// chosen (LightSet::choose). Images that are averaged should differ in `random`, a number in [0, 1).
+struct ChosenLights {
+    static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+    std::size_t most = kAll;
+    float random = 0;
+};
+
 /// Computes the direct light of all pixels; it is 0 for the background. Lobes whose alpha is below
-/// MetalBsdf::kSmoothAlpha are mirrors, which the reflections show. `shadows` may be null. If a cluster of pixels has
-/// more than `most_lights` near lights, about so many stand for all (LightSet::choose).
-inline constexpr std::size_t kAllLights = std::numeric_limits<std::size_t>::max();
+/// MetalBsdf::kSmoothAlpha are mirrors, which the reflections show. `shadows` may be null.
 DirectLight direct_light(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
-                         const ShadowLookup* shadows, std::size_t most_lights = kAllLights);
+                         const ShadowLookup* shadows, const ChosenLights& chosen = {});
 
 } // namespace duet::raster

@@ -121,7 +121,9 @@ void LightSet::reach(const SurfaceBounds& surfaces, float other_irradiance, Ligh
         const Floats intensity = number(kIntensity), plane = number(kPlane);
         const Lanes reaches = (above.high > kNone) & (front.high > plane) & (outside <= radius) & (intensity > kNone);
         const Vec3T<Floats> zero(kNone, kNone, kNone), apart = max(max(low - p_high, p_low - high), zero);
-        min(intensity / max(dot(apart, apart), Floats(1e-12f)), number(kMost)).store_aligned(result.most.data() + i);
+        // In the box, few surfaces are nearer than its radius.
+        const Floats nearest = max(dot(apart, apart), max(radius * radius, Floats(1e-12f)));
+        min(intensity / nearest, number(kMost)).store_aligned(result.most.data() + i);
         Floats error(kHuge);
         if (divided) {
             const Floats inverse = inverse_sqrt(squared), over = inverse * inverse;
@@ -161,7 +163,7 @@ void LightSet::choose(const LightsOfCluster& cluster, std::size_t most, float u,
     double sum = 0;
     for (const std::uint32_t column : cluster.near) sum += static_cast<double>(cluster.most[column]);
     const double step = sum / static_cast<double>(most);
-    double next = static_cast<double>(u) * step, end = 0; // of the intervals, whose lengths are the bounds
+    double next = static_cast<double>(u) * step, end = 0; // `end` is that of a light's interval, as long as its bound
     for (const std::uint32_t column : cluster.near) {
         const auto length = static_cast<double>(cluster.most[column]);
         end += length;

@@ -32,7 +32,7 @@ struct LightField {
 struct LightsOfCluster {
     std::vector<std::uint32_t> near, far; ///< columns of a LightSet; `field` holds the irradiance of the far ones
     LightField field;
-    std::vector<float, CacheAlignedAllocator<float>> most;  ///< bounds of the lights' irradiance, by column
+    std::vector<float, CacheAlignedAllocator<float>> most;  ///< about the lights' greatest irradiance, by column
     std::vector<float, CacheAlignedAllocator<float>> error, distant; ///< scratch memory, one number per light
 };
 

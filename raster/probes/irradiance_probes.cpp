@@ -4,6 +4,7 @@
 #include "raster/lighting/background.h"
 #include "raster/visibility/shader.h"
 
+#include "common/sampling/hash.h"
 #include "common/system/parallel.h"
 
 #include <algorithm>
@@ -95,7 +96,10 @@ IrradianceProbes::IrradianceProbes(const RasterSceneData& data, const RasterSett
     parallel_for(probes_.size(), settings.threads, [&](std::size_t i) {
         Vec3d& position = probes_[i].position = grid_point(i);
         if (!move_out_of_solids(solids, position)) return;
-        captures[i] = std::make_unique<ProbeCapture>(data, settings, position, kSide, data.glass);
+        // Pixels of a probe are far apart, so almost all lights are near to some. Its light is a mean over all of them.
+        constexpr std::size_t kMostLights = 8;
+        const ChosenLights lights{kMostLights, unit_float(high_bits(mix_bits(i)))};
+        captures[i] = std::make_unique<ProbeCapture>(data, settings, position, kSide, data.glass, lights);
     });
     drop_strays(captures);
     parallel_for(probes_.size(), settings.threads, [&](std::size_t i) {
@@ -113,7 +117,7 @@ IrradianceProbes::IrradianceProbes(const RasterSceneData& data, const RasterSett
 }
 
 /// Far points are lit by the environment alone, if the probes see it. Over open ground, with objects about them, they
-/// see it in a quarter of all directions or more.
+/// see it in a quarter of all directions or more; through the windows of a room, in less than an eighth.
 void IrradianceProbes::find_sky(const RasterSceneData& data, const RasterSettings& settings,
                                 const std::vector<std::unique_ptr<ProbeCapture>>& captures) {
     if (!shows_environment(data, settings)) return;
@@ -127,7 +131,7 @@ void IrradianceProbes::find_sky(const RasterSceneData& data, const RasterSetting
             if (capture->distance(pixel) == kInfinity) seen += solid_angle;
         });
     }
-    openness_ = all > 0 ? min(4 * seen / all, 1.0f) : 0;
+    openness_ = all > 0 ? clamp(8 * seen / all - 1, 0.0f, 1.0f) : 0;
 }
 
 /// `cells` is the distance of points from the grid.
@@ -218,7 +222,7 @@ RgbT<Floats> IrradianceProbes::irradiance(const Vec3d& eye, const Vec3s& p, cons
     std::array<Ints, 3> cell;
     std::array<Floats, 3> f;
     const std::array<Floats, 3> at{p.x, p.y, p.z};
-    Floats beyond(0.0f); // the grid, in cells
+    Floats beyond(0.0f); // distance from the grid in cells
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const Floats unclamped = (at[axis] - Floats(first[axis])) * Floats(1 / step[axis]);
         const Floats g =

@@ -16,7 +16,9 @@ constexpr int kMostProbes = 512, kFewestProbes = 27;
 Box3d region_of(const RasterSceneData& data) {
     const Scene& scene = data.scene;
     const Camera& camera = scene.camera;
-    const double view = length(camera.look_at - camera.eye), reach = 2 * view;
+    double view = length(camera.look_at - camera.eye);
+    if (camera.projection == Camera::Projection::kOrthographic) view = std::max(view, camera.height);
+    const double reach = 2 * view;
     Box3 bounds;
     for (const RasterObject& object : data.objects)
         if (static_cast<double>(length(object.bounds.diagonal())) < 10 * view) bounds.extend(object.bounds);
@@ -84,7 +86,7 @@ bool IrradianceProbes::move_out_of_solids(const SolidTest& solids, Vec3d& positi
 /// Removes probes that were moved beyond other surfaces, such as the ground: all that no chain of neighbors, each seen
 /// by the one before, connects to a probe on the grid.
 void IrradianceProbes::drop_strays(std::vector<std::unique_ptr<ProbeCapture>>& captures) const {
-    constexpr float kPart = 0.95f; // of the way, since pixels are coarse
+    constexpr float kSeen = 0.95f; // of the distance, since pixels are coarse
     std::vector<bool> connected(probes_.size());
     std::vector<std::size_t> next;
     const auto connect = [&](std::size_t i) { connected[i] = true, next.push_back(i); };
@@ -96,8 +98,9 @@ void IrradianceProbes::drop_strays(std::vector<std::unique_ptr<ProbeCapture>>& c
         next.pop_back();
         for_each_neighbor(from, [&](std::size_t i) {
             if (connected[i] || !captures[i]) return;
-            const Vec3 way(probes_[i].position - probes_[from].position);
-            if (captures[from]->distance(captures[from]->pixel(way)) > kPart * length(way)) connect(i);
+            const Vec3 to(probes_[i].position - probes_[from].position);
+            const float distance = length(to); // 0 if a probe was moved onto another
+            if (!(distance > 0) || captures[from]->distance(captures[from]->pixel(to)) > kSeen * distance) connect(i);
         });
     }
     for (std::size_t i = 0; i < probes_.size(); ++i)

@@ -2,13 +2,14 @@
 
 #include "raster/gbuffer/gbuffer_pass.h"
 #include "raster/lighting/background.h"
-#include "raster/lighting/direct_light.h"
 #include "raster/shadows/cube_map.h"
 #include "raster/shadows/light_views.h"
 #include "raster/shadows/shadow_map_lookup.h"
 #include "raster/lighting/shadow_filter.h"
 
 #include "common/system/control.h"
+
+#include <cmath>
 
 namespace duet::raster {
 namespace {
@@ -17,10 +18,11 @@ namespace {
 struct Selection {
     const std::vector<std::uint32_t>& objects;
     bool excluded;
+    ChosenLights chosen{};
 };
 
 ProbeCapture::Face capture(const RasterSceneData& data, const RasterSettings& settings, const Camera& camera, int side,
-                           const Selection& selection) {
+                           const Selection& selection, std::size_t face_index) {
     const View view{camera, side, side};
     const Pinhole pinhole = CameraModel(view).pinhole();
     const std::vector<SampleOffset> samples{SampleOffset{}};
@@ -43,10 +45,9 @@ ProbeCapture::Face capture(const RasterSceneData& data, const RasterSettings& se
     std::optional<MapShadows> shadows;
     if (settings.shadows && data.soft_shadows)
         shadows.emplace(data, face.gbuffer, pass.time, 1);
-    // The pixels of a probe are far apart, so almost all lights are near to some. Its light is a mean over all pixels.
-    constexpr std::size_t kMostLights = 8;
-    add_direct_light(face.gbuffer,
-                     direct_light(data, settings, face.gbuffer, shadows ? &*shadows : nullptr, kMostLights), 1,
+    ChosenLights chosen = selection.chosen;
+    chosen.random = std::fmod(chosen.random + 0.381966f * static_cast<float>(face_index), 1.0f);
+    add_direct_light(face.gbuffer, direct_light(data, settings, face.gbuffer, shadows ? &*shadows : nullptr, chosen), 1,
                      face.direct);
     return face;
 }
@@ -67,7 +68,7 @@ template <std::size_t... kFaces>
 std::array<ProbeCapture::Face, 6> capture_all(const RasterSceneData& data, const RasterSettings& settings,
                                               const std::vector<Camera>& views, int side, const Selection& selection,
                                               std::index_sequence<kFaces...>) {
-    return {capture(data, settings, views[kFaces], side, selection)...};
+    return {capture(data, settings, views[kFaces], side, selection, kFaces)...};
 }
 
 /// Returns a pixel's center on the face's square at distance 1, in the face's axes.
@@ -86,9 +87,9 @@ std::vector<Camera> views_about(const RasterSceneData& data, Vec3d center) {
 } // namespace
 
 ProbeCapture::ProbeCapture(const RasterSceneData& data, const RasterSettings& settings, Vec3d center, int side,
-                           const std::vector<std::uint32_t>& excluded)
+                           const std::vector<std::uint32_t>& excluded, const ChosenLights& chosen)
     : center_(center), side_(side), faces_(capture_all(data, single_threaded(settings), views_about(data, center), side,
-                                                       {excluded, true}, std::make_index_sequence<6>())) {}
+                                                       {excluded, true, chosen}, std::make_index_sequence<6>())) {}
 
 ProbeCapture::ProbeCapture(const RasterSceneData& data, const RasterSettings& settings, Vec3d center,
                            std::uint32_t object, int side)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"
+#include "raster/lighting/direct_light.h"
 #include "raster/raster_scene.h"
 
 #include <array>
@@ -18,9 +19,9 @@ public:
         Planes3 direct;   ///< direct light that the surfaces reflect, and the background
     };
     /// Renders side × side pixels for each face, on the calling thread. The objects in `excluded`, in order, are left
-    /// out.
+    /// out. The lights are the `chosen` ones.
     ProbeCapture(const RasterSceneData& data, const RasterSettings& settings, Vec3d center, int side,
-                 const std::vector<std::uint32_t>& excluded);
+                 const std::vector<std::uint32_t>& excluded, const ChosenLights& chosen = {});
 
     /// Renders one object alone, without light: its surface as seen from within or from outside.
     ProbeCapture(const RasterSceneData& data, const RasterSettings& settings, Vec3d center, std::uint32_t object,

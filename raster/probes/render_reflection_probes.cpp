@@ -76,7 +76,8 @@ bool shows_light(const ProbeCapture& capture) {
 /// surfaces, which get the lights' own reflections as direct light, need a map without the lights.
 RadianceMap render_map(const RasterSceneData& data, const RasterSettings& settings, const Site& site, int side) {
     const auto capture = [&](const std::vector<std::uint32_t>& excluded) {
-        ProbeCapture result(data, settings, site.center, side / 2, excluded);
+        constexpr std::size_t kMostLights = 16; // of a cluster of pixels; prepares models/lanterns.json in seconds
+        ProbeCapture result(data, settings, site.center, side / 2, excluded, {kMostLights});
         add_reflected_light(data, settings, result);
         return result;
     };

@@ -25,7 +25,7 @@ public:
 private:
     std::ptrdiff_t leaving(int times) const { return std::ranges::count(crossings_, times); }
 
-    /// An edge belongs to one of its two sides, as seen along the axis.
+    /// A ray through an edge may cross both of its triangles, or none. The other rays outvote it.
     void cross(Vec3d a, Vec3d b, Vec3d c, std::size_t axis) {
         const std::size_t i = (axis + 1) % 3, j = (axis + 2) % 3;
         const auto left = [&](Vec3d from, Vec3d to) { // of the edge, as seen from p
@@ -76,22 +76,54 @@ template <typename Triangles> bool contains(const Triangles& shape, Vec3d p) {
     return sum > 0.5 * 4 * kPiDouble;
 }
 
+Vec3d to_object_space(const RasterSceneData& data, std::uint32_t i, Vec3d p) {
+    const Object& object = data.scene.objects[i];
+    const auto time = static_cast<float>(data.scene.camera.shutter_open); // at which probes are rendered
+    return object.identity ? p : transform_point(Mat4d(object_transform(object, time).to_object), p);
+}
+
 bool contains(const RasterSceneData& data, std::uint32_t i, Vec3d p) {
     const Box3& box = data.objects[i].bounds;
     const Vec3 q(p);
     if (q.x < box.low.x || q.y < box.low.y || q.z < box.low.z || q.x > box.high.x || q.y > box.high.y ||
         q.z > box.high.z)
         return false;
-    const Object& object = data.scene.objects[i];
-    const Vec3d local = object.identity ? p : transform_point(Mat4d(object.to_object), p);
-    return std::visit([&](const auto& shape) { return contains(shape, local); }, data.scene.shapes[object.shape]);
+    return std::visit([&](const auto& shape) { return contains(shape, to_object_space(data, i, p)); },
+                      data.scene.shapes[data.scene.objects[i].shape]);
+}
+
+/// Returns whether the segment from p to q crosses a triangle: both ends lie on different sides of its plane, and its
+/// edges go around the segment in one direction.
+bool crosses(Vec3d p, Vec3d q, Vec3d a, Vec3d b, Vec3d c) {
+    const Vec3d n = cross(b - a, c - a), u = a - p, v = b - p, w = c - p, d = q - p;
+    if ((dot(n, p - a) > 0) == (dot(n, q - a) > 0)) return false;
+    const bool ab = dot(d, cross(u, v)) > 0, bc = dot(d, cross(v, w)) > 0, ca = dot(d, cross(w, u)) > 0;
+    return ab == bc && bc == ca;
+}
+bool crosses(const Sphere&, Vec3d, Vec3d) { return true; }
+template <typename Triangles> bool crosses(const Triangles& shape, Vec3d p, Vec3d q) {
+    bool found = false;
+    for_each_triangle(shape, [&](Vec3d a, Vec3d b, Vec3d c) { found = found || crosses(p, q, a, b, c); });
+    return found;
+}
+
+/// Returns whether the camera looks at a point inside an object, from within or through an opening.
+bool is_room(const RasterSceneData& data, std::uint32_t i) {
+    const Camera& camera = data.scene.camera;
+    if (contains(data, i, camera.eye)) return true;
+    if (data.objects[i].closed || !contains(data, i, camera.look_at)) return false;
+    return !std::visit(
+        [&](const auto& shape) {
+            return crosses(shape, to_object_space(data, i, camera.eye), to_object_space(data, i, camera.look_at));
+        },
+        data.scene.shapes[data.scene.objects[i].shape]);
 }
 
 } // namespace
 
 SolidTest::SolidTest(const RasterSceneData& data) : data_(data) {
     for (std::uint32_t i = 0; i < data.objects.size(); ++i)
-        if (!contains(data, i, data.scene.camera.eye)) solids_.push_back(i);
+        if (!is_room(data, i)) solids_.push_back(i);
 }
 
 bool SolidTest::inside(Vec3d p) const {

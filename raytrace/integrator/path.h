@@ -215,7 +215,6 @@ private:
         if constexpr (kHasMediumStack)
             if (next.sample->transmitted && has_interior(vertex))
                 medium_stack_.cross(vertex.point.material, vertex.wo.z > 0);
-        if constexpr (Sink::kLogsEvents) sink_.log().scattered(vertex, *next.sample, next.wi, state_);
         footprint_.scatter(next.sample->pdf, next.sample->specular);
         // Each number is written to where it is read next. If a whole ray were copied right after its components
         // were written, that load would wait for their stores.
@@ -227,6 +226,7 @@ private:
         ray.origin = ray_origin(plan_, vertex.point, next.wi, vertex.point.time);
         ray.direction = next.wi;
         ray.t_min = 0;
+        if constexpr (Sink::kLogsEvents) sink_.log().scattered(*next.sample, ray, state_);
         return true;
     }
 

@@ -65,11 +65,11 @@ void PathLog::light_sample(const LightLiSample& light_sample, Rgb scattered, boo
          << (visible ? message(", weight ", weight, ": adds ", text_of(light)) : ", hidden: adds nothing") << "\n";
 }
 
-void PathLog::scattered(const Vertex& vertex, const BsdfSample& sample, Vec3 wi, const PathState& state) {
-    out_ << "  scatters     towards " << text_of(wi) << (sample.transmitted ? ", through the surface" : "")
+void PathLog::scattered(const BsdfSample& sample, const Ray& next, const PathState& state) {
+    out_ << "  scatters     towards " << text_of(next.direction) << (sample.transmitted ? ", through the surface" : "")
          << (sample.specular ? ", as a mirror or lens does" : message(", density ", sample.pdf)) << "\n"
          << "               weight " << text_of(sample.weight) << ", throughput " << text_of(state.throughput)
-         << ", next ray from " << text_of(offset_origin(vertex.point, wi)) << "\n";
+         << ", next ray from " << text_of(next.origin) << "\n";
 }
 
 void PathLog::roulette(float probability, bool survived) {

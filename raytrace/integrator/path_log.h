@@ -25,7 +25,7 @@ public:
     /// Logs a light sample and whether it is visible. `weight` is its MIS weight against BSDF samples, and `light`
     /// is what it adds.
     void light_sample(const LightLiSample& light_sample, Rgb scattered, bool visible, float weight, Rgb light);
-    void scattered(const Vertex& vertex, const BsdfSample& sample, Vec3 wi, const PathState& state);
+    void scattered(const BsdfSample& sample, const Ray& next, const PathState& state);
     void roulette(float probability, bool survived);
     void end(const char* why);
 

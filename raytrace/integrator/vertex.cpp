@@ -27,6 +27,7 @@ const Bsdf& bsdf_of(const RenderPlan& plan, std::uint32_t material, const Surfac
 Vec3 origin_on_smooth_surface(const RenderPlan& plan, const SurfaceGeometryT<float>& point, Vec3 offset, float time) {
     const Vec3 n = dot(offset, point.ng) < 0 ? -point.ng : point.ng;
     const float distance = length(offset);
+    if (!(distance > 0)) return offset_origin(point.p, point.p_error, n); // its square has underflowed
     Ray ray{offset_origin(point.p, point.p_error, n), offset / distance};
     ray.time = time;
     Hit end;

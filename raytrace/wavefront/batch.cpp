@@ -107,7 +107,7 @@ public:
         if (lit == 0) return;
         const Floats weight = light_sample_weight(vertex_, light);
         const LaneVectors found(path_.throughput * scattered * (weight / light.pdf)),
-            origins(ray_origins(light.wi)), p(vertex_.point.p);
+            origins(ray_origins(light.wi, lit)), p(vertex_.point.p);
         for (; lit != 0; lit &= lit - 1) {
             const auto i = static_cast<std::size_t>(std::countr_zero(lit));
             ++counts.shadow;
@@ -129,7 +129,7 @@ public:
             counts.ended += std::popcount(continuing & ~survivors & used_lanes);
             continuing &= survivors;
         }
-        const LaneVectors origins(ray_origins(next.wi)), directions(next.wi),
+        const LaneVectors origins(ray_origins(next.wi, continuing)), directions(next.wi),
             throughputs(path_.throughput);
         const LaneValues pdfs(next.sample->pdf), refractions(path_.refraction);
         for (std::size_t i = 0; i < paths_.size(); ++i) {
@@ -148,13 +148,13 @@ public:
     }
 
 private:
-    // Returns the origins of rays toward wi, one per path, as ray_origin() does.
-    LaneVectors ray_origins(const Vec& wi) const {
+    // Returns the origins of rays toward wi for the paths of a bit mask, as ray_origin() does.
+    LaneVectors ray_origins(const Vec& wi, unsigned rays) const {
         const SurfaceGeometryT<Floats>& point = vertex_.point;
         LaneVectors origins(offset_origin(point, wi));
         const Floats fraction = terminator_fraction(point, wi);
         const unsigned used_lanes = (1u << paths_.size()) - 1;
-        unsigned smooth = lane_bits(fraction > Floats(0.0f)) & used_lanes;
+        unsigned smooth = lane_bits(fraction > Floats(0.0f)) & used_lanes & rays;
         if (smooth == 0) return origins;
         const LaneVectors p(point.p), p_error(point.p_error), ng(point.ng), offsets(point.terminator_offset * fraction);
         for (; smooth != 0; smooth &= smooth - 1) {

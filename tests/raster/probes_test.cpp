@@ -106,6 +106,20 @@ TEST_SUITE("unit") {
         CHECK_FALSE(solids.inside({1.01, 0.9, 0.03}));
     }
 
+    TEST_CASE("an open box is a room if the camera looks into it, else a solid") {
+        QuadList box = box_quads(Vec3(-1, -1, -1), Vec3(1, 1, 1));
+        std::erase_if(box.quads, [](const Quad& quad) { return cross(quad.u, quad.v).z > 0; }); // open toward +z
+        REQUIRE(box.quads.size() == 5);
+        for (const Vec3d eye : {Vec3d(0, 0, 5), Vec3d(0, 0, 0.5), Vec3d(0, 0, -5), Vec3d(5, 0, 0)}) {
+            Scene scene;
+            add(scene, box);
+            scene.camera = look(eye, {0, 0, 0});
+            finish_scene(scene);
+            const raster::RasterScene prepared = raster::prepare(scene, raster::RasterSettings{});
+            CHECK(raster::SolidTest(prepared.data()).inside({0.1, 0.2, -0.3}) == (eye.z <= 0));
+        }
+    }
+
     // The irradiance of radiance 1 from everywhere is π, wherever the probes stand.
     TEST_CASE("probes in a white furnace hold the furnace's irradiance") {
         Scene scene;
