@@ -73,7 +73,8 @@ template <typename Triangles> bool contains(const Triangles& shape, Vec3d p) {
     if (rays.agree()) return rays.inside();
     double sum = 0;
     for_each_triangle(shape, [&](Vec3d a, Vec3d b, Vec3d c) { sum += solid_angle(p, a, b, c); });
-    return sum > 0.5 * 4 * kPiDouble;
+    constexpr double kInside = 0.75; // meshes whose parts do not all face outwards exceed 1/2 in the open
+    return sum > kInside * 4 * kPiDouble;
 }
 
 Vec3d to_object_space(const RasterSceneData& data, std::uint32_t i, Vec3d p) {
