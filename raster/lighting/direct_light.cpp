@@ -14,15 +14,13 @@ public:
     PixelLighter(const GBuffer& gbuffer, std::span<const FrameLight> lights, const LightSet& light_set,
                  const ShadowLookup* shadows, const ChosenLights& chosen, DirectLight& result)
         : gbuffer_(gbuffer), lights_(lights), light_set_(light_set), shadows_(shadows), chosen_(chosen),
-          result_(result) {
-        for (const std::uint32_t i : light_set.lights()) all_lights_.push_back({i, 1});
-    }
+          result_(result) {}
 
-    /// Lights a row of pixels by all lights.
-    void light_row(int y) {
+    /// Lights a row of pixels by the given lights.
+    void light_row(int y, std::span<const WeightedLight> lights) {
         for (int x = 0; x < gbuffer_.width(); x += kBatch)
             if (const auto lanes = gbuffer_.visible(x, y); lane_bits(lanes) != 0)
-                store(x, y, light_batch(x, y, lanes, all_lights_));
+                store(x, y, light_batch(x, y, lanes, lights));
     }
 
     /// Lights the tile that starts at column x of row y by the lights that reach it.
@@ -148,7 +146,6 @@ private:
     const ShadowLookup* shadows_;
     ChosenLights chosen_; ///< its random number is new for each cluster
     DirectLight& result_;
-    std::vector<WeightedLight> all_lights_;
     LitBatch::Tables tables_;
     struct Level {
         LightsOfCluster found;
@@ -179,11 +176,14 @@ DirectLight direct_light(const RasterSceneData& data, const RasterSettings& sett
         result.unshadowed = Planes3(width, height), result.shadowed = Planes3(width, height);
     const LightSet light_set(lights, shadows);
     const bool few = lights.size() <= LightSet::kFewLights; // which lists would not make fewer
+    std::vector<WeightedLight> all_of_few;
+    if (few)
+        for (const std::uint32_t i : light_set.lights()) all_of_few.push_back({i, 1});
     parallel_for(static_cast<std::size_t>((height + kTileSide - 1) / kTileSide), settings.threads, [&](std::size_t i) {
         PixelLighter lighter(gbuffer, lights, light_set, shadows, chosen, result);
         const int first = static_cast<int>(i) * kTileSide;
         if (few)
-            for (int y = first; y < std::min(first + kTileSide, height); ++y) lighter.light_row(y);
+            for (int y = first; y < std::min(first + kTileSide, height); ++y) lighter.light_row(y, all_of_few);
         else
             for (int x = 0; x < width; x += kTileSide) lighter.light_tile(x, first);
     });

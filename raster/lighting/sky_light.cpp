@@ -1,23 +1,12 @@
 #include "raster/lighting/sky_light.h"
 
 #include "raster/geometry/lane_math.h"
+#include "raster/lighting/spherical_harmonics.h"
 #include "raster/visibility/shader.h"
 
 #include <array>
 
 namespace duet::raster {
-namespace {
-
-using Vec3s = Vec3T<Floats>;
-
-/// Returns the real spherical harmonics of orders 0, 1 and 2 of w, without constant factors (Ramamoorthi and Hanrahan
-/// 2001, eq. 3).
-template <typename T> std::array<T, 9> harmonics(const Vec3T<T>& w) {
-    return {T(1),      w.y,       w.z, w.x, w.x * w.y, w.y * w.z, T(3) * w.z * w.z - T(1), w.x * w.z,
-            w.x * w.x - w.y * w.y};
-}
-
-} // namespace
 
 void add_sky_light(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
                    const GtaoImage* occlusion, Planes3& radiance) {

@@ -2,6 +2,7 @@
 
 #include "raster/geometry/lane_math.h"
 #include "raster/lighting/background.h"
+#include "raster/lighting/spherical_harmonics.h"
 #include "raster/visibility/shader.h"
 
 #include "common/sampling/hash.h"
@@ -25,14 +26,8 @@ constexpr float kBias = 0.4f;
 /// the outermost probes may be hidden.
 constexpr float kInset = 0.02f;
 
-/// The polynomials of the real spherical harmonics of orders 0, 1 and 2, without constant factors (Ramamoorthi and
-/// Hanrahan 2001, "An Efficient Representation for Irradiance Environment Maps", eq. 3).
-template <typename T> std::array<T, 9> harmonics(const Vec3T<T>& w) {
-    return {T(1),      w.y,       w.z, w.x, w.x * w.y, w.y * w.z, T(3) * w.z * w.z - T(1), w.x * w.z,
-            w.x * w.x - w.y * w.y};
-}
-/// For each harmonic, the square of its constant factor times that of the clamped cosine (eq. 8): what projection and
-/// evaluation apply together.
+/// For each harmonic, the square of its constant factor times that of the clamped cosine (Ramamoorthi and Hanrahan
+/// 2001, eq. 8): what projection and evaluation apply together.
 constexpr std::array<float, 9> kFactors = [] {
     constexpr std::array<double, 9> constants = {0.28209479177387814, 0.4886025119029199,  0.4886025119029199,
                                                  0.4886025119029199,  1.0925484305920792,  1.0925484305920792,

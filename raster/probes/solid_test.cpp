@@ -84,11 +84,7 @@ Vec3d to_object_space(const RasterSceneData& data, std::uint32_t i, Vec3d p) {
 }
 
 bool contains(const RasterSceneData& data, std::uint32_t i, Vec3d p) {
-    const Box3& box = data.objects[i].bounds;
-    const Vec3 q(p);
-    if (q.x < box.low.x || q.y < box.low.y || q.z < box.low.z || q.x > box.high.x || q.y > box.high.y ||
-        q.z > box.high.z)
-        return false;
+    if (!data.objects[i].bounds.contains(Vec3(p))) return false;
     return std::visit([&](const auto& shape) { return contains(shape, to_object_space(data, i, p)); },
                       data.scene.shapes[data.scene.objects[i].shape]);
 }

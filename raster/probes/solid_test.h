@@ -7,8 +7,8 @@ namespace duet::raster {
 
 /// Tests whether points lie inside objects: spheres, boxes of quads, and meshes that are oriented outwards. Meshes may
 /// have holes: a point is inside if its generalized winding number is above 3/4 (Jacobson et al. 2013, "Robust
-/// Inside-Outside Segmentation using Generalized Winding Numbers"). An object is no solid but a room
-/// if the camera looks at a point in it, from within or through an opening.
+/// Inside-Outside Segmentation using Generalized Winding Numbers"). An object is no solid but a room if the camera
+/// looks at a point in it, from within or through an opening.
 class SolidTest {
 public:
     /// Refers to the data.
