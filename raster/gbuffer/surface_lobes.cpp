@@ -58,8 +58,10 @@ std::optional<LobesOfColor> LobesOfColor::of(const Material& material) {
         result.passed_.fill(1);
     } else if (const auto* metal = std::get_if<Metal>(&material)) {
         if (!metal->roughness.constant()) return std::nullopt;
+        Metal white = *metal;
+        white.reflectance = RgbSlot{Rgb(1.0f)};
         result.metallic_ = 1;
-        result.alpha = metal->at(no_textures, SurfacePoint{}).alpha;
+        result.alpha = white.at(no_textures, SurfacePoint{}).alpha;
     } else if (const auto* principled = std::get_if<Principled>(&material)) {
         if (varies(*principled)) return std::nullopt;
         Principled white = *principled;
@@ -78,7 +80,9 @@ std::optional<LobesOfColor> LobesOfColor::of(const Material& material) {
         result.back_ = coated->internal_reflectance();
     } else if (const auto* glass = std::get_if<Dielectric>(&material)) {
         if (!glass->roughness.constant()) return std::nullopt;
-        const SurfaceLobes lobes = surface_lobes(bsdf_at(material, no_textures, SurfacePoint{}), 1);
+        Dielectric clear = *glass;
+        clear.tint = RgbSlot{Rgb(1.0f)};
+        const SurfaceLobes lobes = surface_lobes(bsdf_at(clear, no_textures, SurfacePoint{}), 1);
         result.dielectric_ = lobes.specular.r;
         result.alpha = lobes.alpha;
     }
