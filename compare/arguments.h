@@ -14,6 +14,7 @@ void add_stop(CommandLine& program);
 void add_kernels(CommandLine& program);
 void add_frames(CommandLine& program);
 void add_stress(CommandLine& program);
+void add_check(CommandLine& program);
 
 /// Text appended to each subcommand's --help.
 inline constexpr const char* kExitCodes =

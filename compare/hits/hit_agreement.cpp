@@ -9,6 +9,21 @@ namespace duet::compare {
 
 namespace {
 
+/// Returns how much rounding the corners relative to the eye can move a triangle's or quad's plane, as a multiple of
+/// one corner's relative rounding error: the distance of the farthest corner times the primitive's aspect ratio. A
+/// float ray-triangle test has this error; it is not proportional to the distance of the hit (Pharr, Jakob and
+/// Humphreys 2023, §6.8.7). Returns 0 for a sphere, which has no corners.
+double plane_reach(const std::vector<Vec3d>& corners, Vec3d eye) {
+    if (corners.empty()) return 0;
+    double reach = 0, longest_squared = 0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        reach = max(reach, length(corners[i] - eye));
+        longest_squared = max(longest_squared, length_squared(corners[i] - corners[(i + 1) % corners.size()]));
+    }
+    const double doubled_area = length(cross(corners[1] - corners[0], corners[2] - corners[0]));
+    return reach * max(1.0, longest_squared / doubled_area);
+}
+
 struct HitClassifier {
     const ReferenceTracer& tracer;
     Pinhole pinhole;
@@ -32,13 +47,15 @@ struct HitClassifier {
         return tie ? HitVerdict::kDepthTie : HitVerdict::kUnexplained;
     }
 
-    /// Returns |Δt|·|cos θ| / t of two hits of one primitive, or infinity unless both distances are finite and
-    /// positive.
+    /// Returns |Δt|·|cos θ| / max(t, reach) of two hits of one primitive, or infinity unless both distances are finite
+    /// and positive.
     double distance_error(int x, int y, const Hit& a, const Hit& b) const {
         const double ta = a.t, tb = b.t;
         if (!(std::isfinite(ta) && std::isfinite(tb) && ta > 0 && tb > 0))
             return std::numeric_limits<double>::infinity();
-        return std::abs(ta - tb) * tracer.cosine(ray(x, y), a.object, a.primitive, tb) / tb;
+        const Rayd r = ray(x, y);
+        const double reach = plane_reach(tracer.corners(a.object, a.primitive), r.origin);
+        return std::abs(ta - tb) * tracer.cosine(r, a.object, a.primitive, tb) / max(tb, reach);
     }
 };
 

@@ -11,7 +11,8 @@ import markdown
 # What a reader's system has.
 COMMON = {"apt-get", "cat", "cd", "chromium", "clang-format", "cp", "diff", "echo", "firefox", "g++", "gdb", "git",
           "head",
-          "ls", "mkdir", "mv", "node", "open", "perf", "pip", "rm", "tail", "time", "unzip", "xdg-open", "zip"}
+          "ls", "mkdir", "mv", "node", "open", "perf", "pip", "rm", "tail", "time", "unzip", "xargs", "xdg-open",
+          "zip"}
 PROGRAMS = ("raster", "raytrace", "compare")
 OURS = re.compile(r"(common|raster|raytrace|compare|models|tests)/")
 # The build writes these, so they need not exist.

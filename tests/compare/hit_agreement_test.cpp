@@ -167,11 +167,12 @@ TEST_SUITE("unit") {
         test::add(scene, QuadList{{facing(-20, 20, -20, 20, 0)}});
         const Image<Hit> raytrace = perfect_hits(scene, plain_view());
         Image<Hit> raster = raytrace;
-        raster(30, 31).t = 10 * (1 + 0.8e-5f);
+        // The surface is 10 meters from the ray's origin, which is at (-1.5, 0.5, 10), and its farthest corner 31.
+        raster(30, 31).t = 10 * (1 + 2.4e-5f);
         HitAgreement result = compare_hits(scene, plain_view(), raster, raytrace);
-        CHECK(result.worst_distance == doctest::Approx(0.8e-5).epsilon(0.02));
+        CHECK(result.worst_distance == doctest::Approx(2.4e-4 / length(Vec3d(21.5, 20.5, 10))).epsilon(0.02));
         CHECK(result.distance_violations == 0);
-        raster(33, 34).t = 10 * (1 - 3e-5f);
+        raster(33, 34).t = 10 * (1 - 3.3e-5f);
         raster(34, 34).t = std::numeric_limits<float>::quiet_NaN();
         result = compare_hits(scene, plain_view(), raster, raytrace);
         CHECK(result.distance_violations == 2);
@@ -185,7 +186,22 @@ TEST_SUITE("unit") {
         off(31, 31).t *= 1 + 5e-5f;
         result = compare_hits(grazing, plain_view(), off, exact);
         CHECK(result.distance_violations == 0);
-        CHECK(result.worst_distance == doctest::Approx(5e-5 * 0.0995).epsilon(0.02));
+        const double reach = length(Vec3d(2, 20, -20) - Vec3d(-0.5, 0.5, 10));
+        CHECK(result.worst_distance ==
+              doctest::Approx(5e-5 * 0.0995 * static_cast<double>(exact(31, 31).t) / reach).epsilon(0.02));
+    }
+
+    TEST_CASE("distances: a thin primitive's plane is less certain than a square one's, in proportion") {
+        for (const float thinness : {1.0f, 20.0f}) {
+            Scene scene = test::empty_scene();
+            test::add(scene, QuadList{{facing(-20, 20, -20 / thinness, 20 / thinness, 0)}});
+            const Image<Hit> exact = perfect_hits(scene, plain_view());
+            Image<Hit> off = exact;
+            REQUIRE(exact(32, 32).valid());
+            off(32, 32).t *= 1 + 2e-4f;
+            const HitAgreement result = compare_hits(scene, plain_view(), off, exact);
+            CHECK(result.distance_violations == (thinness > 1 ? 0 : 1));
+        }
     }
 
     TEST_CASE("moving objects are judged as the shutter opens, instances where they stand") {

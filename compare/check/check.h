@@ -1,0 +1,22 @@
+// `compare check`: renders scenes both ways and checks what must hold for any valid scene.
+#pragma once
+
+#include "compare/check/scene_check.h"
+
+#include <string>
+#include <vector>
+
+namespace duet::compare {
+
+struct CheckOptions {
+    std::vector<std::string> scenes; ///< scene files; "-" stands for the names on standard input, one a line
+    CheckSettings settings;
+    int memory_limit = 0; ///< address space of this program in MiB; 0: not limited
+};
+
+/// Prints a JSON object on a line of its own for each scene, as soon as it is checked: `scene` (its name), `verdict`
+/// ("ok", "failed" or "refused" if it cannot be loaded), `failure` and `details` (CheckResult; the error message of a
+/// refused scene) and `seconds`. Returns 1 if a scene failed, else 2 if one was refused, else 0.
+int check(const CheckOptions& options);
+
+} // namespace duet::compare

@@ -1,0 +1,36 @@
+// This header declares what must hold for the renderings of any valid scene.
+#pragma once
+
+#include "common/program/command_line.h"
+#include "common/rendering.h"
+#include "common/scene/scene.h"
+
+#include <cstdint>
+#include <string>
+
+namespace duet::compare {
+
+struct CheckSettings {
+    ImageSize size{0, 0}; ///< image size; 0 × 0: the scene's
+    int raster_spp = 1, raytrace_spp = 4;
+    std::uint64_t seed = 0;
+};
+
+/// Says which requirement a scene fails first. Both texts are empty if it fails none.
+struct CheckResult {
+    std::string failure; ///< the requirement, without numbers, so that failures with one cause have the same text
+    std::string details; ///< where, and which numbers
+    bool failed() const { return !failure.empty(); }
+};
+
+/// Renders the scene with both pipelines and checks, in this order:
+/// - where the pipelines hit different primitives, rays in double precision explain it (compare/hits);
+/// - distances to the same primitive agree within kDepthTolerance;
+/// - no sample is NaN, infinite or negative, nor is any pixel of an auxiliary image NaN;
+/// - one and three threads give the same bits, in the image and in all auxiliary images.
+CheckResult check_scene(const Scene& scene, const CheckSettings& settings);
+
+/// Returns whether the images and all auxiliary images of two renderings are equal in every bit.
+bool same_bits(const Rendering& a, const Rendering& b);
+
+} // namespace duet::compare

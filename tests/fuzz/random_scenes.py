@@ -1,0 +1,532 @@
+#!/usr/bin/env python3
+"""Writes random scene files, all of them valid, for stress tests of the programs that read them. They follow
+models/README.md and nothing else, so that a scene that a program refuses shows a difference from the documentation.
+
+  random_scenes.py FOLDER --count N --seed S
+
+writes FOLDER/scene-S-I.json for I from 0 to N - 1, and the meshes and images that they use into the same folder. The
+path of each scene goes to standard output as soon as the file is complete:
+
+  random_scenes.py /tmp/scenes --count 100 --seed 1 | while read -r f; do raster "$f" --size 8x8 -o /tmp/x.png; done
+
+A seed always gives the same files. Scene I of a seed does not depend on N.
+"""
+import argparse
+import copy
+import json
+import math
+import pathlib
+import random
+import struct
+import zlib
+
+MESHES = ["torus.obj", "sheet.obj", "soup.obj", "polygons.obj", "materials.obj"]
+IMAGES = ["rgb.png", "rgba.png", "gray.png", "colors.ppm", "colors.tga", "linear.pfm", "sky.hdr"]
+ENVIRONMENTS = ["sky.hdr", "linear.pfm", "rgb.png"]
+CONDUCTORS = ["aluminium", "chromium", "cobalt", "copper", "gold", "iron", "nickel", "palladium", "platinum", "silver",
+              "titanium", "tungsten"]
+LARGEST = 1e17  # No coordinate is larger than a few times this. The format allows 1e18.
+
+# One material for each row of the table of MTL files in models/README.md, and further ones for the maps.
+MTL = """newmtl light\nKe 3 2 1\nKd 0.2 0.2 0.2\n
+newmtl textured_light\nmap_Ke rgb.png\nmap_Kd rgb.png\n
+newmtl glass\nillum 7\nNi 1.5\nTf 0.9 1 0.9\n
+newmtl water\nillum 2\nd 0.3\nNi 1.33\n
+newmtl mirror\nillum 3\nKs 0.9 0.8 0.7\nNs 200\nmap_Ks rgb.png\n
+newmtl painted\nKd 0.7 0.1 0.1\nPm 0.5\nPr 0.3\nPc 0.5\nPcr 0.1\nNi 1.4\nmap_Pm gray.png\nmap_Pr gray.png\n
+newmtl matte\nmap_Kd -s 2 3 1 rgb.png\nnorm rgb.png\nd 0.5\n
+newmtl rough\nKd 0.5 0.5 0.5\nmap_Bump -bm 2 gray.png\nmap_d rgba.png\n"""
+
+
+def png(width, height, channels, pixel):
+    """A PNG file of 8 bits per channel. The function pixel(x, y) returns the values of one pixel from 0 to 255."""
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    rows = b"".join(b"\0" + bytes(v for x in range(width) for v in pixel(x, y)[:channels]) for y in range(height))
+    header = struct.pack(">IIBBBBB", width, height, 8, {1: 0, 3: 2, 4: 6}[channels], 0, 0, 0)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
+
+
+def pixel_values(x, y):
+    """Red, green, blue and alpha of the images, from 0 to 255: gradients with some structure."""
+    return (x * 37 + y * 5) % 256, (x * x + y * 11) % 256, 128 + 16 * ((x + y) % 8), 255 * ((x // 2 + y // 2) % 2)
+
+
+def images():
+    """The image files, as a dictionary from name to bytes. None has the size of another."""
+    ppm = bytes(v for y in range(4) for x in range(6) for v in pixel_values(x, y)[:3])
+    tga = struct.pack("<BBBHHBHHHHBB", 0, 0, 2, 0, 0, 0, 0, 0, 5, 3, 24, 0)
+    tga += bytes(v for y in range(3) for x in range(5) for v in pixel_values(x, y)[:3])
+    pfm = b"".join(struct.pack("<f", v / 100) for y in range(5) for x in range(10) for v in pixel_values(x, y)[:3])
+    # Pixels of a Radiance file: three mantissas and an exponent. One pixel is as bright as the sun.
+    hdr = bytearray(v for y in range(8) for x in range(16) for v in (*(max(m, 3) for m in pixel_values(x, y)[:3]), 128))
+    hdr[4 * 37:4 * 38] = bytes([255, 240, 200, 144])
+    return {
+        "rgb.png": png(16, 8, 3, pixel_values), "rgba.png": png(9, 7, 4, pixel_values),
+        "gray.png": png(1, 13, 1, pixel_values), "colors.ppm": b"P6\n6 4\n255\n" + ppm, "colors.tga": tga,
+        "linear.pfm": b"PF\n10 5\n-1.0\n" + pfm,
+        "sky.hdr": b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8 +X 16\n" + bytes(hdr),
+    }
+
+
+def lines_of(keyword, vectors):
+    return [keyword + "".join(f" {value:.6g}" for value in vector) for vector in vectors]
+
+
+def torus():
+    """A closed mesh of quads without normals or texture coordinates."""
+    def point(i, j):
+        a, b = math.tau * i / 14, math.tau * j / 8
+        ring = 0.7 + 0.3 * math.cos(b)
+        return ring * math.cos(a), 0.3 * math.sin(b), ring * math.sin(a)
+    faces = [[8 * (i % 14) + j % 8 + 1 for i, j in ((i, j), (i, j + 1), (i + 1, j + 1), (i + 1, j))]
+             for i in range(14) for j in range(8)]
+    return lines_of("v", (point(i, j) for i in range(14) for j in range(8))) + lines_of("f", faces)
+
+
+def sheet(materials=()):
+    """An open, wavy grid with texture coordinates and normals. Its faces have the materials in turn."""
+    grid = [(i, j) for i in range(6) for j in range(6)]
+    lines = lines_of("v", ((i / 2.5 - 1, 0.3 * math.sin(i + j), 1 - j / 2.5) for i, j in grid))
+    lines += lines_of("vt", ((i / 5, j / 5) for i, j in grid))
+    lines += lines_of("vn", ((-0.75 * math.cos(i + j), 1, 0.75 * math.cos(i + j)) for i, j in grid))
+    for n, (i, j) in enumerate((i, j) for i in range(5) for j in range(5)):
+        if materials:
+            lines.append(f"usemtl {materials[n % len(materials)]}")
+        corners = (6 * i + j + 1, 6 * i + j + 7, 6 * i + j + 8, 6 * i + j + 2)
+        lines.append("f" + "".join(f" {c}/{c}/{c}" for c in corners))
+    return lines
+
+
+def soup():
+    """Triangles anywhere: ordinary ones, slivers, triangles of zero area, faces that name a vertex twice, vertices with
+    zero normals or without texture coordinates, and negative indices."""
+    numbers = random.Random("soup")
+    lines = ["vt 0 0", "vt 1 0", "vt 0 1", "vn 0 0 0", "vn 0 1 0"]
+    for n in range(60):
+        a, b, c = ([numbers.uniform(-1, 1) for _ in range(3)] for _ in range(3))
+        if n % 6 == 1:  # A sliver.
+            c = [p + 0.5 * (q - p) + 1e-6 * r for p, q, r in zip(a, b, c)]
+        if n % 6 == 2:  # Zero area: the corners lie on a line, or two of them at one place.
+            c = [2 * q - p for p, q in zip(a, b)] if n % 12 == 2 else b
+        lines += lines_of("v", (a, b, c))
+        lines.append(["f -3 -2 -1", "f -3/1/2 -2/2/2 -1/3/2", "f -3/1/1 -2/2/2 -1/3/1", "f -3/1 -2 -1/3",
+                      "f -3 -2 -2", "f -3//2 -2//2 -1//2", "f -3 -2 -1"][n % 7])
+    return lines
+
+
+def polygons():
+    """A convex pentagon, a concave quad, a concave star that bends, and a polygon that visits a vertex twice; lines,
+    points and smoothing groups besides, which are ignored."""
+    star = [((0.3 + 0.7 * (n % 2)) * math.cos(math.pi * n / 5), 0.1 * (n % 3),
+             -(0.3 + 0.7 * (n % 2)) * math.sin(math.pi * n / 5)) for n in range(10)]
+    pentagon = [(math.cos(math.tau * n / 5), math.sin(math.tau * n / 5), -1) for n in range(5)]
+    lines = ["o polygons", "g a b", "s 1"] + lines_of("v", star + pentagon)
+    lines += lines_of("v", [(-1, -1, 1), (1, -1, 1), (0, -0.5, 1), (0, 1, 1)])
+    lines += ["usemtl undefined", "f 1 2 3 4 5 6 7 8 9 10", "s off", "f 11 12 13 14 15", "f 16 17 18 19",
+              "f 16 17 17 19", "l 1 2 3", "p 4"]
+    return lines
+
+
+def write_assets(folder):
+    """Writes the meshes, their materials and the images, except those that are there already."""
+    names = [line.split()[1] for line in MTL.splitlines() if line.startswith("newmtl")]
+    meshes = [torus(), sheet(), soup(), polygons(), ["mtllib materials.mtl"] + sheet(names)]
+    files = {name: ("\n".join(lines) + "\n").encode() for name, lines in zip(MESHES, meshes)}
+    for name, data in {**files, **images(), "materials.mtl": MTL.encode()}.items():
+        path = folder / name
+        if not path.exists() or path.read_bytes() != data:
+            path.write_bytes(data)
+
+
+def short(number):
+    """The number with 12 digits, which keeps files readable."""
+    return float(f"{number:.12g}")
+
+
+def single(number):
+    """The number in single precision."""
+    return struct.unpack("f", struct.pack("f", number))[0]
+
+
+def plus(a, b, factor=1.0):
+    return [short(p + factor * q) for p, q in zip(a, b)]
+
+
+def length(vector):
+    return math.hypot(*vector)
+
+
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+class Scene:
+    """One random scene. Most methods return a part of the file as a JSON value."""
+
+    def __init__(self, seed, index):
+        self.random = random.Random(f"{seed}/{index}")
+        self.pick, self.uniform = self.random.choice, self.random.uniform
+        self.choose_sizes()
+        self.textures, self.materials = {}, {}
+        self.shapes, self.groups, self.places = [], [], [self.center]
+        self.names = 0
+        # A product of two matrices that both change could be singular midway. So only one kind of object moves, unless
+        # all motions are translations.
+        self.movers = self.random.choices([None, "shape", "group", "instance", "all"], [8, 5, 2, 2, 3])[0]
+
+    def choose_sizes(self):
+        """The range of sizes of objects, the size that most of them have, and the center of the scene."""
+        kind = self.random.choices(["ordinary", "wide", "extreme"], [8, 3, 1])[0]
+        extreme = self.pick([(1e-9, 1e-6), (1e6, 1e9), (1e-9, 1e9), (1e-9, 1e9), (1e14, LARGEST / 10)])
+        self.smallest, self.largest = {"ordinary": (0.01, 100), "wide": (1e-4, 1e4), "extreme": extreme}[kind]
+        self.unit = self.log_uniform(self.smallest, self.largest)
+        # Scales of transforms. Where coordinates are close to the largest, the transforms must not enlarge.
+        self.scales = (0.1, 1) if self.largest > 1e12 else (1e-3, 1e3) if kind == "extreme" else (0.2, 5)
+        far = min(self.unit * self.log_uniform(10, 1e6), LARGEST)
+        self.center = self.direction(far) if self.chance(0.2) else [0, 0, 0]
+
+    # Numbers, vectors and colors.
+
+    def chance(self, probability):
+        return self.random.random() < probability
+
+    def some(self, values, probability=0.5):
+        """Some of these optional keys and values."""
+        return {key: value for key, value in values.items() if self.chance(probability)}
+
+    def log_uniform(self, low, high):
+        return short(math.exp(self.uniform(math.log(low), math.log(high))))
+
+    def size(self):
+        """The size of an object: mostly about that of the others, otherwise any of the scene's range."""
+        if self.chance(0.3):
+            return self.log_uniform(self.smallest, self.largest)
+        return min(max(self.unit * self.log_uniform(0.1, 2), self.smallest), self.largest)
+
+    def direction(self, size=1.0):
+        """A vector of this length. A third of the vectors lie along an axis."""
+        vector = [self.random.gauss(0, 1) for _ in range(3)]
+        if self.chance(0.33):
+            vector = self.pick([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]])
+        return [short(size * x / length(vector)) for x in vector]
+
+    def any_length(self):
+        """A vector of which only the direction matters."""
+        return self.direction(self.pick([1, self.uniform(0.1, 10), self.log_uniform(1e-9, 1e9)]))
+
+    def place(self):
+        return plus(self.center, [self.uniform(-2, 2) * self.unit for _ in range(3)])
+
+    def fraction(self):
+        return self.pick([0, 1, short(self.uniform(0, 1)), short(self.uniform(0, 1)), self.log_uniform(1e-9, 1)])
+
+    def color(self):
+        """A color in [0, 1], as a number or three."""
+        return self.fraction() if self.chance(0.4) else [self.fraction() for _ in range(3)]
+
+    def power(self, usual):
+        """A color in [0, 1e12] for light: none, about the usual amount, or any amount."""
+        amount = self.random.choices([0, min(usual, 1e12), self.log_uniform(1e-12, 1e12), 1e12], [2, 12, 2, 1])[0]
+        return amount if self.chance(0.4) else [amount * self.fraction() for _ in range(3)]
+
+    # Textures and materials.
+
+    def texture(self):
+        kind = self.pick(["image", "image", "checker", "noise"])
+        scale = self.pick([1, self.uniform(0.1, 20), self.log_uniform(1e-9, 1e9)])
+        if kind == "image":
+            return {"type": kind, "file": self.pick(IMAGES), **self.some({
+                "scale": self.pick([scale, [scale, -2], [-0.5, scale]]),
+                "filter": self.pick(["nearest", "bilinear", "trilinear", "anisotropic"]),
+                "values": self.pick(["colors", "data"]),
+                "channel": self.pick(["all", "red", "green", "blue", "alpha"])})}
+        if kind == "checker":
+            keys = {"even": self.color(), "odd": self.color(), "scale": scale, "solid": self.chance(0.5)}
+        else:
+            keys = {"low": self.color(), "high": self.color(), "scale": scale, "marble": self.chance(0.5),
+                    "octaves": self.pick([1, 16, self.random.randint(2, 8)])}
+        return {"type": kind, **self.some(keys)}
+
+    def texture_name(self):
+        return self.pick(sorted(self.textures))
+
+    def slot(self):
+        if self.textures and self.chance(0.4):
+            return {"texture": self.texture_name(), **self.some({"tint": self.color()})}
+        return self.color()
+
+    def scalar(self):
+        if self.textures and self.chance(0.3):
+            return {"texture": self.texture_name(), **self.some({"scale": self.fraction()})}
+        return self.fraction()
+
+    def map(self):
+        """The value of a normal or bump map."""
+        scale = self.pick([1, -1, 0, 0.01 * self.unit, self.uniform(-5, 5), self.log_uniform(1e-9, 1e9)])
+        return {"texture": self.texture_name(), **self.some({"scale": scale})}
+
+    def ior(self):
+        return self.pick([1, 1.33, 1.5, 4, self.uniform(1, 4)])
+
+    def metal(self):
+        if self.chance(0.5):
+            return {"conductor": self.pick(CONDUCTORS), **self.some({"roughness": self.scalar()})}
+        return self.some({"reflectance": self.slot(), "roughness": self.scalar()})
+
+    def dielectric(self):
+        keys = self.some({"tint": self.slot(), "ior": self.ior()})
+        if self.chance(0.3):
+            return keys | {"thin": True}
+        absorption = {"color": self.color(), "distance": max(1e-9, self.size())}
+        return keys | self.some({"roughness": self.scalar(), "absorption": absorption, "thin": False,
+                                 "priority": self.pick([0, 1, 2, self.random.randint(0, 100)])})
+
+    def emissive(self):
+        keys = {"radiance": self.power(5), **self.some({"two_sided": self.chance(0.5), "albedo": self.slot()})}
+        if self.textures and self.chance(0.5):
+            keys["radiance_texture"] = self.texture_name()
+        return keys
+
+    def material(self):
+        kind = self.pick(["diffuse", "metal", "dielectric", "principled", "coated", "emissive"])
+        slot, scalar = self.slot(), self.scalar()
+        if kind in ("metal", "dielectric", "emissive"):
+            keys = getattr(self, kind)()
+        elif kind == "diffuse":
+            keys = self.some({"albedo": slot, "roughness": scalar})
+        elif kind == "coated":
+            keys = self.some({"albedo": slot, "roughness": scalar, "ior": self.ior()})
+        else:
+            keys = self.some({"base_color": slot, "roughness": scalar, "ior": self.ior(), "metallic": self.scalar(),
+                              "clearcoat": self.scalar(), "clearcoat_roughness": self.scalar()})
+        if self.textures:
+            keys |= self.some({"normal": self.map(), "bump": self.map()}, 0.15)
+        if kind != "emissive":
+            keys |= self.some({"opacity": self.scalar(), "cutoff": self.fraction()}, 0.15)
+        return {"type": kind, **keys}
+
+    # Transforms and motion.
+
+    def pivoted(self, steps):
+        """The steps about the center of the scene in place of the origin, so that the object stays there."""
+        if not steps or self.center == [0, 0, 0]:
+            return steps
+        return [{"translate": [-x for x in self.center]}, *steps, {"translate": self.center}]
+
+    def factor(self):
+        """A positive factor of a scale."""
+        return self.log_uniform(*self.scales)
+
+    def matrix(self):
+        """A step with a matrix whose diagonal is positive, and larger than the rest of its row. So it is not singular,
+        and no mean of two such matrices is."""
+        entries = []
+        for i in range(3):
+            row = [self.uniform(0.85, 1) if i == j else self.uniform(-0.4, 0.4) for j in range(3)]
+            factor = self.factor()
+            entries += [short(factor * x) for x in row] + [short(self.uniform(-1, 1) * self.unit)]
+        return {"matrix": entries + [0, 0, 0, 1]}
+
+    def step(self):
+        kind = self.pick(["translate", "scale", "rotate", "matrix"])
+        if kind == "translate":
+            return {"translate": self.direction(self.unit)}
+        if kind == "scale":
+            factors = [self.factor() * self.pick([-1, 1, 1]) for _ in range(3)]
+            return {"scale": self.pick([factors, factors[0]])}
+        if kind == "rotate":
+            return {"rotate_degrees": self.pick([90, 180, -45, self.uniform(-400, 400)]), "axis": self.any_length()}
+        return self.matrix()
+
+    def motion(self, steps):
+        """The transforms at times 0 and 1. Between them, none is singular: they differ by one step that is a
+        translation, a turn of less than 180 degrees, a scale by positive factors, or a matrix as matrix() makes."""
+        kind = self.pick(["translate", "turn", "scale", "matrix"])
+        if self.movers == "all" or kind == "translate":
+            return steps, steps + [{"translate": self.direction(self.unit * self.log_uniform(0.01, 3))}]
+        if kind == "matrix":
+            return steps + self.pivoted([self.matrix()]), steps + self.pivoted([self.matrix()])
+        step = {"scale": [self.factor() for _ in range(3)]}
+        if kind == "turn":
+            step = {"rotate_degrees": self.uniform(-170, 170), "axis": self.any_length()}
+        return steps, self.pick([steps + self.pivoted([step]), [step] + steps])
+
+    def set_transform(self, item, kind, depth, steps=()):
+        """Gives an object these steps, perhaps further ones, and perhaps a motion."""
+        steps = list(steps)
+        if self.chance(0.9 if kind == "instance" else 0.4):
+            steps += self.pivoted([self.step() for _ in range(self.random.randint(1, 3))])
+        moves = self.movers == "all" or self.movers == kind and (kind == "shape" or depth == 0)
+        if moves and self.chance(0.5):
+            steps, item["transform_end"] = self.motion(steps)
+        if steps:
+            item["transform"] = steps
+
+    # Objects.
+
+    def name(self):
+        self.names += 1
+        return self.pick(["object {}", "größe-{}", "{}", "a\"b\\{}", "object_{}"]).format(self.names)
+
+    def quad(self):
+        u, across = self.direction(self.size()), self.direction()
+        while length(cross(u, across)) < 0.1 * length(u):
+            across = self.direction()
+        narrow = length(u) * self.pick([1, self.log_uniform(0.001, 1)])
+        v = [short(narrow * x) for x in across]
+        return {"corner": plus(plus(self.places[-1], u, -0.5), v, -0.5), "u": u, "v": v}
+
+    def box(self):
+        half = self.size() / 2
+        if self.chance(0.08):  # A huge box below the others, whose top is at the height of the center.
+            half = min(half * self.log_uniform(1e3, 1e6), LARGEST)
+            self.places[-1] = plus(self.center, [0, -half, 0])
+        while True:
+            sides = [half * self.pick([1, self.log_uniform(0.01, 1)]) for _ in range(3)]
+            low, high = plus(self.places[-1], sides, -1), plus(self.places[-1], sides)
+            if all(single(a) < single(b) for a, b in zip(low, high)):
+                return {"low": low, "high": high}
+            half *= 10  # A small box far from the origin has no extent in single precision.
+
+    def shape(self, depth):
+        if self.shapes and self.chance(0.12):  # Two surfaces at the same place.
+            item = copy.deepcopy(self.pick(self.shapes))
+            item.pop("name", None)
+            return item | ({"material": self.pick(sorted(self.materials))} if "material" in item else {})
+        kind = self.pick(["quad", "sphere", "box", "mesh"])
+        self.places.append(self.place())
+        item, steps = {"type": kind, **self.some({"name": self.name()}, 0.3)}, []
+        if kind == "mesh":
+            item |= {"file": self.pick(MESHES), **self.some({"normals": self.pick(["file", "flat", "smooth"])})}
+            steps = [{"scale": self.size()}, {"translate": self.places[-1]}]
+        elif kind == "sphere":
+            item |= {"center": self.places[-1], "radius": self.size()}
+        else:
+            item |= self.quad() if kind == "quad" else self.box()
+        if kind != "mesh" or self.chance(0.6):
+            item["material"] = self.pick(sorted(self.materials))
+        self.set_transform(item, "shape", depth, steps)
+        self.shapes.append(item)
+        return item
+
+    def group(self, depth, count):
+        item = {"type": "group", "objects": self.objects(depth + 1, count)}
+        if self.chance(0.7):
+            item |= {"name": self.name(), **self.some({"hidden": self.chance(0.7)})}
+            self.groups.append(item["name"])
+        self.set_transform(item, "group", depth)
+        return item
+
+    def instance(self, depth):
+        item = {"type": "instance", "of": self.pick(self.groups), **self.some({"name": self.name()}, 0.3)}
+        self.set_transform(item, "instance", depth)
+        return item
+
+    def objects(self, depth, count):
+        """A list of objects, count with those in its groups. Instances in groups show groups that are complete, so no
+        group shows itself. The list of the file has instances of later groups, too."""
+        made = []
+        while count > 0:
+            used = 1
+            if depth > 0 and self.groups and self.movers != "group" and self.chance(0.15):
+                made.append(self.instance(depth))
+            elif count > 1 and depth < 4 and self.chance(0.25):
+                used = self.random.randint(2, count)
+                made.append(self.group(depth, used - 1))
+            else:
+                made.append(self.shape(depth))
+            count -= used
+        for _ in range(self.random.randint(0, 3) if depth == 0 and self.groups else 0):
+            made.insert(self.random.randint(0, len(made)), self.instance(depth))
+        return made
+
+    # The camera, lights and environment.
+
+    def view(self):
+        """The eye and the point that it looks at: before the scene, inside an object, very close, or far away."""
+        kind = self.random.choices(["before", "inside", "close", "far"], [6, 2, 1, 1])[0]
+        at = self.pick(self.places)
+        distance = {"before": 5 * self.unit, "inside": self.unit, "close": self.uniform(1e-6, 9e-6),
+                    "far": min(self.unit * self.log_uniform(10, 1e4), LARGEST)}[kind]
+        while True:
+            other = plus(at, self.direction(distance))
+            # In single precision, the eye and the point differ by about the distance. Otherwise the view's direction
+            # is not the one that up is chosen for.
+            if math.dist([single(x) for x in other], [single(x) for x in at]) > 0.5 * distance:
+                return (at, other) if kind == "inside" else (other, at)
+            distance *= 10
+
+    def camera(self):
+        eye, look_at = ([single(x) for x in point] for point in self.view())
+        view = plus(look_at, eye, -1)
+        up = [0, 1, 0] if self.chance(0.6) else self.any_length()
+        while length(cross(up, view)) < 0.01 * length(up) * length(view):
+            up = self.any_length()
+        near, radius, focus = (self.pick([0, length(view) * self.log_uniform(*part)])
+                               for part in ((1e-6, 0.5), (1e-4, 0.3), (0.01, 100)))
+        keys = {"eye": eye, "look_at": look_at, **({"up": up} if up != [0, 1, 0] or self.chance(0.5) else {})}
+        keys |= self.some({"near": near, "shutter": sorted([self.fraction(), self.fraction()])}, 0.3)
+        if self.chance(0.25):
+            return {"projection": "orthographic", **keys, **self.some({"height": self.unit * self.uniform(0.1, 8)})}
+        fov = self.pick([0.001, 179, self.uniform(5, 100), self.uniform(20, 70), self.uniform(20, 70)])
+        return keys | self.some({"projection": "perspective", "fov_degrees": fov, "aperture_radius": radius,
+                                 "focus_distance": focus})
+
+    def light(self):
+        kind = self.pick(["point", "spot", "sun"])
+        if kind == "sun":
+            return {"type": kind, "direction": self.any_length(), "irradiance": self.power(3)}
+        light = {"type": kind, "position": self.place(), "intensity": self.power(10 * self.unit ** 2)}
+        if kind == "spot":
+            light["direction"] = self.any_length()
+            inner = self.uniform(0, 90)
+            light |= self.pick([{}, {"inner_degrees": self.uniform(0, 29)}, {"outer_degrees": self.uniform(21, 180)},
+                                {"inner_degrees": 0, "outer_degrees": 180},
+                                {"inner_degrees": inner, "outer_degrees": inner + self.uniform(0.01, 90)}])
+        return light
+
+    def environment(self):
+        kind = self.pick(["constant", "sky", "image"])
+        if kind == "constant":
+            return {"type": kind, "radiance": self.power(1)}
+        if kind == "sky":
+            return {"type": kind, **self.some({"down": self.power(1), "up": self.power(1)})}
+        return {"type": kind, "file": self.pick(ENVIRONMENTS), **self.some({
+            "scale": self.pick([0, 1, self.uniform(0.1, 10), self.log_uniform(1e-6, 1e6)]),
+            "rotate_degrees": self.pick([90, self.uniform(-720, 720), LARGEST])})}
+
+    def file(self):
+        """The whole scene. The order of its keys is random."""
+        for n in range(self.random.randint(0, 5)):
+            self.textures[f"texture {n}"] = self.texture()
+        for n in range(self.random.randint(1, 7)):
+            self.materials[f"material {n}"] = self.material()
+        count = 0 if self.chance(0.02) else self.random.randint(1, 12)
+        scene = {"objects": self.objects(0, count), "materials": self.materials, "camera": self.camera()}
+        if self.textures:
+            scene["textures"] = self.textures
+        scene |= self.some({"lights": [self.light() for _ in range(self.random.randint(0, 4))],
+                            "environment": self.environment()}, 0.7)
+        scene |= self.some({"image": {"width": self.random.randint(1, 64), "height": self.random.randint(1, 64)},
+                            "description": f"Sizes about {self.unit:.3g} m.", "$schema": "scene.schema.json"}, 0.3)
+        return {key: scene[key] for key in self.random.sample(list(scene), len(scene))}
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Writes random valid scene files and prints their paths.")
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("--count", type=int, default=10, help="number of scenes (default 10)")
+    parser.add_argument("--seed", type=int, default=0, help="seed of the random numbers (default 0)")
+    options = parser.parse_args()
+    options.folder.mkdir(parents=True, exist_ok=True)
+    write_assets(options.folder)
+    for index in range(options.count):
+        path = options.folder / f"scene-{options.seed}-{index}.json"
+        scene = Scene(options.seed, index).file()
+        path.write_text(json.dumps(scene, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+        print(path, flush=True)
+
+
+if __name__ == "__main__":
+    main()
