@@ -47,15 +47,17 @@ struct HitClassifier {
         return tie ? HitVerdict::kDepthTie : HitVerdict::kUnexplained;
     }
 
-    /// Returns |Δt|·|cos θ| / max(t, reach) of two hits of one primitive, or infinity unless both distances are finite
-    /// and positive.
+    /// Returns (|Δt|·|cos θ| − rounding) / max(t, reach) of two hits of one primitive, at least 0; or infinity unless
+    /// both distances are finite and positive.
     double distance_error(int x, int y, const Hit& a, const Hit& b) const {
         const double ta = a.t, tb = b.t;
         if (!(std::isfinite(ta) && std::isfinite(tb) && ta > 0 && tb > 0))
             return std::numeric_limits<double>::infinity();
         const Rayd r = ray(x, y);
         const double reach = plane_reach(tracer.corners(a.object, a.primitive), r.origin);
-        return std::abs(ta - tb) * tracer.cosine(r, a.object, a.primitive, tb) / max(tb, reach);
+        const double rounding = length(Vec3d(Vec3(r.origin)) - r.origin);
+        const double apart = std::abs(ta - tb) * tracer.cosine(r, a.object, a.primitive, tb);
+        return max(apart - rounding, 0.0) / max(tb, reach);
     }
 };
 

@@ -19,9 +19,9 @@ enum class HitVerdict : std::uint8_t {
     kUnexplained ///< neither same, edge nor tie: one of the pipelines is wrong
 };
 
-/// Two distances to one primitive are equal if |Δt|·|cos θ| ≤ kDepthTolerance·max(t, reach). The reach is the distance
-/// of the primitive's farthest corner from the eye times its aspect ratio: rounding the corners moves the plane in
-/// proportion to it.
+/// Two distances to one primitive are equal if |Δt|·|cos θ| ≤ rounding + kDepthTolerance·max(t, reach). The reach is
+/// the distance of the primitive's farthest corner from the eye times its aspect ratio: rounding the corners moves the
+/// plane in proportion to it. The rounding is that of the ray's origin to float, which only orthographic views have.
 inline constexpr double kDepthTolerance = 1e-5;
 
 /// A pixel whose hits differ without an explanation.
@@ -36,7 +36,7 @@ struct HitAgreement {
     Image<HitVerdict> verdicts;
     std::vector<UnexplainedPixel> listed; ///< the first kMaxListed unexplained pixels, from the top
     // The distances below are measured where both pipelines hit the same primitive.
-    double worst_distance = 0;            ///< largest |Δt|·|cos θ| / max(t, reach)
+    double worst_distance = 0;            ///< largest (|Δt|·|cos θ| − rounding) / max(t, reach)
     int worst_x = 0, worst_y = 0;         ///< the first pixel with that distance
     std::int64_t distance_violations = 0; ///< pixels over kDepthTolerance, or without a finite distance
 };

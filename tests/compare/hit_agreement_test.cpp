@@ -204,6 +204,24 @@ TEST_SUITE("unit") {
         }
     }
 
+    TEST_CASE("distances: the rounding of an orthographic ray's origin is allowed, and no more") {
+        View view = plain_view();
+        view.camera.eye = {0, 0, 1e5 + 10};
+        view.camera.look_at = {0.3, 0.2, 1e5}; // oblique, so that the origins differ in z
+        Scene scene = test::empty_scene();
+        test::add(scene, QuadList{{facing(-20, 20, -20, 20, 1e5f)}});
+        const Image<Hit> exact = perfect_hits(scene, view);
+        const Rayd ray = CameraModel(view).pinhole().ray({20.5, 12.5});
+        const double rounding = length(Vec3d(Vec3(ray.origin)) - ray.origin);
+        REQUIRE(exact(20, 12).valid());
+        REQUIRE(rounding > 1e-4);
+        for (const double relief : {0.9, 5.0}) {
+            Image<Hit> off = exact;
+            off(20, 12).t += static_cast<float>(relief * rounding);
+            CHECK(compare_hits(scene, view, off, exact).distance_violations == (relief > 1 ? 1 : 0));
+        }
+    }
+
     TEST_CASE("moving objects are judged as the shutter opens, instances where they stand") {
         Scene scene = test::empty_scene();
         const Mat4 start = translation(Vec3(-10, 0, 0)), end = translation(Vec3(10, 0, 0));
