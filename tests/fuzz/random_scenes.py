@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Writes random scene files, all of them valid, for stress tests of the programs that read them. They follow
-models/README.md and nothing else, so that a scene that a program refuses shows a difference from the documentation.
+models/README.md alone, so that a scene that a program refuses shows a difference from the documentation. The only
+addition is that a box has an extent, and a camera a direction, in single precision, too.
 
   random_scenes.py FOLDER --count N --seed S
 
