@@ -79,6 +79,11 @@ RenderFunction raytrace_hits(const Scene& scene, const ComparisonSettings& setti
     return hits(scene, path_tracer_settings(settings));
 }
 
+View scene_view(const Scene& scene, ImageSize size) {
+    if (size.width == 0) size = {scene.width, scene.height};
+    return {scene.camera, size.width, size.height};
+}
+
 std::string paragraph(const std::vector<std::string>& sentences) {
     std::string text;
     for (const std::string& sentence : sentences) text += (text.empty() ? "" : " ") + sentence;

@@ -34,6 +34,9 @@ Renderer raytrace_renderer(const Scene& scene, const ComparisonSettings& setting
 RenderFunction raster_hits(const Scene& scene, const ComparisonSettings& settings);
 RenderFunction raytrace_hits(const Scene& scene, const ComparisonSettings& settings);
 
+/// Returns the view of the scene's camera; a size of 0 × 0 stands for the scene's.
+View scene_view(const Scene& scene, ImageSize size);
+
 /// Joins the sentences (a rendering's approximations) with spaces.
 std::string paragraph(const std::vector<std::string>& sentences);
 

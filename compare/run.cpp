@@ -89,8 +89,7 @@ int run(const RunOptions& options) {
     const Scene scene = load_scene(options.scene);
     const double load_seconds = watch.seconds();
     const fs::path folder = make_folder(options.folder);
-    const View view{scene.camera, options.size.width > 0 ? options.size.width : scene.width,
-                    options.size.height > 0 ? options.size.height : scene.height};
+    const View view = scene_view(scene, options.size);
 
     std::optional<RendererResult> raster =
         run_renderer(raster_renderer(scene, options.settings), view, options, interrupt);

@@ -7,18 +7,13 @@
 #include "raster/render.h"
 #include "raytrace/render.h"
 
-#include <cmath>
-
 namespace duet::compare {
 
 namespace {
 
 bool is_valid(float x) { return x >= 0; } // false for a NaN; a depth may be infinite
-bool is_valid(Rgb c) {
-    const auto finite = [](float x) { return x >= 0 && std::isfinite(x); };
-    return finite(c.r) && finite(c.g) && finite(c.b);
-}
-bool is_valid(Vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool is_valid(Rgb c) { return is_finite(c) && c.r >= 0 && c.g >= 0 && c.b >= 0; }
+bool is_valid(Vec3 v) { return is_finite(v); }
 
 template <typename Pixel> bool all_valid(const Image<Pixel>& image) {
     for (const Pixel& pixel : image)
@@ -53,16 +48,8 @@ CheckResult check_hits(const Scene& scene, const View& view, const CheckSettings
     const Image<Hit> raster = raster_hits(scene, common)(view, control).hit;
     const Image<Hit> raytrace = raytrace_hits(scene, common)(view, control).hit;
     const HitAgreement hits = compare_hits(scene, view, raster, raytrace, 1);
-    if (hits.unexplained > 0) {
-        const UnexplainedPixel& p = hits.listed.front();
-        const auto text = [](const auto& hit) {
-            return hit.valid() ? message("object ", hit.object, ", primitive ", hit.primitive, ", t ", hit.t)
-                               : std::string("nothing");
-        };
-        return {"unexplained hits", message(hits.unexplained, " pixels; at (", p.x, ", ", p.y, ") raster sees ",
-                                            text(p.raster), "; raytrace ", text(p.raytrace), "; double precision ",
-                                            text(p.exact))};
-    }
+    if (hits.unexplained > 0)
+        return {"unexplained hits", message(hits.unexplained, " pixels; ", hits.listed.front().describe())};
     if (hits.distance_violations > 0)
         return {"distances apart", message(hits.distance_violations, " pixels, relative difference up to ",
                                            hits.worst_distance, " at (", hits.worst_x, ", ", hits.worst_y, ")")};
@@ -93,9 +80,7 @@ bool same_bits(const Rendering& a, const Rendering& b) {
 }
 
 CheckResult check_scene(const Scene& scene, const CheckSettings& settings) {
-    const bool own_size = settings.size.width == 0;
-    const View view{scene.camera, own_size ? scene.width : settings.size.width,
-                    own_size ? scene.height : settings.size.height};
+    const View view = scene_view(scene, settings.size);
     CheckResult result = check_hits(scene, view, settings);
     if (result.failed()) return result;
     raster::RasterSettings raster;

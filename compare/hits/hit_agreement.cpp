@@ -121,6 +121,15 @@ void check_hits(const Scene& scene, const View& view, const Image<Hit>& hits, co
 
 } // namespace
 
+std::string UnexplainedPixel::describe() const {
+    const auto text = [](const auto& hit) {
+        return hit.valid() ? message("object ", hit.object, " primitive ", hit.primitive, " t ", hit.t)
+                           : std::string("nothing");
+    };
+    return message("pixel (", x, ", ", y, "): raster sees ", text(raster), ", raytrace ", text(raytrace),
+                   ", double precision ", text(exact));
+}
+
 HitAgreement compare_hits(const Scene& scene, const View& view, const Image<Hit>& raster, const Image<Hit>& raytrace,
                           int threads) {
     check_hits(scene, view, raster, "raster");

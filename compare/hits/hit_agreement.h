@@ -7,6 +7,7 @@
 #include "compare/hits/reference_tracer.h"
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace duet::compare {
@@ -29,6 +30,9 @@ struct UnexplainedPixel {
     int x = 0, y = 0;
     Hit raster, raytrace;
     ReferenceHit exact; ///< closest hit of the double-precision ray through the pixel center
+
+    /// Returns the pixel and its three hits, for a message.
+    std::string describe() const;
 };
 
 struct HitAgreement {

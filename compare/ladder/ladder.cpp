@@ -83,8 +83,7 @@ int ladder(const LadderOptions& options) {
     const InterruptFlag interrupt;
     const Scene scene = load_scene(options.scene);
     const fs::path folder = make_folder(options.folder);
-    const View view{scene.camera, options.size.width > 0 ? options.size.width : scene.width,
-                    options.size.height > 0 ? options.size.height : scene.height};
+    const View view = scene_view(scene, options.size);
     const LadderResult result = measure_ladder(scene, view, options, interrupt);
     if (interrupt.raised()) return kExitInterrupted;
 

@@ -47,12 +47,6 @@ Image<Hit> textbook_hits(const TrialScene& trial) {
     return hits;
 }
 
-std::string describe(const UnexplainedPixel& p) {
-    const auto hit = [](const auto& h) { return message("object ", h.object, " primitive ", h.primitive, " t ", h.t); };
-    return message("pixel (", p.x, ", ", p.y, "): raster sees ", hit(p.raster), ", raytrace ", hit(p.raytrace),
-                   ", double precision ", hit(p.exact));
-}
-
 void check_hits(Trial& trial, const TrialScene& random) {
     Control control;
     const ComparisonSettings settings{.threads = 1}; // trials already run in parallel
@@ -63,7 +57,7 @@ void check_hits(Trial& trial, const TrialScene& random) {
         return compare_hits(random.scene, random.view, judged, raytrace, 1);
     };
     const HitAgreement agreement = judge(raster, 16), textbook = judge(textbook_hits(random), 4);
-    if (!agreement.listed.empty()) trial.note(describe(agreement.listed.front()));
+    if (!agreement.listed.empty()) trial.note(agreement.listed.front().describe());
     if (agreement.distance_violations > 0)
         trial.note("distances apart by ", agreement.worst_distance, " at pixel (", agreement.worst_x, ", ",
                    agreement.worst_y, ")");

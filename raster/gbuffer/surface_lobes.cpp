@@ -37,6 +37,18 @@ bool varies(const Principled& p) {
            !p.clearcoat_roughness.constant();
 }
 
+/// Returns the material with white in place of its color, which may be an image.
+struct Whitened {
+    static constexpr RgbSlot kWhite{};
+
+    Material operator()(Diffuse m) const { return m.albedo = kWhite, m; }
+    Material operator()(Metal m) const { return m.reflectance = kWhite, m; }
+    Material operator()(Dielectric m) const { return m.tint = kWhite, m; }
+    Material operator()(Emissive m) const { return m.albedo = kWhite, m; }
+    Material operator()(Principled m) const { return m.base_color = kWhite, m; }
+    Material operator()(Coated m) const { return m.albedo = kWhite, m; }
+};
+
 } // namespace
 
 void LobesOfColor::tabulate(const LayeredBsdf& layers) {
@@ -49,40 +61,33 @@ void LobesOfColor::tabulate(const LayeredBsdf& layers) {
 }
 
 std::optional<LobesOfColor> LobesOfColor::of(const Material& material) {
+    const Material white = std::visit(Whitened{}, material);
     const TextureSet no_textures;
     LobesOfColor result;
-    if (const auto* diffuse = std::get_if<Diffuse>(&material)) {
+    if (const auto* diffuse = std::get_if<Diffuse>(&white)) {
         if (diffuse->rough()) return std::nullopt;
         result.passed_.fill(1);
-    } else if (std::holds_alternative<Emissive>(material)) {
+    } else if (std::holds_alternative<Emissive>(white)) {
         result.passed_.fill(1);
-    } else if (const auto* metal = std::get_if<Metal>(&material)) {
+    } else if (const auto* metal = std::get_if<Metal>(&white)) {
         if (!metal->roughness.constant()) return std::nullopt;
-        Metal white = *metal;
-        white.reflectance = RgbSlot{Rgb(1.0f)};
         result.metallic_ = 1;
-        result.alpha = white.at(no_textures, SurfacePoint{}).alpha;
-    } else if (const auto* principled = std::get_if<Principled>(&material)) {
+        result.alpha = metal->at(no_textures, SurfacePoint{}).alpha;
+    } else if (const auto* principled = std::get_if<Principled>(&white)) {
         if (varies(*principled)) return std::nullopt;
-        Principled white = *principled;
-        white.base_color = RgbSlot{Rgb(1.0f)};
-        const LayeredBsdf layers = white.at(no_textures, SurfacePoint{});
+        const LayeredBsdf layers = principled->at(no_textures, SurfacePoint{});
         result.tabulate(layers);
         result.metallic_ = clamp(principled->metallic.value, 0.0f, 1.0f);
         result.dielectric_ = layers.dielectric * (1 - result.metallic_);
-    } else if (const auto* coated = std::get_if<Coated>(&material)) {
+    } else if (const auto* coated = std::get_if<Coated>(&white)) {
         if (!coated->roughness.constant()) return std::nullopt;
-        Coated white = *coated;
-        white.albedo = RgbSlot{Rgb(1.0f)};
-        const LayeredBsdf layers = white.at(no_textures, SurfacePoint{});
+        const LayeredBsdf layers = coated->at(no_textures, SurfacePoint{});
         result.tabulate(layers);
         result.dielectric_ = layers.dielectric;
         result.back_ = coated->internal_reflectance();
-    } else if (const auto* glass = std::get_if<Dielectric>(&material)) {
+    } else if (const auto* glass = std::get_if<Dielectric>(&white)) {
         if (!glass->roughness.constant()) return std::nullopt;
-        Dielectric clear = *glass;
-        clear.tint = RgbSlot{Rgb(1.0f)};
-        const SurfaceLobes lobes = surface_lobes(bsdf_at(clear, no_textures, SurfacePoint{}), 1);
+        const SurfaceLobes lobes = surface_lobes(bsdf_at(white, no_textures, SurfacePoint{}), 1);
         result.dielectric_ = lobes.specular.r;
         result.alpha = lobes.alpha;
     }

@@ -34,6 +34,12 @@ struct LobeTables {
     Floats mean_lost;      ///< GgxAverageAlbedo::lost
 };
 
+/// Returns the cosine between the unit vectors to the viewer and along the normal, as the functions below expect it.
+/// Rounding can make their product exceed 1; and a bent normal may face away from the viewer.
+inline Floats viewer_cosine(const Vec3T<Floats>& normal, const Vec3T<Floats>& to_viewer) {
+    return clamp(dot(normal, to_viewer), Floats(1e-4f), Floats(1.0f));
+}
+
 /// Returns the fraction of uniform light that a lobe reflects to the viewer, all scattering included. A mirror's is
 /// Schlick's term.
 RgbT<Floats> specular_albedo(const LobeTables& tables, const RgbT<Floats>& normal, const Floats& alpha,

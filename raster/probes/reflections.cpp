@@ -34,7 +34,7 @@ void add_reflections(const RasterSceneData& data, const RasterSettings& settings
                 const Mask coated = seen & (coat > zero);
                 if (!xsimd::any(lanes | coated)) continue;
                 const Vec3s n = gbuffer.normal.vector(x, y), wo = gbuffer.projection.to_viewer(gbuffer.points(x, y));
-                const Floats cosine = clamp(dot(n, wo), Floats(1e-4f), one); // rounding exceeds 1
+                const Floats cosine = viewer_cosine(n, wo);
                 const Vec3s mirrored = n * (Floats(2.0f) * cosine) - wo;
                 const Vec3s p = gbuffer.points(x, y);
                 const RadianceLookup lookup(data, gbuffer, probes, before, x, y);

@@ -47,7 +47,7 @@ public:
         const Refracted in = refract(w_, n_, eta);
         if (glass.thin) return sheet(glass, Floats(1.0f) - in.through, lanes);
         // What add_reflections() does not reflect enters.
-        const Floats cosine = clamp(-dot(w_, n_), Floats(1e-4f), Floats(1.0f)); // rounding exceeds 1
+        const Floats cosine = viewer_cosine(n_, -w_);
         const Floats entering =
             Floats(1.0f) - specular_albedo(LobeLookup()(alpha_, cosine, lanes), f0_, alpha_, cosine).g;
         const auto exit = data_.glass_shapes->exit(object, gbuffer_.projection.eye(), p_, in.w);

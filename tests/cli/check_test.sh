@@ -2,7 +2,7 @@
 # compare check: random valid scenes of all kinds are rendered soundly by both pipelines; verdicts, exit codes.
 . "$(dirname "$0")/support.sh"
 
-# 20 scenes with a material, texture, light, transform or size of every kind that the format has.
+# random_scenes.py draws from every key of the format.
 python3 -B tests/fuzz/random_scenes.py "$scratch/scenes" --count 20 --seed 1 >"$scratch/names"
 [ "$(wc -l <"$scratch/names")" -eq 20 ] || fail "random_scenes.py did not write 20 scenes"
 code=0
