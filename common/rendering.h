@@ -17,6 +17,9 @@ struct AovSet {
     bool depth = false, normal = false, albedo = false, hit = false, variance = false, samples = false;
     bool any() const { return depth || normal || albedo || hit || variance || samples; }
 };
+/// Selects all auxiliary images.
+inline constexpr AovSet kAllAovs{.depth = true, .normal = true, .albedo = true, .hit = true, .variance = true,
+                                 .samples = true};
 
 /// Each flag enables a shortcut that skips work which cannot change the expected image; `compare skip` verifies this.
 /// All shortcuts are on by default. A pipeline reads the flags that it supports once, before its loops.
@@ -57,7 +60,10 @@ struct BvhStatistics {
     std::int64_t references = 0; ///< primitives and instances in leaves
 };
 
-/// Identifies a sample whose radiance is NaN, infinite or negative. `raytrace --pixel x,y,sample` prints its path.
+/// Returns whether a sample can be kept: no component is NaN, infinite or negative.
+inline bool is_valid_radiance(Rgb c) { return is_finite(c) && c.r >= 0 && c.g >= 0 && c.b >= 0; }
+
+/// Identifies a sample whose radiance is not valid. `raytrace --pixel x,y,sample` prints its path.
 struct InvalidSample {
     std::uint32_t sample = 0;
     int y = 0, x = 0;

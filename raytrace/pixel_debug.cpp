@@ -74,7 +74,7 @@ std::string debug_pixel(const PathTracerScene& prepared, const View& view, const
     }
     out << "\n" << integrator_name(settings.integrator) << ": " << std::setprecision(9) << radiance.r << ' '
         << radiance.g << ' ' << radiance.b << "\n";
-    if (!Film::valid(radiance)) out << "invalid: the image leaves this sample out\n";
+    if (!is_valid_radiance(radiance)) out << "invalid: the image leaves this sample out\n";
     return out.str();
 }
 

@@ -12,7 +12,7 @@ namespace duet::compare {
 namespace {
 
 bool is_valid(float x) { return x >= 0; } // false for a NaN; a depth may be infinite
-bool is_valid(Rgb c) { return is_finite(c) && c.r >= 0 && c.g >= 0 && c.b >= 0; }
+bool is_valid(Rgb c) { return is_valid_radiance(c); }
 bool is_valid(Vec3 v) { return is_finite(v); }
 
 template <typename Pixel> bool all_valid(const Image<Pixel>& image) {
@@ -59,7 +59,7 @@ CheckResult check_hits(const Scene& scene, const View& view, const CheckSettings
 /// Renders with one and with three threads and checks both images. `settings` is the pipeline's own type.
 template <typename Settings>
 CheckResult check_rendering(const std::string& pipeline, const Scene& scene, const View& view, Settings settings) {
-    settings.aovs = {.depth = true, .normal = true, .albedo = true, .hit = true, .variance = true, .samples = true};
+    settings.aovs = kAllAovs;
     const auto image = [&](int threads) {
         settings.threads = threads;
         Control control;

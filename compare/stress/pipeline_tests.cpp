@@ -95,7 +95,7 @@ template <typename Settings> Settings settings_with_all_aovs(int threads) {
     Settings settings;
     settings.threads = threads;
     settings.samples_per_pixel = 6;
-    settings.aovs = {.depth = true, .normal = true, .albedo = true, .hit = true, .variance = true, .samples = true};
+    settings.aovs = kAllAovs;
     return settings;
 }
 Rendering render_raster(const TrialScene& trial, int threads) {

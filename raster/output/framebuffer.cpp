@@ -5,8 +5,6 @@
 namespace duet::raster {
 namespace {
 
-bool is_valid(Rgb c) { return is_finite(c) && c.r >= 0 && c.g >= 0 && c.b >= 0; }
-
 bool needs_hit_counts(const AovSet& aovs) { return aovs.depth || aovs.normal || aovs.albedo; }
 
 } // namespace
@@ -32,7 +30,7 @@ Framebuffer::Framebuffer(const View& view, const RasterSettings& settings, bool 
 void Framebuffer::add(int x, int y, Rgb radiance, int count) {
     const auto samples = static_cast<std::uint32_t>(count);
     sample_counts_(x, y) += samples;
-    if (!is_valid(radiance)) {
+    if (!is_valid_radiance(radiance)) {
         invalid_.fetch_add(count, std::memory_order_relaxed);
         return;
     }

@@ -1,5 +1,7 @@
 #include "raytrace/film/film.h"
 
+#include "common/rendering.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +11,7 @@ Film::Film(int width, int height) : pixels_(width, height) {}
 
 bool Film::add(int x, int y, std::size_t replicate, Rgb sample) {
     Pixel& pixel = pixels_(x, y);
-    if (!valid(sample)) {
+    if (!is_valid_radiance(sample)) {
         ++pixel.invalid;
         return false;
     }

@@ -14,15 +14,12 @@ namespace duet {
 /// Different threads may add samples to different pixels at the same time.
 class Film {
 public:
-    /// Returns whether a sample is valid: no component is NaN, infinite or negative.
-    static bool valid(Rgb sample) { return is_finite(sample) && sample.r >= 0 && sample.g >= 0 && sample.b >= 0; }
-
     static constexpr std::size_t kReplicates = 2;
 
     Film(int width, int height);
 
-    /// Adds a valid sample to a replicate of pixel (x, y) and returns true. An invalid sample is dropped and only
-    /// counted; the function then returns false. The replicate is 0 or 1.
+    /// Adds a valid sample (is_valid_radiance) to a replicate of pixel (x, y) and returns true. An invalid sample is
+    /// dropped and only counted; the function then returns false. The replicate is 0 or 1.
     bool add(int x, int y, std::size_t replicate, Rgb sample);
 
     int width() const { return pixels_.width(); }

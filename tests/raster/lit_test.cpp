@@ -229,7 +229,7 @@ TEST_SUITE("unit") {
         finish_scene(scene);
         View view{look({0, 3, 0}, {0, 0, 0}), 8, 8};
         raster::RasterSettings settings;
-        settings.aovs = {.depth = true, .normal = true, .albedo = true, .hit = true, .variance = true, .samples = true};
+        settings.aovs = kAllAovs;
         settings.shading = raster::Shading::kNormal;
         const Rendering normal = render(scene, view, settings);
         settings.shading = raster::Shading::kAlbedo;
