@@ -79,10 +79,7 @@ RenderFunction raytrace_hits(const Scene& scene, const ComparisonSettings& setti
     return hits(scene, path_tracer_settings(settings));
 }
 
-View scene_view(const Scene& scene, ImageSize size) {
-    if (size.width == 0) size = {scene.width, scene.height};
-    return {scene.camera, size.width, size.height};
-}
+View scene_view(const Scene& scene) { return {scene.camera, scene.width, scene.height}; }
 
 std::string paragraph(const std::vector<std::string>& sentences) {
     std::string text;

@@ -34,8 +34,8 @@ Renderer raytrace_renderer(const Scene& scene, const ComparisonSettings& setting
 RenderFunction raster_hits(const Scene& scene, const ComparisonSettings& settings);
 RenderFunction raytrace_hits(const Scene& scene, const ComparisonSettings& settings);
 
-/// Returns the view of the scene's camera; a size of 0 × 0 stands for the scene's.
-View scene_view(const Scene& scene, ImageSize size);
+/// Returns the view of the scene's camera, in the scene's image size.
+View scene_view(const Scene& scene);
 
 /// Joins the sentences (a rendering's approximations) with spaces.
 std::string paragraph(const std::vector<std::string>& sentences);

@@ -86,10 +86,10 @@ int run(const RunOptions& options) {
     check_json_path(options.stats);
     const InterruptFlag interrupt;
     Stopwatch watch;
-    const Scene scene = load_scene(options.scene);
+    const Scene scene = load_scene(options.scene, options.size);
     const double load_seconds = watch.seconds();
     const fs::path folder = make_folder(options.folder);
-    const View view = scene_view(scene, options.size);
+    const View view = scene_view(scene);
 
     std::optional<RendererResult> raster =
         run_renderer(raster_renderer(scene, options.settings), view, options, interrupt);

@@ -2,6 +2,7 @@
 #include "raster/render.h"
 
 #include "raster/geometry/geometry.h"
+#include "raster/prepare_limits.h"
 #include "raster/probes/glass_shapes.h"
 #include "raster/probes/irradiance_probes.h"
 #include "raster/probes/reflection_probes.h"
@@ -110,7 +111,8 @@ void prepare_probes(const RasterSettings& settings, RasterSceneData& data) {
         data.memory_bytes += static_cast<std::int64_t>(data.irradiance_probes->memory_bytes());
     }
     if (std::ranges::none_of(scene.materials, reflects)) return;
-    const int side = std::holds_alternative<ImageEnvironment>(scene.environment) ? 256 : 32;
+    const bool image = std::holds_alternative<ImageEnvironment>(scene.environment);
+    const int side = image ? PrepareLimits(scene).radiance_map_side(256) : 32;
     const bool shown = settings.environment && scene.needs.environment;
     data.environment_map = std::make_shared<const RadianceMap>(side, [&](Vec3 w) {
         return RadianceMap::Arriving{shown ? radiance(scene.environment, w) : Rgb(), kInfinity};

@@ -102,10 +102,10 @@ int render_all(const RenderProgram& program, const Options& options) {
     context.threads = options.threads > 0 ? options.threads : available_threads();
     context.seed = options.seed;
     Stopwatch watch;
-    const Scene scene = load_scene(options.scene);
+    const Scene scene = load_scene(options.scene, options.size);
     context.load_seconds = watch.lap();
-    context.width = options.size.width > 0 ? options.size.width : scene.width;
-    context.height = options.size.height > 0 ? options.size.height : scene.height;
+    context.width = scene.width;
+    context.height = scene.height;
     const std::optional<int> spp = options.spp > 0 ? std::optional(options.spp) : std::nullopt;
     if (text_only) {
         std::cout << program.text_output(scene, View{scene.camera, context.width, context.height}, settings, spp);
@@ -138,6 +138,12 @@ int render_all(const RenderProgram& program, const Options& options) {
 }
 
 } // namespace
+
+Scene load_scene(const std::filesystem::path& path, ImageSize size) {
+    Scene scene = load_scene(path);
+    if (size.width > 0) scene.width = size.width, scene.height = size.height;
+    return scene;
+}
 
 int run_render_program(const RenderProgram& program, int argc, char** argv) {
     return run_program(program.name, [&] {

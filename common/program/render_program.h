@@ -18,6 +18,10 @@ namespace duet {
 /// A RenderFunction renders one prepared scene from any number of views.
 using RenderFunction = std::function<Rendering(const View&, Control&)>;
 
+/// Loads a scene like load_scene() and gives it another image size, unless `size` is 0 × 0. Preparation depends on the
+/// size: the rasterizer renders no shadow map finer than the image can show.
+Scene load_scene(const std::filesystem::path& path, ImageSize size);
+
 /// OutputOptions say where the images are written.
 struct OutputOptions {
     std::string path;

@@ -1,7 +1,7 @@
 #include "compare/check/check.h"
 
 #include "common/program/program.h"
-#include "common/scene/scene.h"
+#include "common/program/render_program.h"
 #include "common/system/error.h"
 #include "common/system/stopwatch.h"
 
@@ -25,12 +25,12 @@ void limit_memory(int mebibytes) {
 }
 
 /// Checks the scene and prints the result. Returns the exit code that it stands for.
-int check_file(const std::string& name, const CheckSettings& settings) {
+int check_file(const std::string& name, const CheckOptions& options) {
     const Stopwatch watch;
     json line = {{"scene", name}};
     int exit_code = kExitOk;
     try {
-        const CheckResult result = check_scene(load_scene(name), settings);
+        const CheckResult result = check_scene(load_scene(name, options.size), options.settings);
         line["verdict"] = result.failed() ? "failed" : "ok";
         line["failure"] = result.failure;
         line["details"] = result.details;
@@ -51,7 +51,7 @@ int check(const CheckOptions& options) {
     if (options.memory_limit > 0) limit_memory(options.memory_limit);
     bool failed = false, refused = false;
     const auto add = [&](const std::string& name) {
-        const int exit_code = check_file(name, options.settings);
+        const int exit_code = check_file(name, options);
         failed |= exit_code == kExitFailed;
         refused |= exit_code == kExitUnusable;
     };

@@ -1,6 +1,7 @@
 // `compare check`: renders scenes both ways and checks what must hold for any valid scene.
 #pragma once
 
+#include "common/program/command_line.h"
 #include "compare/check/scene_check.h"
 
 #include <string>
@@ -10,6 +11,7 @@ namespace duet::compare {
 
 struct CheckOptions {
     std::vector<std::string> scenes; ///< scene files; "-" stands for the names on standard input, one a line
+    ImageSize size{0, 0}; ///< image size; 0 × 0: the scene's
     CheckSettings settings;
     int memory_limit = 0; ///< address space of this program in MiB; 0: not limited
 };

@@ -15,7 +15,7 @@ void add_check(CommandLine& program) {
     check.add("SCENE", options.scenes, "Scene files (.json) or bare meshes (.obj); -: the names on standard input, "
                                        "one a line")
         .required();
-    check.add("--size", options.settings.size, "Image size WIDTHxHEIGHT (default: the scene's)");
+    check.add("--size", options.size, "Image size WIDTHxHEIGHT (default: the scene's)");
     check.add("--spp", options.settings.raytrace_spp, "The path tracer's samples a pixel (default 4)")
         .range(1, 1 << 20);
     check.add("--raster-spp", options.settings.raster_spp, "The rasterizer's samples a pixel (default 1)")

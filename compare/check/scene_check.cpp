@@ -80,7 +80,7 @@ bool same_bits(const Rendering& a, const Rendering& b) {
 }
 
 CheckResult check_scene(const Scene& scene, const CheckSettings& settings) {
-    const View view = scene_view(scene, settings.size);
+    const View view = scene_view(scene);
     CheckResult result = check_hits(scene, view, settings);
     if (result.failed()) return result;
     raster::RasterSettings raster;

@@ -1,7 +1,6 @@
 // This header declares what must hold for the renderings of any valid scene.
 #pragma once
 
-#include "common/program/command_line.h"
 #include "common/rendering.h"
 #include "common/scene/scene.h"
 
@@ -11,7 +10,6 @@
 namespace duet::compare {
 
 struct CheckSettings {
-    ImageSize size{0, 0}; ///< image size; 0 × 0: the scene's
     int raster_spp = 1, raytrace_spp = 4;
     std::uint64_t seed = 0;
 };

@@ -1,5 +1,6 @@
 #include "raster/probes/glass_shapes.h"
 
+#include "raster/prepare_limits.h"
 #include "raster/probes/probe_capture.h"
 
 #include "common/system/parallel.h"
@@ -15,9 +16,10 @@ constexpr int kSteps = 4; ///< from sphere to sphere, as in ReflectionProbes::tr
 
 OctahedralMap shape_of(const RasterSceneData& data, const RasterSettings& settings, std::uint32_t object,
                        Vec3d center) {
-    const ProbeCapture capture(data, settings, center, object, GlassShapes::kSide / 2);
+    const int side = PrepareLimits(data.scene).radiance_map_side(GlassShapes::kSide);
+    const ProbeCapture capture(data, settings, center, object, side / 2);
     const float missing = length(data.objects[object].bounds.diagonal()) / 2;
-    OctahedralMap map(GlassShapes::kSide);
+    OctahedralMap map(side);
     for (int y = 0; y < map.side(); ++y)
         for (int x = 0; x < map.side(); ++x) {
             const Vec3 w = map.direction(x, y);

@@ -1,4 +1,5 @@
 // Where the irradiance probes of a scene stand.
+#include "raster/prepare_limits.h"
 #include "raster/probes/irradiance_probes.h"
 
 #include <algorithm>
@@ -42,8 +43,9 @@ Box3d region_of(const RasterSceneData& data) {
 void IrradianceProbes::place(const RasterSceneData& data) {
     const Box3d box = region_of(data);
     const Vec3d extent = box.high - box.low;
+    const int most_probes = std::max(PrepareLimits(data.scene).irradiance_probes(kMostProbes), kFewestProbes);
     const double most = std::clamp(kMostTriangles / (6 * static_cast<double>(data.primitives) + 1e3),
-                                   static_cast<double>(kFewestProbes), static_cast<double>(kMostProbes));
+                                   static_cast<double>(kFewestProbes), static_cast<double>(most_probes));
     double cell = std::cbrt(extent.x * extent.y * extent.z / most);
     const auto count = [&](std::size_t axis) {
         return std::clamp(static_cast<int>(std::lround(extent[axis] / cell)), 2, 64);

@@ -1,5 +1,6 @@
 #include "raster/probes/reflection_probes.h"
 
+#include "raster/prepare_limits.h"
 #include "raster/probes/indirect_light.h"
 #include "raster/probes/reflections.h"
 
@@ -35,8 +36,9 @@ std::vector<std::uint32_t> reflecting_objects(const RasterSceneData& data) {
 
 std::vector<Site> sites_of(const RasterSceneData& data) {
     std::vector<Site> sites;
+    const int most = PrepareLimits(data.scene).reflection_probes(ReflectionProbes::kMostProbes);
     for (const std::uint32_t object : reflecting_objects(data)) {
-        if (sites.size() == ReflectionProbes::kMostProbes) break;
+        if (sites.size() == static_cast<std::size_t>(most)) break;
         std::set<std::uint32_t> excluded(data.glass.begin(), data.glass.end());
         excluded.insert(object);
         sites.push_back({Vec3d(data.objects[object].bounds.center()), {excluded.begin(), excluded.end()}, object});
@@ -101,7 +103,8 @@ ReflectionProbes::ReflectionProbes(const RasterSceneData& data, const RasterSett
     if (sites.empty()) return;
     probes_.resize(sites.size());
     parallel_for(sites.size(), settings.threads, [&](std::size_t i) {
-        probes_[i] = {sites[i].center, render_map(data, settings, sites[i], i < kLargest ? kSide : kSmallSide)};
+        const int side = PrepareLimits(data.scene).radiance_map_side(i < kLargest ? kSide : kSmallSide);
+        probes_[i] = {sites[i].center, render_map(data, settings, sites[i], side)};
     });
     for (std::uint32_t object = 0; object < data.scene.objects.size(); ++object) {
         const Vec3d center(data.objects[object].bounds.center());

@@ -1,6 +1,7 @@
 #include "raster/shadows/shadow_maps.h"
 
 #include "raster/gbuffer/screen_projection.h"
+#include "raster/prepare_limits.h"
 #include "raster/visibility/depth_image.h"
 
 #include <algorithm>
@@ -120,7 +121,7 @@ std::vector<Emitter> pieces(const Emitter& emitter, int n) {
 
 Shadows::Shadows(const RasterSceneData& data, const RasterSettings& settings)
     : scene_(data.scene), scene_size_(static_cast<double>(length(data.scene.bounds.diagonal())) + 1e-30),
-      side_(settings.shadow_map_side), cube_side_(settings.shadow_map_side / 2) {
+      side_(PrepareLimits(data.scene).shadow_map_side(settings.shadow_map_side)), cube_side_(side_ / 2) {
     sources_ = find_sources(scene_, settings.shadow_cells);
     const Camera& camera = scene_.camera;
     const bool moving = scene_.needs.motion && settings.samples_per_pixel > 1 &&
