@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
 #include <span>
 
@@ -49,13 +50,13 @@ Ray Accelerator::to_instance_space(const BvhInstance& instance, const Ray& ray) 
 }
 
 // Returns the instance test of a ray: it traverses the bottom-level BVH of the instance's shape.
-template <bool kAny> auto Accelerator::instance_test(const Ray& ray) const {
-    return [this, &ray](const BvhInstance& instance, Hit& so_far) {
+template <bool kAny> auto Accelerator::instance_test(const Ray& ray, const Hit* after) const {
+    return [this, &ray, after](const BvhInstance& instance, Hit& so_far) {
         const auto no_instance = [](const BvhInstance&, Hit&) { return false; };
         const Ray local = to_instance_space(instance, ray);
         if (!traceable(local)) return false;
         const Bvh& shape = shapes_[instance.shape];
-        return traverse<kAny>(shape, local, instance.object, so_far, no_instance);
+        return traverse<kAny>(shape, local, instance.object, so_far, no_instance, after);
     };
 }
 
@@ -90,12 +91,24 @@ struct Accelerator::PacketInstances {
     }
 };
 
-// Finds the closest hit without regard to alpha: transparent points count as hits.
-Hit Accelerator::closest_without_alpha(const Ray& ray) const {
+// Finds the closest hit without regard to alpha: transparent points count as hits. With `after`, it is the closest one
+// that `after` precedes.
+Hit Accelerator::closest_without_alpha(const Ray& ray, const Hit* after) const {
     Hit best;
     best.t = min(ray.t_max, std::numeric_limits<float>::max()); // a distance that overflowed is no hit
     if (!traceable(ray)) return {};
-    return traverse<false>(world_, ray, kNoObject, best, instance_test<false>(ray)) ? best : Hit{};
+    return traverse<false>(world_, ray, kNoObject, best, instance_test<false>(ray, after), after) ? best : Hit{};
+}
+
+// Finds the hit that follows `hit`: on another surface at the same distance, or else beyond.
+Hit Accelerator::next_without_alpha(const Ray& ray, const Hit& hit) const {
+    Ray part = ray;
+    part.t_min = max(std::nextafter(hit.t, 0.0f), ray.t_min);
+    part.t_max = hit.t;
+    if (const Hit coincident = closest_without_alpha(part, &hit); coincident.valid()) return coincident;
+    part.t_min = hit.t;
+    part.t_max = ray.t_max;
+    return closest_without_alpha(part);
 }
 
 Hit Accelerator::closest(const Ray& ray) const {
@@ -103,14 +116,10 @@ Hit Accelerator::closest(const Ray& ray) const {
     return has_alpha_masks_ ? skip_transparent(ray, hit) : hit;
 }
 
-// Steps from `hit` to the first hit that the ray does not pass through. Each hit lies beyond the previous one, so
-// the loop ends.
+// Steps from `hit` to the first hit that the ray does not pass through. Each hit follows the previous one in the order
+// of `precedes`, so the loop ends.
 Hit Accelerator::skip_transparent(const Ray& ray, Hit hit) const {
-    Ray rest = ray;
-    while (hit.valid() && passes_alpha_mask(scene_, ray, hit)) {
-        rest.t_min = hit.t;
-        hit = closest_without_alpha(rest);
-    }
+    while (hit.valid() && passes_alpha_mask(scene_, ray, hit)) hit = next_without_alpha(ray, hit);
     return hit;
 }
 
@@ -121,10 +130,9 @@ bool Accelerator::occluded_with_alpha(Ray ray, const Hit& end) const {
         return hit.valid() &&
                (hit.t < end.t || std::pair(hit.object, hit.primitive) < std::pair(end.object, end.primitive));
     };
-    for (Hit hit = closest_without_alpha(ray); before_end(hit); hit = closest_without_alpha(ray)) {
+    for (Hit hit = closest_without_alpha(ray); before_end(hit); hit = next_without_alpha(ray, hit)) {
         const bool is_end = hit.object == end.object && hit.primitive == end.primitive;
         if (!is_end && !passes_alpha_mask(scene_, ray, hit)) return true;
-        ray.t_min = hit.t;
     }
     return false;
 }

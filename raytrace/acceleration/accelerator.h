@@ -42,7 +42,8 @@ public:
     const Bvh& world() const { return world_; }
 
 private:
-    Hit closest_without_alpha(const Ray& ray) const;
+    Hit closest_without_alpha(const Ray& ray, const Hit* after = nullptr) const;
+    Hit next_without_alpha(const Ray& ray, const Hit& hit) const;
     void closest_sorted_by_class(std::span<const Ray> rays, std::span<const std::uint32_t> indices,
                                  std::span<Hit> hits) const;
     void closest_in_list(std::span<const Ray> rays, std::span<const std::uint32_t> indices, std::span<Hit> hits) const;
@@ -50,7 +51,7 @@ private:
     bool occluded_with_alpha(Ray ray, const Hit& end) const;
     struct PacketInstances;
     Ray to_instance_space(const BvhInstance& instance, const Ray& ray) const;
-    template <bool kAny> auto instance_test(const Ray& ray) const;
+    template <bool kAny> auto instance_test(const Ray& ray, const Hit* after = nullptr) const;
 
     const Scene& scene_;
     Bvh world_;

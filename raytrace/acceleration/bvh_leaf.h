@@ -20,9 +20,9 @@ inline bool precedes(const Hit& a, const Hit& b) {
 template <bool kAny, typename Instance> class LeafTest {
 public:
     /// If `object` is not kNoObject (inside an instance), hits report it, else they report the primitive's own
-    /// object.
-    LeafTest(const Bvh& bvh, const Ray& ray, std::uint32_t object, const Instance& instance)
-        : bvh_(bvh), object_(object), instance_(instance) {
+    /// object. With `after`, only hits that it precedes count.
+    LeafTest(const Bvh& bvh, const Ray& ray, std::uint32_t object, const Instance& instance, const Hit* after = nullptr)
+        : bvh_(bvh), object_(object), instance_(instance), after_(after) {
         if (bvh.has_polygons()) sheared_.emplace(ray);
         if (!bvh.spheres.empty()) sphere_ray_.emplace(ray);
     }
@@ -84,7 +84,7 @@ private:
         return consider({reported_object(block.object[lane]), block.primitive[lane], hit.u, hit.v, hit.t}, best);
     }
     bool consider(const Hit& hit, Hit& best) {
-        if (!precedes(hit, best)) return false;
+        if (!precedes(hit, best) || (after_ != nullptr && !precedes(*after_, hit))) return false;
         if (kAny && hit.object == best.object && hit.primitive == best.primitive) return false;
         found_ = true;
         if (!kAny) best = hit;
@@ -97,6 +97,7 @@ private:
     std::optional<SphereRay> sphere_ray_; // used for spheres
     std::uint32_t object_;
     const Instance& instance_;
+    const Hit* after_;
     bool found_ = false;
 };
 
