@@ -12,12 +12,13 @@ struct EdgeSearcher {
     const ReferenceTracer& tracer;
     const Pinhole& pinhole;
     Vec2d pixel;
+    double radius; ///< pixels
     const Hit &a, &b;
     EdgeSearch result;
 
     /// Traces one displaced ray. Returns true once both hits have been found.
     bool try_at(Vec2d p) {
-        if (dot(p - pixel, p - pixel) <= sqr(kEdgeRadius)) trace(p);
+        if (dot(p - pixel, p - pixel) <= sqr(radius)) trace(p);
         return result.both();
     }
     ReferenceHit trace(Vec2d p) {
@@ -40,7 +41,7 @@ struct EdgeSearcher {
 /// Tries circles whose radii halve towards the center. This resolves most disagreements, which are ordinary edges.
 bool try_circles(EdgeSearcher& search) {
     constexpr int kAngles = 16;
-    for (double radius = kEdgeRadius * (1 - 1e-9); radius > kEdgeRadius / 100; radius /= 2)
+    for (double radius = search.radius * (1 - 1e-9); radius > search.radius / 100; radius /= 2)
         for (int i = 0; i < kAngles; ++i) {
             const double angle = (i + 0.5) * 2 * kPiDouble / kAngles;
             if (search.try_at(search.pixel + Vec2d(std::cos(angle), std::sin(angle)) * radius)) return true;
@@ -52,7 +53,7 @@ bool try_circles(EdgeSearcher& search) {
 bool try_disk(EdgeSearcher& search) {
     constexpr int kPoints = 4096;
     for (int i = 0; i < kPoints; ++i) {
-        const double radius = kEdgeRadius * std::sqrt((i + 0.5) / kPoints);
+        const double radius = search.radius * std::sqrt((i + 0.5) / kPoints);
         const double angle = 2 * kPiDouble * i / sqr(kGoldenRatio);
         if (search.try_at(search.pixel + Vec2d(std::cos(angle), std::sin(angle)) * radius)) return true;
     }
@@ -115,7 +116,7 @@ bool try_primitive(EdgeSearcher& search, const Hit& hit) {
     if (!hit.valid()) return false;
     const std::vector<Vec2d> polygon = // in the octagon inscribed in the disk
         clip_to_octagon(search.pinhole, search.pixel, search.tracer.corners(hit.object, hit.primitive),
-                        kEdgeRadius * std::cos(kPiDouble / kSides));
+                        search.radius * std::cos(kPiDouble / kSides));
     constexpr int kPoints = 64;
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
         for (int k = 0; k < kPoints; ++k) {
@@ -133,13 +134,14 @@ bool try_primitive(EdgeSearcher& search, const Hit& hit) {
 bool may_be_hit(const EdgeSearcher& search, const Hit& hit) {
     if (!hit.valid()) return true;
     const std::vector<Vec3d> corners = search.tracer.corners(hit.object, hit.primitive);
-    return corners.empty() || !clip_to_octagon(search.pinhole, search.pixel, corners, 1.01 * kEdgeRadius).empty();
+    return corners.empty() || !clip_to_octagon(search.pinhole, search.pixel, corners, 1.01 * search.radius).empty();
 }
 
 } // namespace
 
-EdgeSearch search_edge(const ReferenceTracer& tracer, const Pinhole& pinhole, Vec2d pixel, const Hit& a, const Hit& b) {
-    EdgeSearcher search{tracer, pinhole, pixel, a, b, {}};
+EdgeSearch search_edge(const ReferenceTracer& tracer, const Pinhole& pinhole, Vec2d pixel, double radius, const Hit& a,
+                       const Hit& b) {
+    EdgeSearcher search{tracer, pinhole, pixel, radius, a, b, {}};
     search.result.center = search.trace(pixel);
     if (!may_be_hit(search, a) || !may_be_hit(search, b)) return search.result;
     (void)(search.result.both() || try_circles(search) || try_primitive(search, a) || try_primitive(search, b) ||

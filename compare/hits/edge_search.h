@@ -6,8 +6,8 @@
 
 namespace duet::compare {
 
-/// Maximum displacement of a ray, in pixels. The rasterizer snaps vertices to 1/256 pixel, which moves them by
-/// at most 1/512 per axis, or 0.0028 pixel in all. Every point that the snapped triangle covers therefore lies
+/// Displacement of a ray, in pixels, that the rasterizer's edges need. It snaps vertices to 1/256 pixel, which moves
+/// them by at most 1/512 per axis, or 0.0028 pixel in all. Every point that the snapped triangle covers therefore lies
 /// within this distance of the unsnapped triangle.
 inline constexpr double kEdgeRadius = 1.0 / 128;
 
@@ -26,10 +26,11 @@ struct EdgeSearch {
     bool both_or_tied() const { return (found_a || tied_a) && (found_b || tied_b); }
 };
 
-/// Displaces the ray through `pixel` first on circles, then into the parts of the two primitives that lie
-/// within reach (however thin they are), then over a dense disk. It stops when both hits are found or all of
-/// about 5,000 rays are tried. Each ray is traced through the whole scene: being close to an edge is not
+/// Displaces the ray through `pixel` by up to `radius` pixels: first on circles, then into the parts of the two
+/// primitives that lie within reach (however thin they are), then over a dense disk. It stops when both hits are found
+/// or all of about 5,000 rays are tried. Each ray is traced through the whole scene: being close to an edge is not
 /// enough, a ray must hit the primitive.
-EdgeSearch search_edge(const ReferenceTracer& tracer, const Pinhole& pinhole, Vec2d pixel, const Hit& a, const Hit& b);
+EdgeSearch search_edge(const ReferenceTracer& tracer, const Pinhole& pinhole, Vec2d pixel, double radius, const Hit& a,
+                       const Hit& b);
 
 } // namespace duet::compare

@@ -31,16 +31,32 @@ struct HitClassifier {
     Rayd ray(int x, int y) const { return pinhole.ray(center(x, y)); }
     static Vec2d center(int x, int y) { return {x + 0.5, y + 0.5}; }
 
+    double rounding(const Rayd& r, const Hit& hit) const { return tracer.ray_rounding(r, hit.object, hit.t); }
+
+    /// Returns by how many pixels rays may be displaced to find both hits.
+    double radius(int x, int y, const Hit& a, const Hit& b) const {
+        const Rayd r = ray(x, y), beside = pinhole.ray(center(x, y) + Vec2d(1, 0));
+        double result = kEdgeRadius;
+        for (const Hit& hit : {a, b})
+            if (hit.valid() && hit.t > 0) {
+                const double pixel = length(beside.at(hit.t) - r.at(hit.t));
+                result = max(result, kEdgeRadius + rounding(r, hit) / pixel);
+            }
+        return result;
+    }
+
     /// Returns whether the ray hits both primitives at the same distance.
     bool depth_tie(const Rayd& r, const Hit& a, const Hit& b) const {
         if (!a.valid() || !b.valid()) return false;
         const ReferenceHit ea = tracer.intersect(r, a.object, a.primitive),
                            eb = tracer.intersect(r, b.object, b.primitive);
-        return ea.valid() && eb.valid() && relative_distance(tracer, r, ea, eb) <= kDepthTolerance;
+        if (!ea.valid() || !eb.valid()) return false;
+        const double rounded = max(rounding(r, a), rounding(r, b)) / min(ea.t, eb.t);
+        return relative_distance(tracer, r, ea, eb) <= kDepthTolerance + rounded;
     }
 
     HitVerdict verdict(int x, int y, const Hit& a, const Hit& b, ReferenceHit& exact) const {
-        const EdgeSearch search = search_edge(tracer, pinhole, center(x, y), a, b);
+        const EdgeSearch search = search_edge(tracer, pinhole, center(x, y), radius(x, y, a, b), a, b);
         exact = search.center;
         if (search.both()) return HitVerdict::kEdge;
         const bool tie = depth_tie(ray(x, y), a, b) || search.both_or_tied();
@@ -55,9 +71,8 @@ struct HitClassifier {
             return std::numeric_limits<double>::infinity();
         const Rayd r = ray(x, y);
         const double reach = plane_reach(tracer.corners(a.object, a.primitive), r.origin);
-        const double rounding = length(Vec3d(Vec3(r.origin)) - r.origin);
         const double apart = std::abs(ta - tb) * tracer.cosine(r, a.object, a.primitive, tb);
-        return max(apart - rounding, 0.0) / max(tb, reach);
+        return max(apart - rounding(r, b), 0.0) / max(tb, reach);
     }
 };
 

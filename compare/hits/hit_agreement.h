@@ -14,7 +14,8 @@ namespace duet::compare {
 
 enum class HitVerdict : std::uint8_t {
     kSame,       ///< same object and primitive, or both miss
-    kEdge,       ///< double-precision rays within 1/128 pixel of the center find both primitives
+    kEdge,       ///< double-precision rays within 1/128 pixel of the center find both primitives, or within what the
+                 ///< path tracer's rounding of the ray amounts to (ReferenceTracer::ray_rounding)
     kDepthTie,   ///< the double-precision ray hits both at the same distance, within kDepthTolerance; or displaced rays
                  ///< find one, and hit the other within kTieTolerance of its occluder
     kUnexplained ///< neither same, edge nor tie: one of the pipelines is wrong
@@ -22,7 +23,7 @@ enum class HitVerdict : std::uint8_t {
 
 /// Two distances to one primitive are equal if |Δt|·|cos θ| ≤ rounding + kDepthTolerance·max(t, reach). The reach is
 /// the distance of the primitive's farthest corner from the eye times its aspect ratio: rounding the corners moves the
-/// plane in proportion to it. The rounding is that of the ray's origin to float, which only orthographic views have.
+/// plane in proportion to it. The rounding is that of a ray traced in float (ReferenceTracer::ray_rounding).
 inline constexpr double kDepthTolerance = 1e-5;
 
 /// A pixel whose hits differ without an explanation.

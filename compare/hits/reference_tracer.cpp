@@ -206,6 +206,23 @@ double ReferenceTracer::cosine(const Rayd& ray, std::uint32_t object, std::uint3
     return size > 0 ? std::abs(dot(n, ray.direction)) / size : 0;
 }
 
+double ReferenceTracer::ray_rounding(const Rayd& ray, std::uint32_t object, double t) const {
+    const double origin = length(Vec3d(Vec3(ray.origin)) - ray.origin);
+    if (scene_.objects[object].identity && !scene_.objects[object].moving) return origin;
+    // A difference, a product with a matrix of rounded entries, and two sums.
+    const double bound = gamma_bound<float>(5);
+    const auto absolute = [](const Mat4d& m, Vec3d v) {
+        const auto row = [&](std::size_t r) {
+            return std::abs(m[r][0]) * v.x + std::abs(m[r][1]) * v.y + std::abs(m[r][2]) * v.z;
+        };
+        return Vec3d(row(0), row(1), row(2));
+    };
+    const Mat4d &to_world = objects_[object].to_world, &to_object = objects_[object].to_object;
+    const Vec3d from_object = ray.origin - Vec3d(to_world[0][3], to_world[1][3], to_world[2][3]);
+    const Vec3d terms = absolute(to_object, abs(from_object) + abs(ray.direction) * t);
+    return origin + bound * length(absolute(to_world, terms));
+}
+
 std::vector<Vec3d> ReferenceTracer::corners(std::uint32_t object, std::uint32_t primitive) const {
     const PlacedShape& placed = objects_[object];
     std::vector<Vec3d> points;
