@@ -6,15 +6,12 @@ namespace duet {
 
 ThinDielectricBsdf::Fractions ThinDielectricBsdf::fractions(float cosine) const {
     const float f = fresnel_dielectric(cosine, eta), cos_t = safe_sqrt(cos2_refracted(cosine, eta));
-    const float through = 1 - f;
     Fractions result;
     for (std::size_t c = 0; c < 3; ++c) {
         const float t = tint[c] < 1 ? std::pow(tint[c], 1 / max(cos_t, 1e-4f)) : 1.0f;
-        // The denominator is (1 − F t)(1 + F t), with 1 − F t written as (1 − F) + F (1 − t), which does not
-        // cancel at grazing angles.
-        const float rest = (through + f * (1 - t)) * (1 + f * t);
-        result.transmitted[c] = rest > 0 ? through * through * t / rest : 0;
-        result.reflected[c] = rest > 0 ? f + through * through * f * t * t / rest : f;
+        const SheetFractions<float> of_channel = sheet_fractions(f, t);
+        result.transmitted[c] = of_channel.transmitted;
+        result.reflected[c] = of_channel.reflected;
     }
     return result;
 }

@@ -6,6 +6,7 @@
 #include "raster/visibility/shader.h"
 
 #include "common/material/fresnel.h"
+#include "common/material/thin_dielectric.h"
 
 #include <bit>
 
@@ -61,17 +62,15 @@ public:
     }
 
 private:
-    /// Shows what arrives through a sheet, and what it mirrors: ThinDielectricBsdf::fractions() for the mean tint of
-    /// slanted passes.
+    /// Shows what arrives through a sheet, and what it mirrors.
     Rgbs sheet(const Dielectric& glass, const Floats& reflected, const Mask& lanes) const {
         const Floats one(1.0f), cosine = clamp(-dot(w_, n_), Floats(0.0f), one);
         const Floats inner = xsimd::sqrt(max(cos2_refracted(cosine, Floats(glass.ior)), Floats(1e-6f)));
         const Rgbs behind = lookup_(p_, n_, w_, Floats(0.0f), lanes),
                    before = lookup_(p_, n_, w_ + n_ * (Floats(2.0f) * cosine), Floats(0.0f), lanes);
         const auto channel = [&](float tint, const Floats& b, const Floats& f) {
-            const Floats t = xsimd::pow(Floats(max(tint, 1e-6f)), one / inner), once = one - reflected;
-            const Floats all = once * once * t / (one - reflected * reflected * t * t);
-            return b * all + f * (reflected + all * reflected * t);
+            const auto part = sheet_fractions(reflected, xsimd::pow(Floats(max(tint, 1e-6f)), one / inner));
+            return b * part.transmitted + f * part.reflected;
         };
         const Rgb tint = glass.tint.value;
         return {channel(tint.r, behind.r, before.r), channel(tint.g, behind.g, before.g),
