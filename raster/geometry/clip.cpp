@@ -1,6 +1,7 @@
 #include "raster/geometry/clip.h"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 namespace duet::raster {
@@ -14,11 +15,14 @@ struct Plane {
     double distance(const PixelVertex& v) const { return x * v.xw + y * v.yw + w * v.w + depth * v.depth + constant; }
 };
 
-PixelVertex cut(const PixelVertex& inner, const PixelVertex& outer, double inner_distance, double outer_distance) {
+/// Interpolates from the end that is nearer to the plane: from an end 1e18 meters away, the other one's coordinates
+/// would be lost.
+PixelVertex cut(const PixelVertex& a, const PixelVertex& b, double a_distance, double b_distance) {
+    if (std::abs(a_distance) > std::abs(b_distance)) return cut(b, a, b_distance, a_distance);
     // The signs differ, so there is no cancellation.
-    const double t = inner_distance / (inner_distance - outer_distance);
+    const double t = a_distance / (a_distance - b_distance);
     const auto mix = [t](double from, double to) { return from + (to - from) * t; };
-    return {mix(inner.xw, outer.xw), mix(inner.yw, outer.yw), mix(inner.w, outer.w), mix(inner.depth, outer.depth)};
+    return {mix(a.xw, b.xw), mix(a.yw, b.yw), mix(a.w, b.w), mix(a.depth, b.depth)};
 }
 
 ClippedPolygon clip(const ClippedPolygon& polygon, const Plane& plane) {

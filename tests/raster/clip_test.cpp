@@ -81,6 +81,22 @@ TEST_SUITE("unit") {
         CHECK(clip(behind(a), behind(b), behind(c), kViewport).count == 0);
     }
 
+    TEST_CASE("corners 1e18 meters away take nothing from the precision of near ones") {
+        const PixelVertex near_a{.xw = -8, .yw = 100, .w = 1, .depth = 1},
+            near_b{.xw = -8, .yw = 300, .w = 1, .depth = 1}, far{.xw = 2e18, .yw = 1e23, .w = 1e18, .depth = 1e18};
+        const ClippedPolygon p = clip(near_a, near_b, far, kViewport);
+        REQUIRE(p.count >= 4);
+        int below = 0; // where the edges of the far corner leave the guard band, yw = bottom · w
+        for (int k = 0; k < p.count; ++k) {
+            const PixelVertex& v = p.vertices[static_cast<std::size_t>(k)];
+            if (v.yw < 400) continue;
+            ++below;
+            CHECK(v.yw == doctest::Approx((kViewport.height + kGuardBand) * v.w).epsilon(1e-9));
+            CHECK(v.xw == doctest::Approx(-8 + 2 * (v.w - 1)).epsilon(1e-9)); // on both edges
+        }
+        CHECK(below == 2);
+    }
+
     TEST_CASE("both triangles of an edge get the same new vertices, bit for bit") {
         Random random(2);
         int cut_edges = 0;
