@@ -46,6 +46,10 @@ StoredFilm load_or_create(const Scene& scene, const View& view, const PathTracer
     return stored;
 }
 
+std::optional<FileLock> lock_of(const std::filesystem::path& film) {
+    return film.empty() ? std::optional<FileLock>() : std::optional<FileLock>(std::in_place, film);
+}
+
 } // namespace
 
 std::vector<StoredFilm::Setting> film_settings(const Scene& scene, const View& view,
@@ -69,7 +73,8 @@ std::vector<StoredFilm::Setting> film_settings(const Scene& scene, const View& v
 }
 
 FilmCheckpoint::FilmCheckpoint(const Scene& scene, const View& view, const PathTracerSettings& settings)
-    : path_(settings.film), interval_(settings.film_interval), stored_(load_or_create(scene, view, settings)) {}
+    : path_(settings.film), interval_(settings.film_interval), lock_(lock_of(path_)),
+      stored_(load_or_create(scene, view, settings)) {}
 
 void FilmCheckpoint::add(const std::function<void()>& work) {
     {

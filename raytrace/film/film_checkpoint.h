@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/scene/scene.h"
+#include "common/system/file_lock.h"
 #include "common/system/stopwatch.h"
 #include "raytrace/film/film_file.h"
 #include "raytrace/settings.h"
@@ -9,6 +10,7 @@
 #include <atomic>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <shared_mutex>
 
 namespace duet::raytrace {
@@ -22,7 +24,8 @@ std::vector<StoredFilm::Setting> film_settings(const Scene& scene, const View& v
 /// the film there at intervals and at the end. Otherwise it starts empty.
 class FilmCheckpoint {
 public:
-    /// Throws Error if the file is no film, or is a film of another image or of other samples.
+    /// Throws Error if the file is no film, is a film of another image or of other samples, or if another process
+    /// works on it.
     FilmCheckpoint(const Scene& scene, const View& view, const PathTracerSettings& settings);
 
     Film& film() { return stored_.film; }
@@ -36,6 +39,7 @@ public:
 private:
     const std::filesystem::path path_; // empty: nothing is written
     const double interval_;
+    std::optional<FileLock> lock_; // of path_, taken before the film is read
     StoredFilm stored_;
     Stopwatch since_write_;
     std::shared_mutex pixels_mutex_; // shared by threads that add to pixels, exclusive to copy all pixels

@@ -7,19 +7,35 @@ render() {
     shift
     "$bin/raytrace" models/cornell.json -o "$scratch/$out" --size 64x64 --quiet "$@"
 }
+# Starts a render and sets $process to its own id; `render … &` would give a shell's.
+start() {
+    out=$1
+    shift
+    "$bin/raytrace" models/cornell.json -o "$scratch/$out" --size 64x64 --quiet "$@" &
+    process=$!
+}
 
 render whole.pfm --spp 48
+render long.pfm --spp 1000
 
 # Killed again and again, with no time to say goodbye.
 for delay in 0.1 0.2 0.3; do
-    render killed.pfm --spp 48 --threads 1 --film "$scratch/kept.exr" --film-interval 0 &
-    process=$!
+    start killed.pfm --spp 1000 --threads 1 --film "$scratch/kept.exr" --film-interval 0
     sleep "$delay"
-    kill -9 $process 2>/dev/null || true
-    wait $process || true
+    kill -9 $process || fail "the render ended by itself"
+    wait $process 2>/dev/null || true
 done
-render killed.pfm --spp 48 --film "$scratch/kept.exr"
-cmp "$scratch/whole.pfm" "$scratch/killed.pfm" || fail "a killed render that went on from its film has other bits"
+render killed.pfm --spp 1000 --film "$scratch/kept.exr"
+cmp "$scratch/long.pfm" "$scratch/killed.pfm" || fail "a killed render that went on from its film has other bits"
+
+# Two processes on one film: the second one refuses.
+start first.pfm --spp 1000000 --film "$scratch/shared.exr"
+while [ ! -e "$scratch/shared.exr.lock" ]; do sleep 0.05; done
+expect 2 render second.pfm --spp 48 --film "$scratch/shared.exr"
+one_line_error "shared.exr: another process works on it"
+kill -TERM $process
+wait $process || true
+[ ! -e "$scratch/shared.exr.lock" ] || fail "a render that ended left its lock"
 
 # Interrupted: what it has is in the film, however long the interval.
 terminated 1 "$bin/raytrace" models/cornell.json -o "$scratch/stopped.pfm" --size 64x64 --quiet --spp 1000000 \
