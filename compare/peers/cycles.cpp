@@ -3,10 +3,10 @@
 #include "common/image/image_file.h"
 #include "common/system/file.h"
 #include "compare/peers/subprocess.h"
+#include "compare/peers/temporary_folder.h"
 
 #include <charconv>
 #include <deque>
-#include <stdlib.h>
 
 namespace duet::compare {
 
@@ -15,22 +15,6 @@ extern const std::string_view kCyclesScript; // compare/peers/cycles.py, embedde
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A temporary folder that is deleted with its owner.
-struct TemporaryFolder {
-    fs::path path;
-    TemporaryFolder() {
-        std::string name = (fs::temp_directory_path() / "duet-cycles-XXXXXX").string();
-        if (::mkdtemp(name.data()) == nullptr) throw Error(message(name, ": cannot be made"), 1);
-        path = name;
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        fs::remove_all(path, ignored);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-};
 
 /// Returns the number after `label` in a line of the log, or nothing.
 std::optional<double> number_after(const std::string& line, std::string_view label) {
@@ -48,11 +32,11 @@ std::optional<double> number_after(const std::string& line, std::string_view lab
 class CyclesPeer::Process {
 public:
     Process(const Scene& scene, const View& view, const ExportSettings& settings)
-        : notes_(export_scene(folder_.path, scene, view, settings)), blender_(command(folder_.path)) {}
+        : notes_(export_scene(folder_.path(), scene, view, settings)), blender_(command(folder_.path())) {}
 
     const ExportNotes& notes() const { return notes_; }
     const std::string& program() const { return program_; } ///< known once the script is ready
-    fs::path image() const { return folder_.path / "picture.exr"; }
+    fs::path image() const { return folder_.path() / "picture.exr"; }
 
     void send(const std::string& line) {
         if (!blender_.write_line(line)) fail();
@@ -92,7 +76,7 @@ private:
         throw Error(text, 1);
     }
 
-    TemporaryFolder folder_;
+    TemporaryFolder folder_{"duet-cycles"};
     ExportNotes notes_;
     Subprocess blender_;
     std::deque<std::string> last_lines_;

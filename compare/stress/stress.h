@@ -61,7 +61,7 @@ struct StressTest {
     double required_fraction = 0.99;
 };
 
-// Each group has its own file (compare/stress/*_tests.cpp).
+// Each group has its own file (*_tests.cpp).
 std::span<const StressTest> arithmetic_tests();   ///< robust arithmetic, frames, film sums
 std::span<const StressTest> leak_tests(); ///< closed surfaces are watertight
 std::span<const StressTest> intersection_tests(); ///< spheres, slivers, degenerate triangles and rays, ties
@@ -71,6 +71,7 @@ std::span<const StressTest> light_tests();        ///< solid angles, samples and
 std::span<const StressTest> coverage_tests();     ///< edges covered once, exact integers, guard band
 std::span<const StressTest> projection_tests();   ///< near plane, attributes, derivatives, depth order
 std::span<const StressTest> pipeline_tests();     ///< thread counts, both pipelines' Hits
+std::span<const StressTest> scene_tests();        ///< random valid scenes
 
 /// Returns the tests of all groups in the order above.
 std::vector<StressTest> all_stress_tests();

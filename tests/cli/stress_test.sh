@@ -6,7 +6,7 @@ expect 0 "$bin/compare" stress --trials 0.1 --stats "$scratch/all.json"
 for key in tests name what trials failures worst bound unit source naive; do
     grep -q "\"$key\":" "$scratch/all.json" || fail "--stats lacks $key"
 done
-for group in arithmetic leak intersection departure material light coverage projection pipeline; do
+for group in arithmetic leak intersection departure material light coverage projection pipeline scenes; do
     grep -q "^ok  *$group/" "$scratch/stdout" || fail "no row of $group/"
 done
 grep -q FAILED "$scratch/stdout" && fail "a row is red, and the exit code 0"

@@ -1,0 +1,52 @@
+#include "compare/stress/scenes/scene_checker.h"
+
+#include "common/system/error.h"
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+namespace duet::compare {
+
+namespace {
+
+/// Returns the next line of JSON, or the reason why there is none. Other lines, such as a sanitizer's, go to `output`.
+Subprocess::Read read_result(Subprocess& process, int seconds, std::string& output) {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(seconds);
+    for (;;) {
+        const auto left = deadline - std::chrono::steady_clock::now();
+        const Subprocess::Read read = process.read_line(std::chrono::duration_cast<std::chrono::milliseconds>(left));
+        if (read.status != Subprocess::Status::kLine || read.line.starts_with('{')) return read;
+        output += (output.empty() ? "" : " | ") + read.line;
+    }
+}
+
+} // namespace
+
+std::unique_ptr<Subprocess> SceneChecker::take_process() {
+    const std::lock_guard lock(mutex_);
+    if (!idle_.empty()) {
+        std::unique_ptr<Subprocess> process = std::move(idle_.back());
+        idle_.pop_back();
+        return process;
+    }
+    return std::make_unique<Subprocess>(command_);
+}
+
+SceneVerdict SceneChecker::check(const std::filesystem::path& scene) {
+    std::unique_ptr<Subprocess> process = take_process();
+    std::string output;
+    process->write_line(scene.string());
+    const Subprocess::Read read = read_result(*process, seconds_, output);
+    if (read.status == Subprocess::Status::kTimeout)
+        return {.failure = "hang", .details = message("more than ", seconds_, " s")};
+    if (read.status == Subprocess::Status::kEnd) return {.failure = "crash", .details = output};
+    const auto result = nlohmann::json::parse(read.line);
+    {
+        const std::lock_guard lock(mutex_);
+        idle_.push_back(std::move(process));
+    }
+    if (result["verdict"] == "refused") return {.refused = true, .failure = {}, .details = result["details"]};
+    return {.failure = result["failure"], .details = result["details"]};
+}
+
+} // namespace duet::compare

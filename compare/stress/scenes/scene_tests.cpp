@@ -1,0 +1,116 @@
+// These tests render random valid scenes with both pipelines.
+#include "common/system/error.h"
+#include "common/system/file.h"
+#include "compare/peers/temporary_folder.h"
+#include "compare/stress/scenes/reduce_scene.h"
+#include "compare/stress/scenes/scene_checker.h"
+#include "compare/stress/scenes/scene_files.h"
+#include "compare/stress/scenes/schema_values.h"
+
+#include <mutex>
+#include <span>
+
+namespace duet::compare {
+
+extern const std::string_view kSceneSchema; // models/scene.schema.json, embedded by CMakeLists.txt
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kAttempts = 8;            ///< at a scene that is not refused
+constexpr double kReduceSeconds = 120;
+
+/// Most scenes are of ordinary size about the origin. The others are tiny, huge or far away, or have numbers from
+/// anywhere in their ranges.
+SceneSizes random_sizes(TrialRandom& random) {
+    SceneSizes sizes;
+    if (random.below(4) == 0) sizes.unit = static_cast<double>(random.log_uniform(1e-6f, 1e6f));
+    if (random.below(4) == 0)
+        for (double& x : sizes.middle)
+            x = sizes.unit * static_cast<double>(random.sign() * random.log_uniform(1, 1e3f));
+    if (random.below(3) == 0) sizes.extreme = static_cast<double>(random.log_uniform(1e-3f, 0.1f));
+    return sizes;
+}
+
+/// Holds what all trials share: the files that scenes use, and the processes that check them.
+class SceneTrials {
+public:
+    SceneTrials() : files_(write_scene_files(folder_.path())) {}
+
+    void run(Trial& trial) {
+        const fs::path file = folder_.path() / message("scene-", trial.number(), ".json");
+        for (int i = 0; i < kAttempts; ++i) {
+            const SceneSizes sizes = random_sizes(trial.random);
+            const Json scene = SchemaValues(schema_, files_, sizes, trial.random).scene();
+            write_file(file, scene.dump(1));
+            const SceneVerdict verdict = checker_.check(file);
+            if (verdict.refused) continue;
+            trial.record_failure_if(verdict.failed());
+            if (verdict.failed()) return keep({trial.number(), scene, verdict});
+            break;
+        }
+        fs::remove(file);
+    }
+
+    /// Returns a message about the first scene of each kind of failure, with the part of it that fails alike.
+    std::string explain() {
+        std::string text;
+        for (const auto& [name, failure] : first_) {
+            const fs::path file = folder_.path() / message("reduced-", failure.number, ".json");
+            const Json reduced = reduce_scene(failure.scene, kReduceSeconds, [&](const Json& part) {
+                write_file(file, part.dump(1));
+                return checker_.check(file).failure == name;
+            });
+            write_file(file, reduced.dump(1));
+            text += message("\n  number ", failure.number, ": ", name, " (", failure.verdict.details,
+                            "); this part of the scene fails alike: ", reduced.dump());
+        }
+        return text + "\n  the scenes that failed are in " + folder_.path().string();
+    }
+
+private:
+    struct Failure {
+        std::int64_t number = 0; ///< of the trial
+        Json scene;
+        SceneVerdict verdict;
+    };
+    void keep(Failure failure) {
+        const std::lock_guard lock(mutex_);
+        folder_.keep();
+        const auto [first, is_new] = first_.try_emplace(failure.verdict.failure, failure);
+        if (failure.number < first->second.number) first->second = std::move(failure);
+    }
+
+    const Json schema_ = Json::parse(kSceneSchema);
+    TemporaryFolder folder_{"duet-scenes"};
+    const std::map<std::string, std::vector<std::string>> files_;
+    std::mutex mutex_;
+    std::map<std::string, Failure> first_; ///< by kind of failure
+    SceneChecker checker_{{"/proc/self/exe", "check", "-", "--size", "32x32", "--memory", "4096"}, 10};
+};
+
+StressResult valid_scenes(const StressTest& test, const StressSetting& setting) {
+    SceneTrials trials;
+    StressResult result = run_trials(test, setting, [&](Trial& trial) { trials.run(trial); });
+    if (result.library.failures > 0) result.details = trials.explain();
+    return result;
+}
+
+constexpr StressTest kTests[] = {
+    {.name = "scenes/valid",
+     .what = "both programs render any scene that the format allows, at 32x32 pixels in 10 seconds and 4 GiB: "
+             "explained hits, valid samples, the same bits for 1 and 3 threads",
+     .bound = 0,
+     .unit = "failed",
+     .source = "the requirements of `compare check`; scenes are drawn by models/scene.schema.json",
+     .naive = "",
+     .trials = 100,
+     .run = valid_scenes},
+};
+
+} // namespace
+
+std::span<const StressTest> scene_tests() { return kTests; }
+
+} // namespace duet::compare

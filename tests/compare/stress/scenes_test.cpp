@@ -1,0 +1,130 @@
+// These tests check the random scenes of `compare stress --only scenes`: what is drawn, how it is judged, and how a
+// failing scene is reduced.
+#include "common/scene/scene.h"
+#include "common/system/error.h"
+#include "common/system/file.h"
+#include "compare/stress/scenes/reduce_scene.h"
+#include "compare/stress/scenes/scene_checker.h"
+#include "compare/stress/scenes/scene_files.h"
+#include "compare/stress/scenes/schema_values.h"
+
+#include "tests/support/errors.h"
+#include "tests/support/scratch.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <set>
+
+using namespace duet;
+using namespace duet::compare;
+using duet::test::error_of;
+using duet::test::ScratchFolder;
+
+namespace {
+
+const Json& scene_schema() {
+    static const Json schema =
+        Json::parse(read_file(std::filesystem::path(DUET_SOURCE_DIR) / "models" / "scene.schema.json"));
+    return schema;
+}
+
+/// Adds all keys of a value, each as the type of its object and the key: "sphere.radius".
+void collect_keys(const Json& value, std::set<std::string>& keys) {
+    if (value.is_object()) {
+        const std::string type = value.value("type", value.contains("eye") ? value.value("projection", "camera") : "");
+        for (const auto& [key, item] : value.items()) keys.insert(type + '.' + key);
+    }
+    for (const auto& item : value)
+        if (item.is_structured()) collect_keys(item, keys);
+}
+
+} // namespace
+
+TEST_SUITE("unit") {
+
+    TEST_CASE("random scenes: almost all can be loaded, and every key of the format comes up") {
+        const ScratchFolder folder;
+        const auto files = write_scene_files(folder.path());
+        std::set<std::string> keys;
+        int loaded = 0;
+        constexpr int kScenes = 300;
+        for (std::uint64_t i = 0; i < kScenes; ++i) {
+            TrialRandom random(mix_bits(i + 1));
+            const Json scene = SchemaValues(scene_schema(), files, {}, random).scene();
+            collect_keys(scene, keys);
+            write_file(folder.path() / "scene.json", scene.dump());
+            const std::string error = error_of([&] { load_scene(folder / "scene.json"); });
+            loaded += error == "no error";
+        }
+        CHECK(loaded >= kScenes * 9 / 10);
+        for (const auto& [name, definition] : scene_schema()["$defs"].items()) {
+            if (!definition.contains("properties") || !definition["properties"].contains("type")) continue;
+            const std::string type = definition["properties"]["type"]["const"];
+            for (const auto& [key, rule] : definition["properties"].items()) CHECK(keys.contains(type + '.' + key));
+        }
+    }
+
+    TEST_CASE("random scenes: a seed gives the same scene; sizes move and scale it") {
+        const std::map<std::string, std::vector<std::string>> files = {
+            {"mesh", {"a.obj"}}, {"image_texture", {"a.png"}}, {"image_environment", {"a.hdr"}}};
+        const auto scene = [&](std::uint64_t seed, const SceneSizes& sizes) {
+            TrialRandom random(seed);
+            return SchemaValues(scene_schema(), files, sizes, random).scene();
+        };
+        CHECK(scene(1, {}) == scene(1, {}));
+        CHECK(scene(1, {}) != scene(2, {}));
+        const Json far = scene(1, {.unit = 1e-3, .middle = {1e3, 0, -1e3}});
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            CHECK(std::abs(far["camera"]["eye"][axis].get<double>() - std::array<double, 3>{1e3, 0, -1e3}[axis]) < 0.01);
+    }
+
+    TEST_CASE("random scenes: a schema with an unknown keyword is refused, not ignored") {
+        const Json schema = Json::parse(R"({"oneOf": [{"const": 1}]})");
+        TrialRandom random(1);
+        const std::string error = error_of([&] { SchemaValues(schema, {}, {}, random).scene(); });
+        CHECK(error.find("oneOf") != std::string::npos);
+        CHECK(error.find("expected") != std::string::npos);
+    }
+
+    TEST_CASE("reduction: what the failure needs stays, with few digits, and nothing else") {
+        const Json scene = Json::parse(R"({"camera": {"eye": [0, 0, 5]},
+            "objects": [{"type": "box"}, {"type": "group", "objects": [{"type": "sphere", "radius": 2.345678},
+                        {"type": "sphere", "radius": 0.5}]}]})");
+        int calls = 0;
+        const auto has_large_sphere = [&](const Json& part) {
+            ++calls;
+            for (const Json& object : part.value("objects", Json::array()))
+                for (const Json& inner : object.value("objects", Json::array()))
+                    if (inner.value("radius", 0.0) > 2) return true;
+            return false;
+        };
+        CHECK(reduce_scene(scene, 60, has_large_sphere) == Json::parse(R"({"objects": [{"objects": [{"radius": 2.3}]}]})"));
+        CHECK(calls > 0);
+        calls = 0;
+        CHECK(reduce_scene(scene, 0, has_large_sphere) == scene); // no time
+        CHECK(calls == 0);
+    }
+
+    TEST_CASE("the checker: verdicts, crashes and hangs, each with what the process said") {
+        const char* const script = R"(while read -r name; do case $name in
+            good) echo '{"verdict": "ok", "failure": "", "details": ""}';;
+            bad) echo noise; echo '{"verdict": "failed", "failure": "invalid samples", "details": "3 of 4"}';;
+            refused) echo '{"verdict": "refused", "details": "no camera"}';;
+            crash) echo overflow; exit 1;;
+            hang) exec sleep 100;; esac; done)";
+        SceneChecker checker({"sh", "-c", script}, 1);
+        CHECK_FALSE(checker.check("good").failed());
+        const SceneVerdict bad = checker.check("bad"), refused = checker.check("refused");
+        CHECK(bad.failure == "invalid samples");
+        CHECK(bad.details == "3 of 4");
+        CHECK(refused.refused);
+        CHECK_FALSE(refused.failed());
+        CHECK(refused.details == "no camera");
+        const SceneVerdict crash = checker.check("crash");
+        CHECK(crash.failure == "crash");
+        CHECK(crash.details == "overflow");
+        CHECK(checker.check("hang").failure == "hang");
+        CHECK_FALSE(checker.check("good").failed()); // by a new process
+    }
+}
