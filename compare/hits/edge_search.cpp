@@ -129,6 +129,15 @@ bool try_primitive(EdgeSearcher& search, const Hit& hit) {
     return try_border(search, polygon);
 }
 
+/// Returns whether the rasterizer may show a primitive that no ray hits, because the ray through the pixel lies in its
+/// plane: snapping may give the line that it projects to some area. It must lie before the closest hit.
+bool edge_on(const EdgeSearcher& search, const Hit& hit) {
+    constexpr double kCosine = 1e-12; // rounding in double
+    if (!hit.valid() || search.tracer.corners(hit.object, hit.primitive).empty()) return false;
+    return hit.t <= search.result.center.t &&
+           search.tracer.cosine(search.pinhole.ray(search.pixel), hit.object, hit.primitive, hit.t) < kCosine;
+}
+
 /// Returns whether any displaced ray could hit the primitive. It is false if the whole primitive projects
 /// outside of the octagon around the disk, enlarged by a margin for rounding.
 bool may_be_hit(const EdgeSearcher& search, const Hit& hit) {
@@ -144,6 +153,8 @@ EdgeSearch search_edge(const ReferenceTracer& tracer, const Pinhole& pinhole, Ve
     EdgeSearcher search{tracer, pinhole, pixel, radius, a, b, {}};
     search.result.center = search.trace(pixel);
     if (!may_be_hit(search, a) || !may_be_hit(search, b)) return search.result;
+    search.result.found_a = search.result.found_a || edge_on(search, a);
+    search.result.found_b = search.result.found_b || edge_on(search, b);
     (void)(search.result.both() || try_circles(search) || try_primitive(search, a) || try_primitive(search, b) ||
            try_disk(search));
     return search.result;

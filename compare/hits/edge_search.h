@@ -29,7 +29,7 @@ struct EdgeSearch {
 /// Displaces the ray through `pixel` by up to `radius` pixels: first on circles, then into the parts of the two
 /// primitives that lie within reach (however thin they are), then over a dense disk. It stops when both hits are found
 /// or all of about 5,000 rays are tried. Each ray is traced through the whole scene: being close to an edge is not
-/// enough, a ray must hit the primitive.
+/// enough, a ray must hit the primitive. Only a primitive in the plane of the ray counts as found without.
 EdgeSearch search_edge(const ReferenceTracer& tracer, const Pinhole& pinhole, Vec2d pixel, double radius, const Hit& a,
                        const Hit& b);
 

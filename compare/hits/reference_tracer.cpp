@@ -207,8 +207,9 @@ double ReferenceTracer::cosine(const Rayd& ray, std::uint32_t object, std::uint3
 }
 
 double ReferenceTracer::ray_rounding(const Rayd& ray, std::uint32_t object, double t) const {
-    const double origin = length(Vec3d(Vec3(ray.origin)) - ray.origin);
-    if (scene_.objects[object].identity && !scene_.objects[object].moving) return origin;
+    const double of_ray =
+        length(Vec3d(Vec3(ray.origin)) - ray.origin) + gamma_bound<float>(3) * t * length(ray.direction);
+    if (scene_.objects[object].identity && !scene_.objects[object].moving) return of_ray;
     // A difference, a product with a matrix of rounded entries, and two sums.
     const double bound = gamma_bound<float>(5);
     const auto absolute = [](const Mat4d& m, Vec3d v) {
@@ -220,7 +221,7 @@ double ReferenceTracer::ray_rounding(const Rayd& ray, std::uint32_t object, doub
     const Mat4d &to_world = objects_[object].to_world, &to_object = objects_[object].to_object;
     const Vec3d from_object = ray.origin - Vec3d(to_world[0][3], to_world[1][3], to_world[2][3]);
     const Vec3d terms = absolute(to_object, abs(from_object) + abs(ray.direction) * t);
-    return origin + bound * length(absolute(to_world, terms));
+    return of_ray + bound * length(absolute(to_world, terms));
 }
 
 std::vector<Vec3d> ReferenceTracer::corners(std::uint32_t object, std::uint32_t primitive) const {

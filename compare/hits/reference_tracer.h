@@ -38,8 +38,9 @@ public:
     /// distance t. Returns 0 for a triangle without area.
     double cosine(const Rayd& ray, std::uint32_t object, std::uint32_t primitive, double t) const;
     /// Returns how far rounding may move the point at distance t of a ray that is traced in float: that of the ray's
-    /// origin, and that of the transform to the object's space and of its result (Higham 2002, "Accuracy and Stability
-    /// of Numerical Algorithms", §3.1). It is large for an instance whose own coordinates are large beside t.
+    /// origin and direction, and that of the transform to the object's space and of its result (Higham 2002, "Accuracy
+    /// and Stability of Numerical Algorithms", §3.1). It is large for an instance whose own coordinates are large
+    /// beside t.
     double ray_rounding(const Rayd& ray, std::uint32_t object, double t) const;
     /// Returns the corners of a triangle (3) or quad (4) in world space; none for a sphere.
     std::vector<Vec3d> corners(std::uint32_t object, std::uint32_t primitive) const;

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <limits>
 #include <span>
 
@@ -22,7 +21,7 @@ bool is_untransformed(const Object& object) { return object.identity && !object.
 
 Accelerator::Accelerator(const Scene& scene, int threads)
     : scene_(scene), shapes_(scene.shapes.size()), has_alpha_masks_(scene.needs.alpha) {
-    BvhInput world(threads);
+    BvhInput world(threads, has_alpha_masks_);
     for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
         const Object& object = scene.objects[i];
         const Shape& shape = scene.shapes[object.shape];
@@ -33,7 +32,7 @@ Accelerator::Accelerator(const Scene& scene, int threads)
         }
         world.add_instance(object, i, shape);
         if (!shapes_[object.shape].empty()) continue;
-        BvhInput own(threads);
+        BvhInput own(threads, has_alpha_masks_);
         own.add_shape(shape, kNoObject);
         shapes_[object.shape] = own.build();
     }
@@ -100,12 +99,15 @@ Hit Accelerator::closest_without_alpha(const Ray& ray, const Hit* after) const {
     return traverse<false>(world_, ray, kNoObject, best, instance_test<false>(ray, after), after) ? best : Hit{};
 }
 
-// Finds the hit that follows `hit`: on another surface at the same distance, or else beyond.
+// Finds the hit that follows `hit`: on another surface at the same distance, or else beyond. The first search allows for
+// the rounding of the boxes' distances.
 Hit Accelerator::next_without_alpha(const Ray& ray, const Hit& hit) const {
+    constexpr float kMargin = 16 * std::numeric_limits<float>::epsilon();
     Ray part = ray;
-    part.t_min = max(std::nextafter(hit.t, 0.0f), ray.t_min);
-    part.t_max = hit.t;
-    if (const Hit coincident = closest_without_alpha(part, &hit); coincident.valid()) return coincident;
+    part.t_min = max(hit.t * (1 - kMargin), ray.t_min);
+    part.t_max = min(hit.t * (1 + kMargin), ray.t_max);
+    const Hit coincident = closest_without_alpha(part, &hit);
+    if (coincident.valid() && coincident.t == hit.t) return coincident;
     part.t_min = hit.t;
     part.t_max = ray.t_max;
     return closest_without_alpha(part);

@@ -88,7 +88,8 @@ void BvhInput::add_instance(const Object& object, std::uint32_t index, const Sha
 }
 
 Bvh BvhInput::build() {
-    const auto unique = [this](std::span<BuildItem> items) { return remove_duplicates(items); };
+    RemoveDuplicates unique;
+    if (!may_pass_) unique = [this](std::span<BuildItem> items) { return remove_duplicates(items); };
     auto [items, collapsed] = build_hierarchy(std::move(items_), unique, threads_);
     Bvh& bvh = collapsed.bvh;
     const auto elements = [&collapsed = collapsed](PrimitiveKind kind) {

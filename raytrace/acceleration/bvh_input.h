@@ -13,8 +13,9 @@ namespace duet::raytrace {
 /// until then.
 class BvhInput {
 public:
-    /// `threads` is the number of build threads (0 = all). The hierarchy does not depend on it.
-    explicit BvhInput(int threads) : threads_(threads) {}
+    /// `threads` is the number of build threads (0 = all). The hierarchy does not depend on it. Of primitives at the
+    /// same place one is kept, unless a ray may pass through it and hit another.
+    BvhInput(int threads, bool may_pass) : threads_(threads), may_pass_(may_pass) {}
 
     /// Adds the primitives of a shape, without a transform. Their hits report `object`.
     void add_shape(const Shape& shape, std::uint32_t object);
@@ -58,6 +59,7 @@ private:
     void set(SphereBlock& block, std::size_t lane, std::uint32_t index) const;
 
     int threads_;
+    bool may_pass_; // whether rays may pass through primitives
     BuildItems items_;
     std::vector<ObjectMesh> meshes_;
     std::vector<MeshTriangle, HugePageAllocator<MeshTriangle>> triangles_;
