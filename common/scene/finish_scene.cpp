@@ -1,6 +1,7 @@
 // This file computes the data that is derived from a scene's description, once for both pipelines.
 #include "common/scene/bake.h"
 #include "common/scene/emitter_texture.h"
+#include "common/scene/json/json_reader.h"
 #include "common/scene/scene.h"
 #include "common/system/error.h"
 
@@ -51,7 +52,8 @@ void find_bounds(Scene& scene) {
         const Box3 box = motion_bounds(scene, object);
         const Vec3 extent = max(abs(box.low), abs(box.high));
         if (!is_finite(extent) || max_component(extent) > kMaxCoordinate)
-            throw Error(message(scene.path.string(), ": the object ", object.name, " reaches beyond 1e18 meters"));
+            throw Error(message(scene.path.string(), ": the object ", quoted_text(object.name),
+                                " reaches beyond 1e18 meters"));
         scene.bounds.extend(box);
     }
     if (scene.objects.empty()) scene.bounds = Box3{Vec3(scene.camera.look_at), Vec3(scene.camera.look_at)};

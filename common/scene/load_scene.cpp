@@ -2,6 +2,7 @@
 #include "common/scene/default_scene.h"
 #include "common/scene/json/json_reader.h"
 #include "common/scene/json/read_lights.h"
+#include "common/scene/json/json_reader.h"
 #include "common/scene/json/read_materials.h"
 #include "common/scene/json/read_objects.h"
 #include "common/scene/json/scene_keys.h"
@@ -50,6 +51,29 @@ Scene read_scene(const std::filesystem::path& path) {
     return scene;
 }
 
+/// The rasterizer computes where polygons are in double precision, relative to the eye. The point that the camera looks
+/// at is then certain to 1e-3 of its distance if no corner is farther away than this many times that distance.
+constexpr double kMaxReach = 1e13;
+
+/// Throws Error if an object of polygons is too large to be seen from where the camera is.
+void check_reach(const Scene& scene) {
+    const Camera& camera = scene.camera;
+    const bool orthographic = camera.projection == Camera::Projection::kOrthographic;
+    const double view = orthographic ? camera.height : length(camera.look_at - camera.eye);
+    for (const Object& object : scene.objects) {
+        const Shape& shape = scene.shapes[object.shape];
+        if (std::holds_alternative<Sphere>(shape)) continue;
+        Box3 box = bounds(shape, object.to_world);
+        if (object.moving) box.extend(bounds(shape, object.to_world_end));
+        if (box.empty()) continue;
+        const double reach = length(max(abs(Vec3d(box.low) - camera.eye), abs(Vec3d(box.high) - camera.eye)));
+        if (reach > kMaxReach * view)
+            throw Error(message(scene.path.string(), ": the object ", quoted_text(object.name), " reaches ", reach,
+                                " m from the eye, more than 1e13 times the ", view, " m that the camera ",
+                                orthographic ? "shows" : "looks at", ": make it smaller, or look farther"));
+    }
+}
+
 } // namespace
 
 Scene load_scene(const std::filesystem::path& path) {
@@ -58,6 +82,7 @@ Scene load_scene(const std::filesystem::path& path) {
         throw Error(message(path.string(), ": expected a scene file (.json) or a mesh (.obj)"));
     Scene scene = extension == ".obj" ? default_scene_for_mesh(path) : read_scene(path);
     finish_scene(scene);
+    check_reach(scene);
     return scene;
 }
 

@@ -5,9 +5,9 @@
 
 namespace duet {
 
-/// A FileLock holds a file for this process. It locks a file `PATH.lock` beside it, since the file itself may be replaced
-/// by another. The operating system releases the lock of a process that is killed; its lock file stays and does no
-/// harm.
+/// A FileLock holds a file for this process. It locks a file `PATH.lock` beside it, since the file itself may be
+/// replaced by another. The operating system releases the lock of a process that is killed; its lock file stays and
+/// does no harm.
 class FileLock {
 public:
     /// Throws Error if another process holds the file, and Error with exit code 1 if the lock file cannot be made.

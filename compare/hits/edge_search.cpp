@@ -15,6 +15,7 @@ struct EdgeSearcher {
     double radius; ///< pixels
     const Hit &a, &b;
     EdgeSearch result;
+    double farthest = 0; ///< hit of all rays so far; infinite if one misses
 
     /// Traces one displaced ray. Returns true once both hits have been found.
     bool try_at(Vec2d p) {
@@ -24,6 +25,7 @@ struct EdgeSearcher {
     ReferenceHit trace(Vec2d p) {
         const Rayd ray = pinhole.ray(p);
         const ReferenceHit nearest = tracer.nearest(ray);
+        farthest = max(farthest, nearest.t);
         result.found_a = result.found_a || nearest.same_as(a);
         result.found_b = result.found_b || nearest.same_as(b);
         result.tied_a = result.tied_a || ties_with(ray, nearest, a);
@@ -130,11 +132,11 @@ bool try_primitive(EdgeSearcher& search, const Hit& hit) {
 }
 
 /// Returns whether the rasterizer may show a primitive that no ray hits, because the ray through the pixel lies in its
-/// plane: snapping may give the line that it projects to some area. It must lie before the closest hit.
+/// plane: snapping may give the line that it projects to some area. Some ray must reach as far.
 bool edge_on(const EdgeSearcher& search, const Hit& hit) {
     constexpr double kCosine = 1e-12; // rounding in double
     if (!hit.valid() || search.tracer.corners(hit.object, hit.primitive).empty()) return false;
-    return hit.t <= search.result.center.t &&
+    return hit.t <= search.farthest &&
            search.tracer.cosine(search.pinhole.ray(search.pixel), hit.object, hit.primitive, hit.t) < kCosine;
 }
 
@@ -150,13 +152,13 @@ bool may_be_hit(const EdgeSearcher& search, const Hit& hit) {
 
 EdgeSearch search_edge(const ReferenceTracer& tracer, const Pinhole& pinhole, Vec2d pixel, double radius, const Hit& a,
                        const Hit& b) {
-    EdgeSearcher search{tracer, pinhole, pixel, radius, a, b, {}};
+    EdgeSearcher search{tracer, pinhole, pixel, radius, a, b, {}, 0};
     search.result.center = search.trace(pixel);
     if (!may_be_hit(search, a) || !may_be_hit(search, b)) return search.result;
-    search.result.found_a = search.result.found_a || edge_on(search, a);
-    search.result.found_b = search.result.found_b || edge_on(search, b);
     (void)(search.result.both() || try_circles(search) || try_primitive(search, a) || try_primitive(search, b) ||
            try_disk(search));
+    search.result.found_a = search.result.found_a || edge_on(search, a);
+    search.result.found_b = search.result.found_b || edge_on(search, b);
     return search.result;
 }
 

@@ -1,6 +1,7 @@
 #include "compare/hits/hit_agreement.h"
 
 #include "common/system/parallel.h"
+#include "common/vec/robust.h"
 #include "compare/hits/edge_search.h"
 
 #include <cmath>
@@ -31,10 +32,16 @@ struct HitClassifier {
     Rayd ray(int x, int y) const { return pinhole.ray(center(x, y)); }
     static Vec2d center(int x, int y) { return {x + 0.5, y + 0.5}; }
 
-    double rounding(const Rayd& r, const Hit& hit) const { return tracer.ray_rounding(r, hit.object, hit.t); }
+    /// Returns how far rounding may move a hit: the path tracer's, of the ray in float, and the rasterizer's, of the
+    /// primitive's plane in double. The latter counts for primitives of 1e10 times the distance, and for needles.
+    double rounding(const Rayd& r, const Hit& hit) const {
+        const double reach = plane_reach(tracer.corners(hit.object, hit.primitive), r.origin);
+        return tracer.ray_rounding(r, hit.object, hit.t) + gamma_bound<double>(16) * reach;
+    }
 
     /// Returns by how many pixels rays may be displaced to find both hits.
     double radius(int x, int y, const Hit& a, const Hit& b) const {
+        constexpr double kLargest = 1e4; // across any image; the plane of a triangle without area may be anywhere
         const Rayd r = ray(x, y), beside = pinhole.ray(center(x, y) + Vec2d(1, 0));
         double result = kEdgeRadius;
         for (const Hit& hit : {a, b})
@@ -42,7 +49,7 @@ struct HitClassifier {
                 const double pixel = length(beside.at(hit.t) - r.at(hit.t));
                 result = max(result, kEdgeRadius + rounding(r, hit) / pixel);
             }
-        return result;
+        return min(result, kLargest);
     }
 
     /// Returns whether the ray hits both primitives at the same distance.

@@ -14,8 +14,7 @@ namespace duet::compare {
 
 enum class HitVerdict : std::uint8_t {
     kSame,       ///< same object and primitive, or both miss
-    kEdge,       ///< double-precision rays within 1/128 pixel of the center find both primitives, or within what the
-                 ///< path tracer's rounding of the ray amounts to (ReferenceTracer::ray_rounding)
+    kEdge,       ///< double-precision rays within 1/128 pixel of the center, and what rounding amounts to, find both
     kDepthTie,   ///< the double-precision ray hits both at the same distance, within kDepthTolerance; or displaced rays
                  ///< find one, and hit the other within kTieTolerance of its occluder
     kUnexplained ///< neither same, edge nor tie: one of the pipelines is wrong

@@ -11,7 +11,7 @@ namespace duet::raster {
 /// Returns the position of a direction of any length in the square [−1, 1]².
 template <typename T> Vec2T<T> octahedral(const Vec3T<T>& w) {
     const T one(1.0f), zero(0.0f);
-    const T over = one / (abs(w.x) + abs(w.y) + abs(w.z));
+    const T over = one / max(abs(w.x) + abs(w.y) + abs(w.z), T(1e-30f));
     const T x = w.x * over, y = w.y * over;
     const auto sign = [&](const T& v) { return select(v < zero, -one, one); };
     const auto below = w.z < zero;

@@ -99,8 +99,8 @@ Hit Accelerator::closest_without_alpha(const Ray& ray, const Hit* after) const {
     return traverse<false>(world_, ray, kNoObject, best, instance_test<false>(ray, after), after) ? best : Hit{};
 }
 
-// Finds the hit that follows `hit`: on another surface at the same distance, or else beyond. The first search allows for
-// the rounding of the boxes' distances.
+// Finds the hit that follows `hit`: on another surface at the same distance, or else beyond. The first search allows
+// for the rounding of the boxes' distances.
 Hit Accelerator::next_without_alpha(const Ray& ray, const Hit& hit) const {
     constexpr float kMargin = 16 * std::numeric_limits<float>::epsilon();
     Ray part = ray;

@@ -26,7 +26,8 @@ IMAGES = ["rgb.png", "rgba.png", "gray.png", "colors.ppm", "colors.tga", "linear
 ENVIRONMENTS = ["sky.hdr", "linear.pfm", "rgb.png"]
 CONDUCTORS = ["aluminium", "chromium", "cobalt", "copper", "gold", "iron", "nickel", "palladium", "platinum", "silver",
               "titanium", "tungsten"]
-LARGEST = 1e17  # No coordinate is larger than a few times this. The format allows 1e18.
+LARGEST = 1e12  # No coordinate is larger than a few times this.
+REACH = 1e12  # No object reaches farther from the eye than a few times this many distances to what it looks at.
 
 # One material for each row of the table of MTL files in models/README.md, and further ones for the maps.
 MTL = """newmtl light\nKe 3 2 1\nKd 0.2 0.2 0.2\n
@@ -179,13 +180,14 @@ class Scene:
     def choose_sizes(self):
         """The range of sizes of objects, the size that most of them have, and the center of the scene."""
         kind = self.random.choices(["ordinary", "wide", "extreme"], [8, 3, 1])[0]
-        extreme = self.pick([(1e-9, 1e-6), (1e6, 1e9), (1e-9, 1e9), (1e-9, 1e9), (1e14, LARGEST / 10)])
+        extreme = self.pick([(1e-9, 1e-6), (1e6, 1e9), (1e-9, 1e9), (1e-9, 1e9), (1e9, LARGEST / 10)])
         self.smallest, self.largest = {"ordinary": (0.01, 100), "wide": (1e-4, 1e4), "extreme": extreme}[kind]
         self.unit = self.log_uniform(self.smallest, self.largest)
         # Scales of transforms. Where coordinates are close to the largest, the transforms must not enlarge.
         self.scales = (0.1, 1) if self.largest > 1e12 else (1e-3, 1e3) if kind == "extreme" else (0.2, 5)
         far = min(self.unit * self.log_uniform(10, 1e6), LARGEST)
         self.center = self.direction(far) if self.chance(0.2) else [0, 0, 0]
+        self.reach = 10 * self.largest  # of the objects from the center
 
     # Numbers, vectors and colors.
 
@@ -382,6 +384,7 @@ class Scene:
         half = self.size() / 2
         if self.chance(0.08):  # A huge box below the others, whose top is at the height of the center.
             half = min(half * self.log_uniform(1e3, 1e6), LARGEST)
+            self.reach = max(self.reach, half)
             self.places[-1] = plus(self.center, [0, -half, 0])
         while True:
             sides = [half * self.pick([1, self.log_uniform(0.01, 1)]) for _ in range(3)]
@@ -450,6 +453,7 @@ class Scene:
         at = self.pick(self.places)
         distance = {"before": 5 * self.unit, "inside": self.unit, "close": self.uniform(1e-6, 9e-6),
                     "far": min(self.unit * self.log_uniform(10, 1e4), LARGEST)}[kind]
+        distance = max(distance, self.reach / REACH)
         while True:
             other = plus(at, self.direction(distance))
             # In single precision, the eye and the point differ by about the distance. Otherwise the view's direction
@@ -469,7 +473,8 @@ class Scene:
         keys = {"eye": eye, "look_at": look_at, **({"up": up} if up != [0, 1, 0] or self.chance(0.5) else {})}
         keys |= self.some({"near": near, "shutter": sorted([self.fraction(), self.fraction()])}, 0.3)
         if self.chance(0.25):
-            return {"projection": "orthographic", **keys, **self.some({"height": self.unit * self.uniform(0.1, 8)})}
+            height = max(self.unit, self.reach / REACH) * self.uniform(0.1, 8)
+            return {"projection": "orthographic", **keys, **self.some({"height": height})}
         fov = self.pick([0.001, 179, self.uniform(5, 100), self.uniform(20, 70), self.uniform(20, 70)])
         return keys | self.some({"projection": "perspective", "fov_degrees": fov, "aperture_radius": radius,
                                  "focus_distance": focus})

@@ -42,6 +42,9 @@ TEST_SUITE("unit") {
             CHECK(std::abs(p.y) <= 1);
             CHECK(length(raster::octahedral_direction(p) - w) < 1e-6f);
         }
+        const Vec2 none = raster::octahedral(Vec3()); // of a point at the probe's center: some place
+        CHECK(std::abs(none.x) <= 1);
+        CHECK(std::abs(none.y) <= 1);
     }
 
     TEST_CASE("bilinear lookups are continuous across the edges of the square") {

@@ -49,6 +49,16 @@ TEST_SUITE("unit") {
         CHECK(estimate(0, 1) == doctest::Approx(0.25 / (0.25 + 0.01) / 9));
     }
 
+    TEST_CASE("the variance image is finite where the variance is, however large, and infinite where it is unknown") {
+        Film film(2, 1);
+        film.add(0, 0, 0, Rgb(1e30f));
+        film.add(0, 0, 1, Rgb(0.0f));
+        film.add(1, 0, 0, Rgb(1.0f));
+        const ImageRgb image = film.variance_image();
+        CHECK(image(0, 0).r == std::numeric_limits<float>::max());
+        CHECK(std::isinf(image(1, 0).r));
+    }
+
 } // TEST_SUITE
 
 TEST_SUITE("statistical") {

@@ -342,7 +342,7 @@ TEST_SUITE("unit") {
         const auto error = error_of([] {
             finished(scene_of(Sphere{{0, 0, 0}, 1e15f}, scaling(Vec3d(1e5, 1e5, 1e5))));
         });
-        CHECK_MESSAGE(says(error, "the object object 0 reaches beyond 1e18"), error);
+        CHECK_MESSAGE(says(error, "the object \"object 0\" reaches beyond 1e18"), error);
         const auto power = error_of([] {
             finished(scene_of(Sphere{{0, 0, 0}, 1e17f}, Mat4d(), Emissive{Rgb(1e12f)}));
         });
