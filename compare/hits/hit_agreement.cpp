@@ -52,8 +52,14 @@ struct HitClassifier {
         return min(result, kLargest);
     }
 
-    /// Returns whether the ray hits both primitives at the same distance.
+    /// Returns whether rounding decides on which side of a primitive the eye is.
+    bool passes_eye(const Rayd& r, const Hit& hit) const {
+        return hit.valid() && hit.t * tracer.cosine(r, hit.object, hit.primitive, hit.t) <= rounding(r, hit);
+    }
+
+    /// Returns whether the ray hits both primitives at the same distance, or one of them at the eye.
     bool depth_tie(const Rayd& r, const Hit& a, const Hit& b) const {
+        if (passes_eye(r, a) || passes_eye(r, b)) return true;
         if (!a.valid() || !b.valid()) return false;
         const ReferenceHit ea = tracer.intersect(r, a.object, a.primitive),
                            eb = tracer.intersect(r, b.object, b.primitive);

@@ -16,7 +16,8 @@ enum class HitVerdict : std::uint8_t {
     kSame,       ///< same object and primitive, or both miss
     kEdge,       ///< double-precision rays within 1/128 pixel of the center, and what rounding amounts to, find both
     kDepthTie,   ///< the double-precision ray hits both at the same distance, within kDepthTolerance; or displaced rays
-                 ///< find one, and hit the other within kTieTolerance of its occluder
+                 ///< find one, and hit the other within kTieTolerance of its occluder; or one is at the eye, within
+                 ///< rounding
     kUnexplained ///< neither same, edge nor tie: one of the pipelines is wrong
 };
 
