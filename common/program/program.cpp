@@ -26,6 +26,23 @@ void keep_freed_memory() {
 #endif
 }
 
+/// Prints an error on one line. Control characters, which may come from a file or its name, are escaped, so that they
+/// do not reach the terminal.
+void print_error(const std::string& name, std::string_view text) {
+    std::string line;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte >= 0x20 && byte != 0x7f) {
+            line += c;
+            continue;
+        }
+        char escaped[8];
+        std::snprintf(escaped, sizeof escaped, "\\x%02x", byte);
+        line += escaped;
+    }
+    std::cerr << name << ": " << line << '\n';
+}
+
 } // namespace
 
 int run_program(const std::string& name, const std::function<int()>& body) {
@@ -36,13 +53,13 @@ int run_program(const std::string& name, const std::function<int()>& body) {
         if (!std::cout) throw Error("standard output cannot be written", kExitFailed);
         return code;
     } catch (const Error& error) {
-        std::cerr << name << ": " << error.what() << '\n';
+        print_error(name, error.what());
         return error.exit_code();
     } catch (const std::bad_alloc&) {
         std::cerr << name << ": not enough memory for this image and scene\n";
         return kExitFailed;
     } catch (const std::exception& error) {
-        std::cerr << name << ": " << error.what() << '\n';
+        print_error(name, error.what());
         return kExitFailed;
     }
 }

@@ -172,7 +172,7 @@ ObjFile load_obj(const std::filesystem::path& path, const ObjOptions& options) {
     std::istream stream(&buffer);
     std::string warnings, errors;
     if (!tinyobj::LoadObjWithCallback(stream, callbacks(), &reader, nullptr, &warnings, &errors))
-        throw Error(message(path.string(), ": ", errors));
+        throw Error(message(path.string(), ": ", quoted_text(errors)));
     ObjFile file;
     reader.slots.finish(file);
     file.mesh = reader.mesh.finish(file.degenerate_faces);

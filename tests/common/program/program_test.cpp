@@ -6,6 +6,9 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include <iostream>
+#include <sstream>
+
 using namespace duet;
 
 TEST_SUITE("unit") {
@@ -32,6 +35,14 @@ TEST_SUITE("unit") {
         CHECK(run_program("test", [] { return 7; }) == 7);
         CHECK(run_program("test", []() -> int { throw Error("expected here by a test"); }) == kExitUnusable);
         CHECK(run_program("test", []() -> int { throw Error("expected here by a test", 1); }) == kExitFailed);
+    }
+
+    TEST_CASE("an error is one line, and shows control characters instead of sending them") {
+        std::ostringstream printed;
+        std::streambuf* const before = std::cerr.rdbuf(printed.rdbuf());
+        run_program("test", []() -> int { throw Error("a\x1b[31m\nb\x7f, ü"); });
+        std::cerr.rdbuf(before);
+        CHECK(printed.str() == "test: a\\x1b[31m\\x0ab\\x7f, ü\n");
     }
 
     TEST_CASE("seconds are readable") {
