@@ -21,6 +21,18 @@ namespace fs = std::filesystem;
 constexpr int kAttempts = 8;            ///< at a scene that is not refused
 constexpr double kReduceSeconds = 120;
 
+/// Returns the process that checks scenes, with its budget of memory and seconds for each.
+SceneChecker scene_checker() {
+    std::vector<std::string> command{"/proc/self/exe", "check", "-", "--size", "32x32"};
+#ifdef DUET_SANITIZED // slow, and with a large address space of its own
+    constexpr int kSeconds = 200;
+#else
+    constexpr int kSeconds = 10;
+    command.insert(command.end(), {"--memory", "4096"});
+#endif
+    return SceneChecker(std::move(command), kSeconds);
+}
+
 /// Most scenes are of ordinary size about the origin. The others are tiny, huge or far away, or have numbers from
 /// anywhere in their ranges.
 SceneSizes random_sizes(TrialRandom& random) {
@@ -56,14 +68,15 @@ public:
     /// Returns a message about the first scene of each kind of failure, with the part of it that fails alike.
     std::string explain() {
         std::string text;
-        for (const auto& [name, failure] : first_) {
+        for (const auto& entry : first_) {
+            const Failure& failure = entry.second;
             const fs::path file = folder_.path() / message("reduced-", failure.number, ".json");
             const Json reduced = reduce_scene(failure.scene, kReduceSeconds, [&](const Json& part) {
                 write_file(file, part.dump(1));
-                return checker_.check(file).failure == name;
+                return checker_.check(file).failure == failure.verdict.failure;
             });
             write_file(file, reduced.dump(1));
-            text += message("\n  number ", failure.number, ": ", name, " (", failure.verdict.details,
+            text += message("\n  number ", failure.number, ": ", failure.verdict.failure, " (", failure.verdict.details,
                             "); this part of the scene fails alike: ", reduced.dump());
         }
         return text + "\n  the scenes that failed are in " + folder_.path().string();
@@ -87,7 +100,7 @@ private:
     const std::map<std::string, std::vector<std::string>> files_;
     std::mutex mutex_;
     std::map<std::string, Failure> first_; ///< by kind of failure
-    SceneChecker checker_{{"/proc/self/exe", "check", "-", "--size", "32x32", "--memory", "4096"}, 10};
+    SceneChecker checker_ = scene_checker();
 };
 
 StressResult valid_scenes(const StressTest& test, const StressSetting& setting) {
