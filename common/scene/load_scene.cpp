@@ -2,7 +2,6 @@
 #include "common/scene/default_scene.h"
 #include "common/scene/json/json_reader.h"
 #include "common/scene/json/read_lights.h"
-#include "common/scene/json/json_reader.h"
 #include "common/scene/json/read_materials.h"
 #include "common/scene/json/read_objects.h"
 #include "common/scene/json/scene_keys.h"

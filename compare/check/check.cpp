@@ -9,6 +9,7 @@
 #include <cstring>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sys/resource.h>
 
 namespace duet::compare {
@@ -24,21 +25,34 @@ void limit_memory(int mebibytes) {
         throw Error(message("--memory ", mebibytes, ": the limit cannot be set: ", std::strerror(errno)), 1);
 }
 
+/// A scene that was loaded can be rendered, so an error is a failure.
+CheckResult check_loaded(const Scene& scene, const CheckSettings& settings) {
+    try {
+        return check_scene(scene, settings);
+    } catch (const Error& error) {
+        return {"error", error.what()};
+    }
+}
+
 /// Checks the scene and prints the result. Returns the exit code that it stands for.
 int check_file(const std::string& name, const CheckOptions& options) {
     const Stopwatch watch;
     json line = {{"scene", name}};
     int exit_code = kExitOk;
+    std::optional<Scene> scene;
     try {
-        const CheckResult result = check_scene(load_scene(name, options.size), options.settings);
-        line["verdict"] = result.failed() ? "failed" : "ok";
-        line["failure"] = result.failure;
-        line["details"] = result.details;
-        if (result.failed()) exit_code = kExitFailed;
+        scene = load_scene(name, options.size);
     } catch (const Error& error) {
         line["verdict"] = "refused";
         line["details"] = error.what();
         exit_code = kExitUnusable;
+    }
+    if (scene) {
+        const CheckResult result = check_loaded(*scene, options.settings);
+        line["verdict"] = result.failed() ? "failed" : "ok";
+        line["failure"] = result.failure;
+        line["details"] = result.details;
+        if (result.failed()) exit_code = kExitFailed;
     }
     line["seconds"] = watch.seconds();
     std::cout << line.dump(-1, ' ', true, json::error_handler_t::replace) << std::endl;

@@ -131,13 +131,16 @@ bool try_primitive(EdgeSearcher& search, const Hit& hit) {
     return try_border(search, polygon);
 }
 
-/// Returns whether the rasterizer may show a primitive that no ray hits, because the ray through the pixel lies in its
-/// plane: snapping may give the line that it projects to some area. Some ray must reach as far.
+/// Returns whether the rasterizer may show a primitive that no ray hits, because the ray through the pixel is parallel
+/// to its plane and within reach: snapping may give the line that it projects to some area. Some ray must reach as far.
 bool edge_on(const EdgeSearcher& search, const Hit& hit) {
-    constexpr double kCosine = 1e-12; // rounding in double
-    if (!hit.valid() || search.tracer.corners(hit.object, hit.primitive).empty()) return false;
-    return hit.t <= search.farthest &&
-           search.tracer.cosine(search.pinhole.ray(search.pixel), hit.object, hit.primitive, hit.t) < kCosine;
+    constexpr double kRounding = 1e-12; // in double
+    if (!hit.valid() || hit.t > search.farthest) return false;
+    const Rayd ray = search.pinhole.ray(search.pixel);
+    const double pixel = length(search.pinhole.ray(search.pixel + Vec2d(1, 0)).at(hit.t) - ray.at(hit.t));
+    const std::vector<Vec3d> corners = search.tracer.corners(hit.object, hit.primitive);
+    return search.tracer.cosine(ray, hit.object, hit.primitive, hit.t) < kRounding &&
+           plane_distance(corners, ray.at(hit.t)) <= search.radius * pixel;
 }
 
 /// Returns whether any displaced ray could hit the primitive. It is false if the whole primitive projects

@@ -54,7 +54,10 @@ struct HitClassifier {
 
     /// Returns whether rounding decides on which side of a primitive the eye is.
     bool passes_eye(const Rayd& r, const Hit& hit) const {
-        return hit.valid() && hit.t * tracer.cosine(r, hit.object, hit.primitive, hit.t) <= rounding(r, hit);
+        if (!hit.valid()) return false;
+        const double cosine = tracer.cosine(r, hit.object, hit.primitive, hit.t), bound = rounding(r, hit);
+        return cosine > 0 && hit.t * cosine <= bound &&
+               plane_distance(tracer.corners(hit.object, hit.primitive), r.origin) <= bound;
     }
 
     /// Returns whether the ray hits both primitives at the same distance, or one of them at the eye.

@@ -234,6 +234,13 @@ std::vector<Vec3d> ReferenceTracer::corners(std::uint32_t object, std::uint32_t 
     return points;
 }
 
+double plane_distance(const std::vector<Vec3d>& corners, Vec3d point) {
+    if (corners.empty()) return std::numeric_limits<double>::infinity();
+    const Vec3d n = cross(corners[1] - corners[0], corners[2] - corners[0]);
+    const double size = length(n);
+    return size > 0 ? std::abs(dot(n, corners[0] - point)) / size : std::numeric_limits<double>::infinity();
+}
+
 double relative_distance(const ReferenceTracer& tracer, const Rayd& ray, const ReferenceHit& a, const ReferenceHit& b) {
     const double cosine =
         max(tracer.cosine(ray, a.object, a.primitive, a.t), tracer.cosine(ray, b.object, b.primitive, b.t));

@@ -61,6 +61,10 @@ private:
     ReferenceBvh object_tree_;
 };
 
+/// Returns the distance of a point from the plane of a polygon's corners, in meters; infinity if they span no plane or
+/// there are none.
+double plane_distance(const std::vector<Vec3d>& corners, Vec3d point);
+
 /// Returns the relative distance between two hits of one ray: |Δt|·|cos θ| / t, with the larger cosine of the
 /// two surfaces and the smaller of the two distances. It is measured along the surface normal, because at
 /// grazing angles the rounding of the ray direction alone causes large differences in t.

@@ -4,9 +4,11 @@
 #include "common/program/command_line.h"
 #include "common/program/program.h"
 #include "common/system/error.h"
+#include "common/system/file_lock.h"
 
 #include <algorithm>
 #include <iostream>
+#include <optional>
 
 namespace duet::raytrace {
 
@@ -58,6 +60,8 @@ struct Options {
 
 int merge(const Options& options) {
     check_writable_image(options.output);
+    std::optional<FileLock> lock;
+    if (!options.film.empty()) lock.emplace(options.film);
     std::vector<NamedFilm> films;
     for (const std::string& name : options.films) films.push_back({name, read_film(name)});
     sort_by_samples(films);

@@ -30,7 +30,7 @@ cmp "$scratch/long.pfm" "$scratch/killed.pfm" || fail "a killed render that went
 
 # Two processes on one film: the second one refuses.
 start first.pfm --spp 1000000 --film "$scratch/shared.exr"
-while [ ! -e "$scratch/shared.exr.lock" ]; do sleep 0.05; done
+while kill -0 $process && [ ! -e "$scratch/shared.exr.lock" ]; do sleep 0.05; done
 expect 2 render second.pfm --spp 48 --film "$scratch/shared.exr"
 one_line_error "shared.exr: another process works on it"
 kill -TERM $process

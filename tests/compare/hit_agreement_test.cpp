@@ -222,6 +222,23 @@ TEST_SUITE("unit") {
         }
     }
 
+    TEST_CASE("a face that is parallel to the rays counts on the line that it projects to, and nowhere else") {
+        Scene scene = test::empty_scene();
+        test::add(scene, QuadList{{facing(-20, 20, -20, 20, 0)}});
+        test::add(scene, QuadList{{Quad{{0.5f, -5, 0}, {0, 10, 0}, {0, 0, 2}}}}); // through the centers of column 32
+        const View view = plain_view();
+        const Image<Hit> exact = perfect_hits(scene, view);
+        const auto judged = [&](int x, int y, float t) {
+            Image<Hit> hits = exact;
+            set(hits, x, y, 1, 0, t);
+            return compare_hits(scene, view, hits, exact);
+        };
+        check_counts(judged(32, 31, 9), 1, 0, 0);
+        check_counts(judged(40, 31, 9), 0, 0, 1);  // beside it
+        check_counts(judged(32, 20, 9), 0, 0, 1);  // beyond its end
+        check_counts(judged(32, 31, 11), 0, 0, 1); // behind what all rays see
+    }
+
     TEST_CASE("moving objects are judged as the shutter opens, instances where they stand") {
         Scene scene = test::empty_scene();
         const Mat4 start = translation(Vec3(-10, 0, 0)), end = translation(Vec3(10, 0, 0));

@@ -106,7 +106,7 @@ private:
 StressResult valid_scenes(const StressTest& test, const StressSetting& setting) {
     SceneTrials trials;
     StressResult result = run_trials(test, setting, [&](Trial& trial) { trials.run(trial); });
-    if (result.library.failures > 0) result.details = trials.explain();
+    if (result.library.failures > 0 && !setting.control.stopped()) result.details = trials.explain();
     return result;
 }
 
