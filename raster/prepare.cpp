@@ -11,6 +11,8 @@
 #include "raster/shadows/shadow_map_lookup.h"
 #include "raster/shadows/shadow_maps.h"
 
+#include "common/scene/alpha_mask.h"
+#include "common/scene/motion_bounds.h"
 #include "common/system/error.h"
 
 #include <algorithm>
@@ -22,11 +24,6 @@ bool all_opaque(const Scene& scene, const Object& object) {
     return std::none_of(object.materials.begin(), object.materials.end(), [&](std::uint32_t material) {
         return std::holds_alternative<Dielectric>(scene.materials[material]) || scene.maps[material].has_transparency();
     });
-}
-
-bool can_be_seen_through(const Scene& scene, const Object& object) {
-    return std::any_of(object.materials.begin(), object.materials.end(),
-                       [&](std::uint32_t material) { return scene.maps[material].has_transparency(); });
 }
 
 bool all_glass(const Scene& scene, const Object& object) {
@@ -90,9 +87,7 @@ bool encloses(const QuadList& list) {
 RasterObject prepare_object(const Scene& scene, const Object& object) {
     const Shape& shape = scene.shapes[object.shape];
     RasterObject result;
-    result.bounds = bounds(shape, object.to_world);
-    // Matrix entries are interpolated, so a point moves on a straight line, within the union of both ends' bounds.
-    if (object.moving) result.bounds.extend(bounds(shape, object.to_world_end));
+    result.bounds = motion_bounds(object, shape);
     result.uniform_color = uniform_color(scene, object);
     result.uniform_texture = uniform_texture(scene, object);
     result.metal = uniform_metal(scene, object);

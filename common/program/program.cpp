@@ -1,6 +1,7 @@
 #include "common/program/program.h"
 
 #include "common/system/error.h"
+#include "common/system/escape.h"
 
 #include <algorithm>
 #include <chrono>
@@ -29,18 +30,8 @@ void keep_freed_memory() {
 /// Prints an error on one line. Control characters, which may come from a file or its name, are escaped, so that they
 /// do not reach the terminal.
 void print_error(const std::string& name, std::string_view text) {
-    std::string line;
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (byte >= 0x20 && byte != 0x7f) {
-            line += c;
-            continue;
-        }
-        char escaped[8];
-        std::snprintf(escaped, sizeof escaped, "\\x%02x", byte);
-        line += escaped;
-    }
-    std::cerr << name << ": " << line << '\n';
+    const auto plain = [](unsigned char byte) { return byte >= 0x20 && byte != 0x7f; };
+    std::cerr << name << ": " << escaped(text, plain) << '\n';
 }
 
 } // namespace

@@ -11,4 +11,7 @@ namespace duet {
 /// both pipelines.
 bool passes_alpha_mask(const Scene& scene, const Ray& ray, const Hit& hit);
 
+/// Returns whether rays may pass through an object: whether any of its materials has an opacity below 1.
+bool can_be_seen_through(const Scene& scene, const Object& object);
+
 } // namespace duet

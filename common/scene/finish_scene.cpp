@@ -2,6 +2,7 @@
 #include "common/scene/bake.h"
 #include "common/scene/emitter_texture.h"
 #include "common/scene/json/json_reader.h"
+#include "common/scene/motion_bounds.h"
 #include "common/scene/scene.h"
 #include "common/system/error.h"
 
@@ -37,19 +38,10 @@ void bake_single_objects(Scene& scene) {
         if (!object.identity && !object.moving && uses[object.shape] == 1) bake(scene, object);
 }
 
-/// Returns the object's bounds over its motion. Matrix entries are interpolated linearly, so points move on straight
-/// lines, and the boxes at both ends enclose all positions in between. The margins of the boxes cover the rounding of
-/// the interpolated matrix.
-Box3 motion_bounds(const Scene& scene, const Object& object) {
-    Box3 box = bounds(scene.shapes[object.shape], object.to_world);
-    if (object.moving) box.extend(bounds(scene.shapes[object.shape], object.to_world_end));
-    return box;
-}
-
 void find_bounds(Scene& scene) {
     scene.bounds = Box3();
     for (const Object& object : scene.objects) {
-        const Box3 box = motion_bounds(scene, object);
+        const Box3 box = motion_bounds(object, scene.shapes[object.shape]);
         const Vec3 extent = max(abs(box.low), abs(box.high));
         if (!is_finite(extent) || max_component(extent) > kMaxCoordinate)
             throw Error(message(scene.path.string(), ": the object ", quoted_text(object.name),

@@ -5,6 +5,7 @@
 #include "common/scene/json/read_materials.h"
 #include "common/scene/json/read_objects.h"
 #include "common/scene/json/scene_keys.h"
+#include "common/scene/motion_bounds.h"
 #include "common/scene/scene.h"
 #include "common/system/error.h"
 #include "common/system/file.h"
@@ -62,8 +63,7 @@ void check_reach(const Scene& scene) {
     for (const Object& object : scene.objects) {
         const Shape& shape = scene.shapes[object.shape];
         if (std::holds_alternative<Sphere>(shape)) continue;
-        Box3 box = bounds(shape, object.to_world);
-        if (object.moving) box.extend(bounds(shape, object.to_world_end));
+        const Box3 box = motion_bounds(object, shape);
         if (box.empty()) continue;
         const double reach = length(max(abs(Vec3d(box.low) - camera.eye), abs(Vec3d(box.high) - camera.eye)));
         if (reach > kMaxReach * view)

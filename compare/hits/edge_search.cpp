@@ -137,10 +137,10 @@ bool edge_on(const EdgeSearcher& search, const Hit& hit) {
     constexpr double kRounding = 1e-12; // in double
     if (!hit.valid() || hit.t > search.farthest) return false;
     const Rayd ray = search.pinhole.ray(search.pixel);
-    const double pixel = length(search.pinhole.ray(search.pixel + Vec2d(1, 0)).at(hit.t) - ray.at(hit.t));
+    const double reach = search.radius * pixel_width(search.pinhole, search.pixel, hit.t);
     const std::vector<Vec3d> corners = search.tracer.corners(hit.object, hit.primitive);
     return search.tracer.cosine(ray, hit.object, hit.primitive, hit.t) < kRounding &&
-           plane_distance(corners, ray.at(hit.t)) <= search.radius * pixel;
+           plane_distance(corners, ray.at(hit.t)) <= reach;
 }
 
 /// Returns whether any displaced ray could hit the primitive. It is false if the whole primitive projects
@@ -152,6 +152,10 @@ bool may_be_hit(const EdgeSearcher& search, const Hit& hit) {
 }
 
 } // namespace
+
+double pixel_width(const Pinhole& pinhole, Vec2d pixel, double t) {
+    return length(pinhole.ray(pixel + Vec2d(1, 0)).at(t) - pinhole.ray(pixel).at(t));
+}
 
 EdgeSearch search_edge(const ReferenceTracer& tracer, const Pinhole& pinhole, Vec2d pixel, double radius, const Hit& a,
                        const Hit& b) {

@@ -26,6 +26,9 @@ struct EdgeSearch {
     bool both_or_tied() const { return (found_a || tied_a) && (found_b || tied_b); }
 };
 
+/// Returns the width of a pixel at distance t, in meters.
+double pixel_width(const Pinhole& pinhole, Vec2d pixel, double t);
+
 /// Displaces the ray through `pixel` by up to `radius` pixels: first on circles, then into the parts of the two
 /// primitives that lie within reach (however thin they are), then over a dense disk. It stops when both hits are found
 /// or all of about 5,000 rays are tried. Each ray is traced through the whole scene: being close to an edge is not

@@ -42,12 +42,11 @@ struct HitClassifier {
     /// Returns by how many pixels rays may be displaced to find both hits.
     double radius(int x, int y, const Hit& a, const Hit& b) const {
         constexpr double kLargest = 1e4; // across any image; the plane of a triangle without area may be anywhere
-        const Rayd r = ray(x, y), beside = pinhole.ray(center(x, y) + Vec2d(1, 0));
         double result = kEdgeRadius;
         for (const Hit& hit : {a, b})
             if (hit.valid() && hit.t > 0) {
-                const double pixel = length(beside.at(hit.t) - r.at(hit.t));
-                result = max(result, kEdgeRadius + rounding(r, hit) / pixel);
+                const double pixel = pixel_width(pinhole, center(x, y), hit.t);
+                result = max(result, kEdgeRadius + rounding(ray(x, y), hit) / pixel);
             }
         return min(result, kLargest);
     }

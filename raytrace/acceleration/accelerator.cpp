@@ -21,19 +21,22 @@ bool is_untransformed(const Object& object) { return object.identity && !object.
 
 Accelerator::Accelerator(const Scene& scene, int threads)
     : scene_(scene), shapes_(scene.shapes.size()), has_alpha_masks_(scene.needs.alpha) {
-    BvhInput world(threads, has_alpha_masks_);
+    std::vector<bool> seen_through(scene.shapes.size()); // by some object of the shape
+    for (const Object& object : scene.objects)
+        if (can_be_seen_through(scene, object)) seen_through[object.shape] = true;
+    BvhInput world(threads);
     for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
         const Object& object = scene.objects[i];
         const Shape& shape = scene.shapes[object.shape];
         primitives_ += primitive_count(shape);
         if (is_untransformed(object)) {
-            world.add_shape(shape, i);
+            world.add_shape(shape, i, seen_through[object.shape]);
             continue;
         }
         world.add_instance(object, i, shape);
         if (!shapes_[object.shape].empty()) continue;
-        BvhInput own(threads, has_alpha_masks_);
-        own.add_shape(shape, kNoObject);
+        BvhInput own(threads);
+        own.add_shape(shape, kNoObject, seen_through[object.shape]);
         shapes_[object.shape] = own.build();
     }
     world_ = world.build();

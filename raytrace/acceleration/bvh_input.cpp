@@ -1,6 +1,7 @@
 #include "raytrace/acceleration/bvh_input.h"
 
 #include "common/sampling/hash.h"
+#include "common/scene/motion_bounds.h"
 #include "common/system/parallel.h"
 #include "common/vec/robust.h"
 #include "raytrace/acceleration/bvh_hierarchy.h"
@@ -46,23 +47,23 @@ void BvhInput::add(PrimitiveKind kind, const Box3& box, std::vector<Primitive>& 
     list.push_back(primitive);
 }
 
-void BvhInput::add_shape(const Shape& shape, std::uint32_t object) {
+void BvhInput::add_shape(const Shape& shape, std::uint32_t object, bool seen_through) {
     if (const auto* mesh = std::get_if<Mesh>(&shape)) {
-        add_mesh(*mesh, object);
+        add_mesh(*mesh, object, seen_through);
     } else if (const auto* list = std::get_if<QuadList>(&shape)) {
         for (std::uint32_t i = 0; i < list->quads.size(); ++i) {
             Box3 box;
             for (const Vec3& p : corners(list->quads[i])) box.extend(p);
-            add(PrimitiveKind::kQuad, box, quads_, {corners(list->quads[i]), object, i});
+            add(PrimitiveKind::kQuad, box, quads_, {corners(list->quads[i]), object, i, seen_through});
         }
     } else {
-        add(PrimitiveKind::kSphere, bounds(shape, Mat4()), spheres_, {std::get<Sphere>(shape), object});
+        add(PrimitiveKind::kSphere, bounds(shape, Mat4()), spheres_, {std::get<Sphere>(shape), object, seen_through});
     }
 }
 
-void BvhInput::add_mesh(const Mesh& mesh, std::uint32_t object) {
+void BvhInput::add_mesh(const Mesh& mesh, std::uint32_t object, bool seen_through) {
     const auto which = static_cast<std::uint32_t>(meshes_.size());
-    meshes_.push_back({&mesh, object});
+    meshes_.push_back({&mesh, object, seen_through});
     const std::size_t first_item = items_.size(), first_triangle = triangles_.size();
     items_.resize(first_item + mesh.triangles.size());
     triangles_.resize(first_triangle + mesh.triangles.size());
@@ -75,10 +76,7 @@ void BvhInput::add_mesh(const Mesh& mesh, std::uint32_t object) {
 }
 
 void BvhInput::add_instance(const Object& object, std::uint32_t index, const Shape& shape) {
-    Box3 box = bounds(shape, object.to_world);
-    // Matrix entries are interpolated linearly, so each point moves on a straight line between its positions at both
-    // ends.
-    if (object.moving) box.extend(bounds(shape, object.to_world_end));
+    Box3 box = motion_bounds(object, shape);
     // Hits are found in object space. The transform of the ray to that space has rounding errors, for which the box
     // gets a margin.
     const Vec3 margin = max(abs(box.low), abs(box.high)) * gamma_bound(16);
@@ -88,8 +86,7 @@ void BvhInput::add_instance(const Object& object, std::uint32_t index, const Sha
 }
 
 Bvh BvhInput::build() {
-    RemoveDuplicates unique;
-    if (!may_pass_) unique = [this](std::span<BuildItem> items) { return remove_duplicates(items); };
+    const auto unique = [this](std::span<BuildItem> items) { return remove_duplicates(items); };
     auto [items, collapsed] = build_hierarchy(std::move(items_), unique, threads_);
     Bvh& bvh = collapsed.bvh;
     const auto elements = [&collapsed = collapsed](PrimitiveKind kind) {
@@ -109,7 +106,8 @@ Bvh BvhInput::build() {
 // Moves one primitive of each set of duplicates to the front, and returns the number of these. Primitives with
 // bit-equal corners, or spheres with bit-equal center and radius, are hit at exactly the same distance, where the
 // lowest (object, primitive) wins; that is the one with the lowest index here. A hash table finds duplicates in one
-// pass. Instances are never duplicates, because they may move.
+// pass. Instances are never duplicates, because they may move; nor are primitives that a ray may pass through, because
+// it may hit the next one.
 std::size_t BvhInput::remove_duplicates(std::span<BuildItem> items) const {
     constexpr std::uint32_t kEmptySlot = ~0u;
     std::vector<std::uint32_t> slots(std::bit_ceil(2 * items.size()), kEmptySlot); // hash table of indices into `items`
@@ -129,8 +127,28 @@ std::size_t BvhInput::remove_duplicates(std::span<BuildItem> items) const {
     return unique;
 }
 
+bool BvhInput::is_unique(const BuildItem& item) const {
+    switch (item.kind) {
+    case PrimitiveKind::kTriangle:
+        return meshes_[triangles_[item.index].mesh].seen_through;
+    case PrimitiveKind::kQuad:
+        return quads_[item.index].seen_through;
+    case PrimitiveKind::kSphere:
+        return spheres_[item.index].seen_through;
+    case PrimitiveKind::kInstance:
+        break;
+    }
+    return true;
+}
+
 BvhInput::PrimitiveKey BvhInput::key_of(const BuildItem& item) const {
     PrimitiveKey key{static_cast<std::uint32_t>(item.kind)};
+    if (is_unique(item)) {
+        constexpr std::uint32_t kUnique = 0x100; // no kind of primitive
+        key[0] |= kUnique;
+        key[1] = item.index;
+        return key;
+    }
     std::size_t next = 1;
     const auto add = [&](Vec3 p) {
         for (std::size_t axis = 0; axis < 3; ++axis) key[next++] = std::bit_cast<std::uint32_t>(p[axis]);
@@ -139,8 +157,6 @@ BvhInput::PrimitiveKey BvhInput::key_of(const BuildItem& item) const {
         const Sphere& sphere = spheres_[item.index].sphere;
         add(sphere.center);
         key[next] = std::bit_cast<std::uint32_t>(sphere.radius);
-    } else if (item.kind == PrimitiveKind::kInstance) {
-        key[next] = item.index;
     } else if (item.kind == PrimitiveKind::kQuad) {
         for (const Vec3 corner : quads_[item.index].corners) add(corner);
     } else {
@@ -175,9 +191,10 @@ template <typename Block> void BvhInput::fill_block(Block& block, std::span<cons
 
 void BvhInput::set(TriangleBlock& block, std::size_t lane, std::uint32_t index) const {
     const MeshTriangle& triangle = triangles_[index];
-    const auto& [mesh, object] = meshes_[triangle.mesh];
-    const auto& [a, b, c] = mesh->triangles[triangle.primitive];
-    block.set(lane, {mesh->positions[a], mesh->positions[b], mesh->positions[c]}, object, triangle.primitive);
+    const ObjectMesh& from = meshes_[triangle.mesh];
+    const auto& [a, b, c] = from.mesh->triangles[triangle.primitive];
+    const std::vector<Vec3>& p = from.mesh->positions;
+    block.set(lane, {p[a], p[b], p[c]}, from.object, triangle.primitive);
 }
 
 void BvhInput::set(QuadBlock& block, std::size_t lane, std::uint32_t index) const {

@@ -13,12 +13,12 @@ namespace duet::raytrace {
 /// until then.
 class BvhInput {
 public:
-    /// `threads` is the number of build threads (0 = all). The hierarchy does not depend on it. Of primitives at the
-    /// same place one is kept, unless a ray may pass through it and hit another.
-    BvhInput(int threads, bool may_pass) : threads_(threads), may_pass_(may_pass) {}
+    /// `threads` is the number of build threads (0 = all). The hierarchy does not depend on it.
+    explicit BvhInput(int threads) : threads_(threads) {}
 
-    /// Adds the primitives of a shape, without a transform. Their hits report `object`.
-    void add_shape(const Shape& shape, std::uint32_t object);
+    /// Adds the primitives of a shape, without a transform. Their hits report `object`. Of opaque primitives at the
+    /// same place one is kept; `seen_through` says that rays may pass through those of the shape.
+    void add_shape(const Shape& shape, std::uint32_t object, bool seen_through);
     /// Adds the world-space bounds of a transformed shape, over all of its motion. `index` is the index of the
     /// object.
     void add_instance(const Object& object, std::uint32_t index, const Shape& shape);
@@ -32,24 +32,28 @@ private:
     struct ObjectMesh {
         const Mesh* mesh;
         std::uint32_t object;
+        bool seen_through;
     };
     struct ObjectQuad {
         std::array<Vec3, 4> corners;
         std::uint32_t object, primitive;
+        bool seen_through;
     };
     struct ObjectSphere {
         Sphere sphere;
         std::uint32_t object;
+        bool seen_through;
     };
-    /// Holds everything that decides where a primitive is hit: its kind and the bits of its coordinates, or the
-    /// index of an instance.
+    /// Holds everything that decides where a primitive is hit: its kind and the bits of its coordinates, or the index
+    /// of one that has no duplicates.
     using PrimitiveKey = std::array<std::uint32_t, 13>;
 
     template <typename Body> void in_chunks(std::size_t count, const Body& body) const;
-    void add_mesh(const Mesh& mesh, std::uint32_t object);
+    void add_mesh(const Mesh& mesh, std::uint32_t object, bool seen_through);
     template <typename Primitive>
     void add(PrimitiveKind kind, const Box3& box, std::vector<Primitive>& list, const Primitive& primitive);
     std::size_t remove_duplicates(std::span<BuildItem> items) const;
+    bool is_unique(const BuildItem& item) const;
     PrimitiveKey key_of(const BuildItem& item) const;
 
     void fill_leaf(Bvh& bvh, const LeafItems& leaf, std::span<const BuildItem> items) const;
@@ -59,7 +63,6 @@ private:
     void set(SphereBlock& block, std::size_t lane, std::uint32_t index) const;
 
     int threads_;
-    bool may_pass_; // whether rays may pass through primitives
     BuildItems items_;
     std::vector<ObjectMesh> meshes_;
     std::vector<MeshTriangle, HugePageAllocator<MeshTriangle>> triangles_;

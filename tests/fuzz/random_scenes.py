@@ -183,8 +183,7 @@ class Scene:
         extreme = self.pick([(1e-9, 1e-6), (1e6, 1e9), (1e-9, 1e9), (1e-9, 1e9), (1e9, LARGEST / 10)])
         self.smallest, self.largest = {"ordinary": (0.01, 100), "wide": (1e-4, 1e4), "extreme": extreme}[kind]
         self.unit = self.log_uniform(self.smallest, self.largest)
-        # Scales of transforms. Where coordinates are close to the largest, the transforms must not enlarge.
-        self.scales = (0.1, 1) if self.largest > 1e12 else (1e-3, 1e3) if kind == "extreme" else (0.2, 5)
+        self.scales = (1e-3, 1e3) if kind == "extreme" else (0.2, 5)  # of transforms
         far = min(self.unit * self.log_uniform(10, 1e6), LARGEST)
         self.center = self.direction(far) if self.chance(0.2) else [0, 0, 0]
         self.reach = 10 * self.largest  # of the objects from the center

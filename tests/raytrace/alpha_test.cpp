@@ -103,6 +103,16 @@ TEST_SUITE("unit") {
         }
     }
 
+    TEST_CASE("of opaque primitives at one place one is kept, of those that can be seen through all are") {
+        SceneBuilder builder;
+        const std::uint32_t partial = builder.material(Diffuse{}), opaque = builder.material(Diffuse{});
+        for (int i = 0; i < 1000; ++i) builder.add(quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}), opaque);
+        for (int i = 0; i < 30; ++i) builder.add(quad({-1, -1, 1}, {2, 0, 0}, {0, 2, 0}), partial);
+        builder.scene.maps = {sheet(0.5f)};
+        const Scene scene = builder.finish();
+        CHECK(Accelerator(scene, 1).statistics().references == 31);
+    }
+
     TEST_CASE("a cutoff makes surfaces whole or holes") {
         SurfaceMaps maps = half_open();
         maps.opacity.value = 0.6f;

@@ -1,6 +1,7 @@
 #include "common/scene/json/json_reader.h"
 
 #include "common/system/error.h"
+#include "common/system/escape.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -69,18 +70,8 @@ bool is_identifier(std::string_view key) {
 } // namespace
 
 std::string quoted_text(std::string_view text) {
-    std::string out = "\"";
-    for (const char c : text.substr(0, 60)) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (byte >= 0x20 && byte < 0x7f) {
-            out += c;
-        } else {
-            char escaped[8];
-            std::snprintf(escaped, sizeof escaped, "\\x%02x", byte);
-            out += escaped;
-        }
-    }
-    return out + (text.size() > 60 ? "…\"" : "\"");
+    const auto plain = [](unsigned char byte) { return byte >= 0x20 && byte < 0x7f; };
+    return '"' + escaped(text.substr(0, 60), plain) + (text.size() > 60 ? "…\"" : "\"");
 }
 
 std::string suggestion(std::string_view name, const std::vector<std::string_view>& known) {

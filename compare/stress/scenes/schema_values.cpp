@@ -39,8 +39,7 @@ void repair_step(Json& step) {
     if (step.contains("matrix"))
         for (std::size_t i = 12; i < 16; ++i) step["matrix"][i] = i < 15 ? 0 : 1;
     if (!step.contains("scale")) return;
-    if (step["scale"] == 0) step["scale"] = 1;
-    for (Json& x : step["scale"])
+    for (Json& x : step["scale"]) // the components, or the number itself
         if (x == 0) x = 1;
 }
 
@@ -118,9 +117,9 @@ std::optional<Json> SchemaValues::object(const Json& schema, const Place& place)
         return std::find(required.begin(), required.end(), key) != required.end();
     };
     const Json properties = schema.value("properties", Json::object());
+    const double present = place.depth == 0 ? 0.9 : 0.4; // depth 0: the scene itself
     for (const auto& [key, rule] : properties.items()) {
-        const bool whole_scene = place.depth == 0 && schema.contains("required");
-        if (!is_required(key) && !chance(whole_scene ? 0.9 : 0.4)) continue;
+        if (!is_required(key) && !chance(present)) continue;
         std::optional<Json> drawn = value(rule, {"", key, place.definition, place.depth + 1});
         if (drawn)
             result[key] = std::move(*drawn);
