@@ -2,7 +2,6 @@
 
 #include "common/system/error.h"
 
-#include <fstream>
 #include <system_error>
 #include <unistd.h>
 
@@ -17,21 +16,35 @@ std::string lower_case_extension(const fs::path& path) {
     return extension;
 }
 
-std::string read_file(const fs::path& path, std::size_t limit) {
+namespace {
+
+/// Returns the number of bytes of a file. It comes from the open stream, not from the path, because another program may
+/// rename a file to this path at any time.
+std::size_t file_size(std::ifstream& in, const fs::path& path) {
+    in.seekg(0, std::ios::end);
+    const std::streamoff end = in.tellg();
+    in.seekg(0);
+    if (!in || end < 0) throw Error(message(path.string(), ": cannot be read"));
+    return static_cast<std::size_t>(end);
+}
+
+} // namespace
+
+std::ifstream open_file(const fs::path& path, std::size_t limit) {
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
     if (!fs::exists(status)) throw Error(message(path.string(), ": no such file"));
     if (!fs::is_regular_file(status)) throw Error(message(path.string(), ": not a regular file"));
-    // Take the size from the open stream, not from the path: another program may rename a file to this path at any
-    // time.
-    std::ifstream in(path, std::ios::binary | std::ios::ate);
-    const std::streamoff end = in.tellg();
-    if (!in || end < 0) throw Error(message(path.string(), ": cannot be read"));
-    const auto size = static_cast<std::uintmax_t>(end);
+    std::ifstream in(path, std::ios::binary);
+    const std::size_t size = file_size(in, path);
     if (size > limit) throw Error(message(path.string(), ": ", size, " bytes, expected at most ", limit));
-    in.seekg(0);
-    std::string bytes(static_cast<std::size_t>(size), '\0');
-    in.read(bytes.data(), static_cast<std::streamsize>(size));
+    return in;
+}
+
+std::string read_file(const fs::path& path, std::size_t limit) {
+    std::ifstream in = open_file(path, limit);
+    std::string bytes(file_size(in, path), '\0');
+    in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     if (!in) throw Error(message(path.string(), ": cannot be read"));
     return bytes;
 }

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -13,6 +14,9 @@ namespace duet {
 /// are converted to lower case, independently of the locale.
 std::string lower_case_extension(const std::filesystem::path& path);
 
+/// Opens a regular file for reading its bytes. Throws an Error that names the path if the file is missing, is not a
+/// regular file, is larger than `limit` bytes or cannot be read.
+std::ifstream open_file(const std::filesystem::path& path, std::size_t limit = std::size_t{1} << 32);
 /// Returns the contents of a regular file. Throws an Error that names the path if the file is missing, is not a regular
 /// file, is larger than `limit` bytes or cannot be read.
 std::string read_file(const std::filesystem::path& path, std::size_t limit = std::size_t{1} << 32);

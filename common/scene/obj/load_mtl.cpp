@@ -2,12 +2,13 @@
 
 #include "common/scene/json/read_materials.h"
 #include "common/scene/obj/obj_check.h"
+#include "common/scene/obj/obj_text.h"
 #include "common/system/error.h"
 
 #include <tiny_obj_loader.h>
 
 #include <algorithm>
-#include <sstream>
+#include <istream>
 
 namespace duet {
 
@@ -122,9 +123,12 @@ SurfaceMaps map_surface(const tinyobj::material_t& m, const Material& material, 
 } // namespace
 
 void load_mtl(const std::filesystem::path& path, std::map<std::string, MtlMaterial>& materials) {
-    const std::string text = read_obj_text(path);
-    check_mtl(path, text);
-    std::istringstream stream(text);
+    ObjText text(path);
+    std::istream stream(&text);
+    stream.exceptions(std::ios::badbit);
+    check_mtl(path, stream);
+    stream.clear();
+    text.rewind();
     std::map<std::string, int> ignored_names;
     std::vector<tinyobj::material_t> parsed;
     std::string warnings, errors;

@@ -5,23 +5,17 @@
 #include "common/scene/obj/load_mtl.h"
 #include "common/scene/obj/obj_check.h"
 #include "common/scene/obj/obj_mesh.h"
+#include "common/scene/obj/obj_text.h"
 #include "common/scene/obj/smooth_normals.h"
 #include "common/system/error.h"
 
 #include <tiny_obj_loader.h>
 
 #include <istream>
-#include <streambuf>
 
 namespace duet {
 
 namespace {
-
-/// A TextStream reads a string in place, without a copy.
-class TextStream : public std::streambuf {
-public:
-    explicit TextStream(std::string& text) { setg(text.data(), text.data(), text.data() + text.size()); }
-};
 
 /// MaterialSlots assigns the material slots of a mesh in the order in which usemtl lines use them.
 class MaterialSlots {
@@ -163,13 +157,15 @@ tinyobj::callback_t callbacks() {
 Material default_obj_material() { return Diffuse{{Rgb(0.62f, 0.5f, 0.42f)}}; }
 
 ObjFile load_obj(const std::filesystem::path& path, const ObjOptions& options) {
-    std::string text = read_obj_text(path);
-    const ObjCounts counts = check_obj(path, text);
+    ObjText text(path);
+    std::istream stream(&text);
+    stream.exceptions(std::ios::badbit);
+    const ObjCounts counts = check_obj(path, stream);
+    stream.clear();
+    text.rewind();
     const bool file_normals =
         options.normals == MeshNormals::kFile || (options.normals == MeshNormals::kAuto && counts.normals > 0);
     ObjReader reader{ObjMeshBuilder(path, counts, file_normals), MaterialSlots(path, counts, options.materials)};
-    TextStream buffer(text);
-    std::istream stream(&buffer);
     std::string warnings, errors;
     if (!tinyobj::LoadObjWithCallback(stream, callbacks(), &reader, nullptr, &warnings, &errors))
         throw Error(message(path.string(), ": ", quoted_text(errors)));

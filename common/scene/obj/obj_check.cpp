@@ -2,13 +2,13 @@
 
 #include "common/scene/json/json_reader.h"
 #include "common/system/error.h"
-#include "common/system/file.h"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <istream>
 
 namespace duet {
 
@@ -33,30 +33,6 @@ public:
 private:
     static bool is_blank(char c) { return c == ' ' || c == '\t'; }
     std::string_view rest_;
-};
-
-/// Lines iterates over the lines of a text. Lines end as in tinyobjloader, by \n, \r\n or \r.
-class Lines {
-public:
-    explicit Lines(std::string_view text) : rest_(text) {}
-    bool next(std::string_view& line) {
-        if (rest_.empty()) return false;
-        std::size_t end = 0;
-        while (end < rest_.size() && rest_[end] != '\n' && rest_[end] != '\r') ++end;
-        line = rest_.substr(0, end);
-        rest_.remove_prefix(end);
-        if (rest_.starts_with("\r\n"))
-            rest_.remove_prefix(2);
-        else if (!rest_.empty())
-            rest_.remove_prefix(1);
-        ++number_;
-        return true;
-    }
-    std::size_t number() const { return number_; }
-
-private:
-    std::string_view rest_;
-    std::size_t number_ = 0;
 };
 
 [[noreturn]] void fail(const std::filesystem::path& path, std::size_t line, const std::string& what) {
@@ -163,58 +139,27 @@ private:
     std::array<IndexCheck, 3> index_;
 };
 
-/// Joins continued lines, which tinyobjloader does not support. A backslash before a line end becomes a blank, and an
-/// empty line after the joined line preserves the line numbers: "f 1 2\⏎3 4⏎" becomes "f 1 2 3 4⏎⏎".
-std::string join_continued(const std::string& text) {
-    std::string joined;
-    joined.reserve(text.size());
-    std::size_t pending = 0;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const std::size_t next = i + (text.compare(i + 1, 2, "\r\n") == 0 ? 2 : 1);
-        if (text[i] == '\\' && next < text.size() && text[next] == '\n') {
-            joined += ' ';
-            ++pending;
-            i = next;
-        } else {
-            joined += text[i];
-            if (text[i] == '\n') {
-                joined.append(pending, '\n');
-                pending = 0;
-            }
-        }
-    }
-    return joined;
-}
-
 } // namespace
 
-std::string read_obj_text(const std::filesystem::path& path) {
-    std::string text = read_file(path);
-    if (text.starts_with("\xEF\xBB\xBF"))
-        text.replace(0, 3, "   "); // a byte order mark would hide the first line's key
-    if (text.find('\0') != std::string::npos) throw Error(path.string() + ": holds a NUL byte, expected text");
-    const bool continued = text.find("\\\n") != std::string::npos || text.find("\\\r\n") != std::string::npos;
-    return continued ? join_continued(text) : text;
-}
-
-ObjCounts check_obj(const std::filesystem::path& path, std::string_view text) {
+ObjCounts check_obj(const std::filesystem::path& path, std::istream& text) {
     ObjCounts counts;
     FaceCheck faces(path);
-    Lines lines(text);
-    for (std::string_view line; lines.next(line);) {
+    std::size_t number = 0;
+    for (std::string line; std::getline(text, line);) {
+        ++number;
         Tokenizer tokens(line);
         const std::string_view key = tokens.next();
         if (key == "v") {
-            check_numbers(path, lines.number(), tokens, 3, 3);
+            check_numbers(path, number, tokens, 3, 3);
             ++counts.positions;
         } else if (key == "vt") {
-            check_numbers(path, lines.number(), tokens, 1, 2);
+            check_numbers(path, number, tokens, 1, 2);
             ++counts.texture_coordinates;
         } else if (key == "vn") {
-            check_numbers(path, lines.number(), tokens, 3, 3);
+            check_numbers(path, number, tokens, 3, 3);
             ++counts.normals;
         } else if (key == "f") {
-            faces.line(tokens, lines.number(), counts);
+            faces.line(tokens, number, counts);
         } else if (key == "mtllib") {
             counts.material_files.emplace_back(tokens.rest());
         }
@@ -224,17 +169,18 @@ ObjCounts check_obj(const std::filesystem::path& path, std::string_view text) {
     return counts;
 }
 
-void check_mtl(const std::filesystem::path& path, std::string_view text) {
-    Lines lines(text);
-    for (std::string_view line; lines.next(line);) {
+void check_mtl(const std::filesystem::path& path, std::istream& text) {
+    std::size_t number = 0;
+    for (std::string line; std::getline(text, line);) {
+        ++number;
         Tokenizer tokens(line);
         const std::string_view key = tokens.next();
         // tinyobjloader does not read "Kd spectral FILE" and "Kd xyz X Y Z", so they are not accepted here.
         if (key == "Kd" || key == "Ks" || key == "Ke" || key == "Tf" || key == "Kt")
-            check_numbers(path, lines.number(), tokens, 3, 3);
+            check_numbers(path, number, tokens, 3, 3);
         else if (key == "Ns" || key == "Ni" || key == "d" || key == "Tr" || key == "Pr" || key == "Pm" ||
                  key == "Pc" || key == "Pcr" || key == "illum")
-            check_numbers(path, lines.number(), tokens, 1, 1);
+            check_numbers(path, number, tokens, 1, 1);
     }
 }
 

@@ -4,8 +4,8 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <iosfwd>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace duet {
@@ -18,16 +18,12 @@ struct ObjCounts {
     std::vector<std::string> material_files; ///< contents of the mtllib lines, one per entry
 };
 
-/// Reads a text file for tinyobjloader. The file may have at most 4 GiB and no NUL bytes. Lines continued by a
-/// backslash are joined, and empty lines preserve the number of lines. Throws Error.
-std::string read_obj_text(const std::filesystem::path& path);
-
 /// Checks each v, vt, vn and f line and returns the counts of its elements. Each line must have enough numbers, each
 /// well-formed, finite and at most kMaxMeshNumber. Faces must have at least three corners, whose indices refer to
 /// vertices of the file (negative indices: to vertices before the line). Throws Error with path and line.
-ObjCounts check_obj(const std::filesystem::path& path, std::string_view text);
+ObjCounts check_obj(const std::filesystem::path& path, std::istream& text);
 
 /// Checks the numbers of the MTL keys that are used. Throws Error with path and line.
-void check_mtl(const std::filesystem::path& path, std::string_view text);
+void check_mtl(const std::filesystem::path& path, std::istream& text);
 
 } // namespace duet

@@ -57,8 +57,8 @@ void ObjMeshBuilder::add_corner(int position, int uv, int normal) {
 
 Mesh ObjMeshBuilder::finish(std::size_t& degenerate_faces) {
     if (positions_.size() != counts_.positions || uvs_.size() != counts_.texture_coordinates ||
-        normals_.size() != counts_.normals)
-        throw Error(path_->string() + ": malformed vertex lines");
+        normals_.size() != counts_.normals || face_ends_.size() != counts_.faces)
+        throw Error(path_->string() + ": changed while it was read");
     mesh_.triangles.reserve(corners_.size() - 2 * face_ends_.size());
     mesh_.material_slots.reserve(corners_.size() - 2 * face_ends_.size());
     degenerate_faces = 0;
@@ -70,6 +70,9 @@ Mesh ObjMeshBuilder::finish(std::size_t& degenerate_faces) {
         if (!add_face(face, slots_[i])) ++degenerate_faces;
     }
     if (mesh_.triangles.empty()) throw Error(path_->string() + ": has no face of three different vertices");
+    mesh_.positions.reserve(vertices_.size());
+    if (any_uv_) mesh_.uvs.reserve(vertices_.size());
+    if (any_normal_) mesh_.normals.reserve(vertices_.size());
     for (const Corner& v : vertices_) {
         mesh_.positions.push_back(positions_[v.position]);
         if (any_uv_) mesh_.uvs.push_back(v.uv == kNone ? Vec2() : uvs_[v.uv]);
