@@ -1,5 +1,6 @@
 // This file reads and writes EXR files with OpenEXR. OpenEXR allocates memory for any size that a header claims. The
 // header is therefore read and checked first, and files are read from memory.
+#include "common/image/container_checks.h"
 #include "common/image/formats.h"
 #include "common/system/file.h"
 #include "common/system/parallel.h"
@@ -134,6 +135,7 @@ Imf::Header read_header(const ImageBytes& file) {
     for (int i = 7; i >= 4; --i) version = version << 8 | static_cast<unsigned char>(start[i]);
     if (Imf::isMultiPart(version)) throw Error(message(file.name, ": an EXR of several parts, expected a single one"));
     if (Imf::isNonImage(version)) throw Error(message(file.name, ": an EXR of deep pixels, expected flat ones"));
+    check_exr_header(file);
     Imf::Header header;
     header.readFrom(stream, version);
     check_header(file, header);

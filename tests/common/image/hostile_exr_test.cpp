@@ -80,5 +80,19 @@ TEST_SUITE("unit") {
               }) == Containing("channels R Z, expected R, G and B, or Y"));
         CHECK(error([](ExrBytes& f) { f.channels = {}; }) == Containing("EXR"));
         CHECK(error_of_bytes(folder / "a.exr", "\x76\x2f\x31\x01") == Containing("ends early"));
+        // Fuzzing found this case: OpenEXR allocates as many bytes as a text attribute claims.
+        const auto attribute_error = [&](const char* type, std::int32_t size, const std::string& value) {
+            Bytes attribute;
+            attribute.add_text("note").add_text(type).add(size);
+            return error_of_bytes(folder / "a.exr", ExrBytes().header().substr(0, 8) + attribute.text + value);
+        };
+        CHECK(attribute_error("string", 0x7fffffff, "text") == Containing("the EXR header ends early"));
+        // OpenEXR reads an attribute by its type, so that a wrong size would hide what comes next from the check.
+        const std::string one = std::string(4, '\0'), list = std::string("R\0", 2) + std::string(16, '\0');
+        CHECK(attribute_error("int", 8, one + one) == Containing("another size for its type"));
+        CHECK(attribute_error("chlist", 20, list + std::string(2, '\0')) == Containing("another size for its type"));
+        CHECK(attribute_error("chlist", 18, list) == Containing("another size for its type"));
+        CHECK(attribute_error("preview", 8, std::string(8, '\1')) == Containing("another size for its type"));
+        CHECK(attribute_error("stringvector", 4, std::string("\1\0\0\0", 4)) == Containing("another size for its"));
     }
 }
