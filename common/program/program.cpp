@@ -27,11 +27,10 @@ void keep_freed_memory() {
 #endif
 }
 
-/// Prints an error on one line. Control characters, which may come from a file or its name, are escaped, so that they
-/// do not reach the terminal.
+/// Prints an error on one line of at most 300 characters after the program's name. Control characters, which may
+/// come from a file or its name, do not reach the terminal.
 void print_error(const std::string& name, std::string_view text) {
-    const auto plain = [](unsigned char byte) { return byte >= 0x20 && byte != 0x7f; };
-    std::cerr << name << ": " << escaped(text, plain) << '\n';
+    std::cerr << name << ": " << shortened(escaped(text), 300) << '\n';
 }
 
 } // namespace

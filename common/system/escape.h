@@ -1,26 +1,17 @@
-// This header escapes bytes that must not reach a terminal.
+// These functions prepare text that comes from a file, or is a file's name, for a terminal.
 #pragma once
 
-#include <cstdio>
 #include <string>
 #include <string_view>
 
 namespace duet {
 
-/// Returns the text with each byte that `plain` rejects as \xNN.
-template <typename Plain> std::string escaped(std::string_view text, const Plain& plain) {
-    std::string out;
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (plain(byte)) {
-            out += c;
-            continue;
-        }
-        char code[8];
-        std::snprintf(code, sizeof code, "\\x%02x", byte);
-        out += code;
-    }
-    return out;
-}
+/// Returns the text with \xNN for each byte of a control character (ASCII and C1, which U+0080 to U+009F encode) and
+/// for each byte that is not part of valid UTF-8. The result is one line.
+std::string escaped(std::string_view text);
+
+/// Returns the text if it has at most `most` characters, and otherwise its start and its end with an ellipsis between
+/// them, `most` characters in all. The text must be valid UTF-8; `most` must be at least 3.
+std::string shortened(std::string_view text, std::size_t most);
 
 } // namespace duet

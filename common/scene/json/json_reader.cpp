@@ -70,8 +70,7 @@ bool is_identifier(std::string_view key) {
 } // namespace
 
 std::string quoted_text(std::string_view text) {
-    const auto plain = [](unsigned char byte) { return byte >= 0x20 && byte < 0x7f; };
-    return '"' + escaped(text.substr(0, 60), plain) + (text.size() > 60 ? "…\"" : "\"");
+    return '"' + escaped(text.substr(0, 60)) + (text.size() > 60 ? "…\"" : "\"");
 }
 
 std::string suggestion(std::string_view name, const std::vector<std::string_view>& known) {

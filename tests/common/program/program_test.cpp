@@ -45,6 +45,18 @@ TEST_SUITE("unit") {
         CHECK(printed.str() == "test: a\\x1b[31m\\x0ab\\x7f, ü\n");
     }
 
+    TEST_CASE("an error has at most 300 characters and shows how it starts and ends") {
+        std::ostringstream printed;
+        std::streambuf* const before = std::cerr.rdbuf(printed.rdbuf());
+        std::string path = "/";
+        for (int i = 0; i < 300; ++i) path += "ü/";
+        run_program("test", [&]() -> int { throw Error(path + ": found 1, expected 2"); });
+        std::cerr.rdbuf(before);
+        CHECK(printed.str().size() < sizeof "test: " + 2 * 300);
+        CHECK(printed.str().starts_with("test: /ü/ü"));
+        CHECK(printed.str().ends_with("ü/: found 1, expected 2\n"));
+    }
+
     TEST_CASE("seconds are readable") {
         CHECK(format_duration(0.0123) == "12 ms");
         CHECK(format_duration(0.9996) == "1.0 s");
