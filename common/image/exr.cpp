@@ -253,7 +253,7 @@ void write_exr(const fs::path& path, int width, int height, const std::vector<Ex
         // Use a separate stream to detect errors: OpenEXR writes the table of offsets in a destructor, which does not
         // report a failure.
         std::ofstream out(temporary, std::ios::binary);
-        if (!out) throw Error(message(path.string(), ": cannot be written"), 1);
+        check_written(out, path);
         {
             Imf::StdOFStream stream(out, path.string().c_str());
             Imf::OutputFile output(stream, header, exr_threads(static_cast<double>(count * channels.size())));
@@ -261,7 +261,7 @@ void write_exr(const fs::path& path, int width, int height, const std::vector<Ex
             output.writePixels(height);
         }
         out.close();
-        if (!out) throw Error(message(path.string(), ": cannot be written"), 1);
+        check_written(out, path);
     };
     write_atomically(path, [&](const fs::path& temporary) {
         try {

@@ -45,7 +45,7 @@ void find_bounds(Scene& scene) {
         const Vec3 extent = max(abs(box.low), abs(box.high));
         if (!is_finite(extent) || max_component(extent) > kMaxCoordinate)
             throw Error(message(scene.path.string(), ": the object ", quoted_text(object.name),
-                                " reaches beyond 1e18 meters"));
+                                " reaches beyond 1e18 meters, to ", max_component(extent)));
         scene.bounds.extend(box);
     }
     if (scene.objects.empty()) scene.bounds = Box3{Vec3(scene.camera.look_at), Vec3(scene.camera.look_at)};

@@ -2,6 +2,8 @@
 
 #include "common/system/error.h"
 
+#include <cerrno>
+#include <cstring>
 #include <system_error>
 #include <unistd.h>
 
@@ -65,12 +67,16 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
     }
 }
 
+void check_written(const std::ofstream& out, const fs::path& path) {
+    if (!out) throw Error(message(path.string(), ": cannot be written: ", std::strerror(errno)), 1);
+}
+
 void write_file(const fs::path& path, std::string_view bytes) {
     write_atomically(path, [&](const fs::path& temporary) {
         std::ofstream out(temporary, std::ios::binary);
         out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
         out.close();
-        if (!out) throw Error(message(path.string(), ": cannot be written"), 1);
+        check_written(out, path);
     });
 }
 

@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <system_error>
 #include <unistd.h>
 
 namespace duet {
@@ -21,9 +22,16 @@ bool names(const std::string& path, int file) {
            of_path.st_dev == of_file.st_dev;
 }
 
+/// Returns the path without symbolic links, so that two names of one file have one lock.
+std::filesystem::path target(const std::filesystem::path& path) {
+    std::error_code error;
+    const std::filesystem::path found = std::filesystem::weakly_canonical(path, error);
+    return error ? path : found;
+}
+
 } // namespace
 
-FileLock::FileLock(const std::filesystem::path& path) : lock_path_(path.string() + ".lock") {
+FileLock::FileLock(const std::filesystem::path& path) : lock_path_(target(path).string() + ".lock") {
     for (;;) {
         file_ = ::open(lock_path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
         if (file_ < 0)

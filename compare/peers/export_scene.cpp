@@ -56,7 +56,7 @@ public:
                           {"depth", settings_.depth},
                           {"threads", settings_.threads}};
         geometry_.close();
-        if (!geometry_) throw Error(message(geometry.string(), ": cannot be written"), 1);
+        check_written(geometry_, geometry);
         write_json(folder_ / "scene.json", file);
         return {notes_.begin(), notes_.end()};
     }

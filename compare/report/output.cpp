@@ -11,7 +11,7 @@ fs::path make_folder(const fs::path& folder) {
     fs::create_directories(folder, error);
     if (!fs::is_directory(folder))
         throw Error(
-            message(folder.string(), ": the folder cannot be made: ", error ? error.message() : "a file is there"));
+            message(folder.string(), ": the folder cannot be made: ", error ? error.message() : "a file is there"), 1);
     return folder;
 }
 

@@ -5,7 +5,7 @@
 
 namespace duet::compare {
 
-/// Creates the folder if it is missing and returns it. Throws Error if it cannot be created.
+/// Creates the folder if it is missing and returns it. Throws Error (exit code 1) if it cannot be created.
 std::filesystem::path make_folder(const std::filesystem::path& folder);
 
 } // namespace duet::compare

@@ -33,6 +33,9 @@ start first.pfm --spp 1000000 --film "$scratch/shared.exr"
 while kill -0 $process && [ ! -e "$scratch/shared.exr.lock" ]; do sleep 0.05; done
 expect 2 render second.pfm --spp 48 --film "$scratch/shared.exr"
 one_line_error "shared.exr: another process works on it"
+ln -s . "$scratch/alias" # the same film by another name
+expect 2 render third.pfm --spp 48 --film "$scratch/alias/shared.exr"
+one_line_error "alias/shared.exr: another process works on it"
 kill -TERM $process
 wait $process || true
 [ ! -e "$scratch/shared.exr.lock" ] || fail "a render that ended left its lock"
