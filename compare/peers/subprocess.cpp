@@ -96,7 +96,8 @@ Subprocess::Read Subprocess::read_line(std::chrono::milliseconds wait) {
             std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
         pollfd watched{from_, POLLIN, 0};
         const int ready = ::poll(&watched, 1, static_cast<int>(std::max<std::int64_t>(left.count(), 0)));
-        if (ready == 0 || (ready < 0 && errno == EINTR)) return {Status::kTimeout};
+        if (ready == 0) return {Status::kTimeout};
+        if (ready < 0 && errno == EINTR) continue; // a signal does not shorten the wait
         std::array<char, 4096> bytes{};
         const ssize_t count = ::read(from_, bytes.data(), bytes.size());
         if (count <= 0) return {Status::kEnd};

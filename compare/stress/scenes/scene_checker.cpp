@@ -33,6 +33,16 @@ std::unique_ptr<Subprocess> SceneChecker::take_process() {
 }
 
 SceneVerdict SceneChecker::check(const std::filesystem::path& scene) {
+    {
+        const std::shared_lock beside_others(alone_);
+        SceneVerdict verdict = check_once(scene);
+        if (verdict.failure != "hang") return verdict;
+    }
+    const std::unique_lock alone(alone_);
+    return check_once(scene);
+}
+
+SceneVerdict SceneChecker::check_once(const std::filesystem::path& scene) {
     std::unique_ptr<Subprocess> process = take_process();
     std::string output;
     process->write_line(scene.string());

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <shared_mutex>
 #include <string>
 #include <vector>
 
@@ -24,18 +25,21 @@ struct SceneVerdict {
 /// many scenes, one after the other.
 class SceneChecker {
 public:
-    /// `command` starts a process. A scene that takes more than `seconds` hangs.
+    /// `command` starts a process. A scene hangs that takes more than `seconds` twice: among others, and then alone,
+    /// when no other scene takes its processors.
     SceneChecker(std::vector<std::string> command, int seconds) : command_(std::move(command)), seconds_(seconds) {}
 
     /// Checks one scene file. Threads may call this at the same time.
     SceneVerdict check(const std::filesystem::path& scene);
 
 private:
+    SceneVerdict check_once(const std::filesystem::path& scene);
     std::unique_ptr<Subprocess> take_process();
 
     std::vector<std::string> command_;
     int seconds_;
-    std::mutex mutex_;
+    std::shared_mutex alone_; ///< locked alone by a scene that is checked alone
+    std::mutex mutex_;        ///< of idle_
     std::vector<std::unique_ptr<Subprocess>> idle_;
 };
 

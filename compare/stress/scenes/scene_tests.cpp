@@ -65,13 +65,15 @@ public:
         fs::remove(file);
     }
 
-    /// Returns a message about the first scene of each kind of failure, with the part of it that fails alike.
-    std::string explain() {
+    /// Returns a message about the first scene of each kind of failure, with the part of it that fails alike. A request
+    /// to stop ends the search for smaller parts.
+    std::string explain(const Control& control) {
         std::string text;
         for (const auto& entry : first_) {
             const Failure& failure = entry.second;
             const fs::path file = folder_.path() / message("reduced-", failure.number, ".json");
             const Json reduced = reduce_scene(failure.scene, kReduceSeconds, [&](const Json& part) {
+                if (control.stopped()) return false;
                 write_file(file, part.dump(1));
                 return checker_.check(file).failure == failure.verdict.failure;
             });
@@ -106,7 +108,7 @@ private:
 StressResult valid_scenes(const StressTest& test, const StressSetting& setting) {
     SceneTrials trials;
     StressResult result = run_trials(test, setting, [&](Trial& trial) { trials.run(trial); });
-    if (result.library.failures > 0 && !setting.control.stopped()) result.details = trials.explain();
+    if (result.library.failures > 0) result.details = trials.explain(setting.control);
     return result;
 }
 

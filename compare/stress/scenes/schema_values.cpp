@@ -43,11 +43,21 @@ void repair_step(Json& step) {
         if (x == 0) x = 1;
 }
 
+/// Makes a matrix of a motion one whose diagonal outweighs the rest of each row, as that of any mean of it and the
+/// identity does, so that no moment is singular.
+void repair_motion_matrix(Json& matrix) {
+    for (std::size_t row = 0; row < 3; ++row)
+        for (std::size_t column = 0; column < 3; ++column) {
+            Json& x = matrix[4 * row + column];
+            x = row == column ? 1 + std::abs(std::fmod(x.get<double>(), 1)) : std::fmod(x.get<double>(), 0.4);
+        }
+}
+
 /// Makes the end of a motion its beginning and what moves an object little enough that no moment is singular.
 void repair_motion(Json& object) {
     Json steps = object.value("transform", Json::array());
     for (Json& step : object["transform_end"]) {
-        if (step.contains("matrix")) continue;
+        if (step.contains("matrix")) repair_motion_matrix(step["matrix"]);
         if (step.contains("rotate_degrees"))
             step["rotate_degrees"] = std::fmod(step["rotate_degrees"].get<double>(), 60);
         if (step.contains("scale"))
@@ -58,7 +68,7 @@ void repair_motion(Json& object) {
 }
 
 /// Changes what the schema allows and the format does not (models/README.md).
-void repair(Json& object) {
+void repair(Json& object, const std::string& definition) {
     const std::string type = object.value("type", "");
     if (type == "box") repair_box(object["low"], object["high"]);
     if (object.contains("transform_end")) repair_motion(object);
@@ -71,7 +81,7 @@ void repair(Json& object) {
         object.erase("inner_degrees");
     if (object.contains("shutter") && object["shutter"][0] > object["shutter"][1])
         std::swap(object["shutter"][0], object["shutter"][1]);
-    repair_step(object);
+    if (definition == "scale" || definition == "matrix") repair_step(object);
 }
 
 } // namespace
@@ -134,7 +144,7 @@ std::optional<Json> SchemaValues::object(const Json& schema, const Place& place)
                 names_[place.key].push_back(name);
             }
         }
-    repair(result);
+    repair(result, place.definition);
     if (result.value("type", "") == "group") {
         if (!result.contains("name")) result["name"] = message("group ", names_["groups"].size());
         names_["groups"].push_back(result["name"]);
@@ -182,7 +192,7 @@ std::optional<Json> SchemaValues::text(const Place& place) {
 
 Json SchemaValues::number(const Json& schema, const Place& place) {
     const double above = schema.value("exclusiveMinimum", -1e18);
-    const double low = schema.value("minimum", above >= 0 ? 1e-12 : above), high = schema.value("maximum", 1e18);
+    const double low = schema.value("minimum", above >= 0 ? 1e-18 : above), high = schema.value("maximum", 1e18);
     const bool any = chance(sizes_.extreme);
     const double drawn = std::clamp(any ? any_number(low, high) : ordinary_number(low, high, place), low, high);
     if (schema["type"] == "integer") return std::llround(drawn);
@@ -197,7 +207,7 @@ double SchemaValues::any_number(double low, double high) {
     case 1: return high;
     case 2: return 0;
     case 3: return sign;
-    default: return sign * static_cast<double>(random_.log_uniform(1e-12f, 1e18f));
+    default: return sign * static_cast<double>(random_.log_uniform(1e-18f, 1e18f));
     }
 }
 
