@@ -1,6 +1,6 @@
 # Fuzzes the readers of files: sh tests/fuzz/run.sh [INPUTS] [TARGET ...]
 # Each target (image, obj, scene, film; all by default) gets INPUTS mutated inputs, 100000 by default, two targets at a
-# time. Inputs that reach new code are kept in build/fuzz/corpus; those that crash, hang for 10 s or take 4 GiB are
+# time. Inputs that reach new code are kept in build/fuzz/corpus; those that crash, hang for 20 s or take 4 GiB are
 # written to build/fuzz/faults, and the script then fails.
 set -eu
 cd "$(dirname "$0")/../.."
@@ -17,7 +17,7 @@ for target in "$@"; do mkdir -p "build/fuzz/corpus/$target"; done
 
 # UndefinedBehaviorSanitizer is fatal by the compiler's options; a reader may refuse what it can't allocate.
 echo "$@" | tr ' ' '\n' | xargs -P 2 -I{} sh -c 'ASAN_OPTIONS=allocator_may_return_null=1 build/fuzz/bin/{}_fuzz \
-    -runs='"$inputs"' -timeout=10 -rss_limit_mb=4096 -max_len=16384 -print_final_stats=1 \
+    -runs='"$inputs"' -timeout=20 -rss_limit_mb=4096 -max_len=16384 -print_final_stats=1 \
     -artifact_prefix=build/fuzz/faults/{}- build/fuzz/corpus/{} tests/fuzz/corpus/{} > build/fuzz/{}.log 2>&1 ||
     echo "{}: a fault, see build/fuzz/{}.log" >> build/fuzz/faults/summary'
 grep -H "number_of_executed_units\|average_exec_per_sec" $(printf 'build/fuzz/%s.log ' "$@") || true

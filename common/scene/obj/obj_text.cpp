@@ -8,7 +8,7 @@
 
 namespace duet {
 
-ObjText::ObjText(const std::filesystem::path& path) : path_(path), file_(open_file(path)), block_(1 << 18) {}
+ObjText::ObjText(const std::filesystem::path& path) : path_(path), file_(open_file(path)), block_(1 << 16) {}
 
 void ObjText::rewind() {
     file_.clear();
