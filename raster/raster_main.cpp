@@ -33,8 +33,8 @@ int main(int argc, char** argv) {
             "Shadow maps: sharp ones for point, spot and sun lights, soft ones for area lights (default: on)");
         command_line.add("--shadow-map", shadow_map_side,
                          "Texels along a shadow map's side, 64 to 8192; a face of a cube map has half as many, of an "
-                         "area "
-                         "light's a quarter (default 2048); fewer where there would be too many for memory");
+                         "area light's a quarter (default 2048); fewer where there would be too many for memory, and "
+                         "for an image of less than 256 x 256 pixels, which cannot show them");
         command_line.add(
             "--shadow-cells", shadow_cells,
             "Pieces along each side of a rectangular light, 1 to 8, each with a map of its own (default 2)");

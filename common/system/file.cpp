@@ -6,6 +6,7 @@
 #include <cstring>
 #include <system_error>
 #include <unistd.h>
+#include <vector>
 
 namespace duet {
 
@@ -51,10 +52,19 @@ std::string read_file(const fs::path& path, std::size_t limit) {
     return bytes;
 }
 
-void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
-    // Preserve the extension, because some writers choose the file format by it.
+namespace {
+
+/// Returns the name of a temporary file beside `path`. The extension is preserved, because some writers choose the file
+/// format by it.
+fs::path temporary_name(const fs::path& path, std::string_view process) {
     fs::path temporary = path;
-    temporary.replace_filename(message(".", path.stem().string(), ".", ::getpid(), path.extension().string()));
+    return temporary.replace_filename(message(".", path.stem().string(), ".", process, path.extension().string()));
+}
+
+} // namespace
+
+void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
+    const fs::path temporary = temporary_name(path, std::to_string(::getpid()));
     std::error_code ignored;
     try {
         write(temporary);
@@ -65,6 +75,23 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
         fs::remove(temporary, ignored);
         throw;
     }
+}
+
+void remove_interrupted_writes(const fs::path& path) {
+    const std::string pattern = temporary_name(path, "*").filename().string();
+    const std::size_t star = pattern.rfind('*');
+    const std::string_view start = std::string_view(pattern).substr(0, star);
+    const std::string_view end = std::string_view(pattern).substr(star + 1);
+    std::error_code error;
+    std::vector<fs::path> found; // removed once the folder is read
+    for (fs::directory_iterator entry(path.has_parent_path() ? path.parent_path() : ".", error), none;
+         !error && entry != none; entry.increment(error)) {
+        const std::string name = entry->path().filename().string();
+        if (name.size() <= start.size() + end.size() || !name.starts_with(start) || !name.ends_with(end)) continue;
+        const std::string process = name.substr(start.size(), name.size() - start.size() - end.size());
+        if (process.find_first_not_of("0123456789") == process.npos) found.push_back(entry->path());
+    }
+    for (const fs::path& file : found) fs::remove(file, error);
 }
 
 void check_written(const std::ofstream& out, const fs::path& path) {

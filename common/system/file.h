@@ -26,6 +26,8 @@ std::string read_file(const std::filesystem::path& path, std::size_t limit = std
 /// and rethrows exceptions of `write`; the temporary file is removed in both cases.
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path&)>& write);
+/// Removes the temporary files that killed processes left when they wrote `path`. No process may be writing it.
+void remove_interrupted_writes(const std::filesystem::path& path);
 /// Throws an Error (exit code 1) with the system's reason if opening, writing or closing `out` has just failed.
 void check_written(const std::ofstream& out, const std::filesystem::path& path);
 /// Writes `bytes` to the file at `path` atomically, by write_atomically(). Throws an Error (exit code 1) on failure.

@@ -3,6 +3,7 @@
 #include "common/sampling/digest.h"
 #include "common/scene/scene_hash.h"
 #include "common/system/error.h"
+#include "common/system/file.h"
 
 #include <bit>
 
@@ -35,6 +36,7 @@ std::string camera_hash(const Camera& camera) {
 StoredFilm load_or_create(const Scene& scene, const View& view, const PathTracerSettings& settings) {
     StoredFilm fresh{Film(view.width, view.height), {}, settings.first_sample};
     if (settings.film.empty()) return fresh;
+    remove_interrupted_writes(settings.film); // of killed renders; the film is locked
     fresh.settings = film_settings(scene, view, settings);
     if (!std::filesystem::exists(settings.film)) return fresh;
     StoredFilm stored = read_film(settings.film);

@@ -28,6 +28,12 @@ done
 render killed.pfm --spp 1000 --film "$scratch/kept.exr"
 cmp "$scratch/long.pfm" "$scratch/killed.pfm" || fail "a killed render that went on from its film has other bits"
 
+# What a killed render leaves of a film is removed by the next one, and nothing else is.
+touch "$scratch/.kept.123.exr" "$scratch/.kept.1x3.exr" "$scratch/.kept.123.pfm"
+render killed.pfm --spp 1000 --film "$scratch/kept.exr"
+[ "$(cd "$scratch" && echo .kept.*)" = ".kept.123.pfm .kept.1x3.exr" ] ||
+    fail "beside the film are $(cd "$scratch" && echo .kept.*)"
+
 # Two processes on one film: the second one refuses.
 start first.pfm --spp 1000000 --film "$scratch/shared.exr"
 while kill -0 $process && [ ! -e "$scratch/shared.exr.lock" ]; do sleep 0.05; done

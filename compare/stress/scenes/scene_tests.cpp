@@ -52,17 +52,20 @@ public:
 
     void run(Trial& trial) {
         const fs::path file = folder_.path() / message("scene-", trial.number(), ".json");
-        for (int i = 0; i < kAttempts; ++i) {
+        Json scene;
+        SceneVerdict verdict{.refused = true};
+        for (int i = 0; i < kAttempts && verdict.refused; ++i) {
             const SceneSizes sizes = random_sizes(trial.random);
-            const Json scene = SchemaValues(schema_, files_, sizes, trial.random).scene();
+            scene = SchemaValues(schema_, files_, sizes, trial.random).scene();
             write_file(file, scene.dump(1));
-            const SceneVerdict verdict = checker_.check(file);
-            if (verdict.refused) continue;
-            trial.record_failure_if(verdict.failed());
-            if (verdict.failed()) return keep({trial.number(), scene, verdict});
-            break;
+            verdict = checker_.check(file);
         }
-        fs::remove(file);
+        if (verdict.refused) verdict.failure = "refused"; // a tenth of the scenes is, so kAttempts of them never are
+        trial.record_failure_if(verdict.failed());
+        if (verdict.failed())
+            keep({trial.number(), std::move(scene), std::move(verdict)});
+        else
+            fs::remove(file);
     }
 
     /// Returns a message about the first scene of each kind of failure, with the part of it that fails alike. A request
