@@ -63,9 +63,14 @@ std::vector<StressTest> select_stress_tests(const std::vector<std::string>& name
     for (const std::string& name : names) {
         const std::vector<bool> fit = meant(all, name);
         if (std::find(fit.begin(), fit.end(), true) == fit.end()) {
-            std::string known;
-            for (const StressTest& test : all) known += (known.empty() ? "" : ", ") + std::string(test.name);
-            throw Error(message("--only: found ", name, ", expected a test or the beginning of some: ", known));
+            std::string groups, last;
+            for (const StressTest& test : all) {
+                const std::string group(test.name.substr(0, test.name.find('/')));
+                if (group != last) groups += (groups.empty() ? "" : ", ") + group;
+                last = group;
+            }
+            throw Error(message("--only: found ", name, ", expected a test (--list names them), or one of the groups ",
+                                groups));
         }
         for (std::size_t i = 0; i < all.size(); ++i) chosen[i] = chosen[i] || fit[i];
     }

@@ -21,7 +21,7 @@ cmp -s "$scratch/threads-1.json" "$scratch/threads-3.json" || fail "the rows dep
 expect 0 "$bin/compare" stress --list --only leak/edges
 grep -q "aimed at its edges" "$scratch/stdout" || fail "--list does not say what leak/edges is"
 expect 2 "$bin/compare" stress --only nothing
-one_line_error "arithmetic/frames"
+one_line_error "arithmetic, "
 expect 2 "$bin/compare" stress --trials 0
 one_line_error --trials
 expect 2 "$bin/compare" stress --stats "$scratch/no/such/folder.json"
