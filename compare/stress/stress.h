@@ -77,7 +77,7 @@ std::span<const StressTest> scene_tests();        ///< random valid scenes
 std::vector<StressTest> all_stress_tests();
 /// Returns the tests of the given names. A name that matches no test selects those that begin with it up to a '/' or
 /// '-', such as "departure" or "intersection/leak". Without names, all tests are returned. Throws Error, listing the
-/// tests, if a name matches none.
+/// groups, if a name matches none.
 std::vector<StressTest> select_stress_tests(const std::vector<std::string>& names);
 
 } // namespace duet::compare
