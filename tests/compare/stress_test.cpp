@@ -156,7 +156,7 @@ TEST_SUITE("unit") {
         CHECK(select_stress_tests({"arithmetic/difference"}).size() == 2);
         CHECK(select_stress_tests({"leak", "leak/edges"}).size() == select_stress_tests({"leak"}).size());
         for (const std::string wrong : {"lea", "nothing", ""})
-            CHECK_THROWS_WITH_AS(select_stress_tests({wrong}), doctest::Contains("leak/edges"), Error);
+            CHECK_THROWS_WITH_AS(select_stress_tests({wrong}), doctest::Contains("arithmetic, leak, "), Error);
     }
 
     TEST_CASE("every test has a name of its own in the suite's form, says what it is, and has a default") {
