@@ -2,6 +2,7 @@
 #include "raster/render.h"
 
 #include "raster/geometry/geometry.h"
+#include "raster/lighting/background.h"
 #include "raster/prepare_limits.h"
 #include "raster/probes/glass_shapes.h"
 #include "raster/probes/irradiance_probes.h"
@@ -31,7 +32,6 @@ bool all_glass(const Scene& scene, const Object& object) {
         return std::holds_alternative<Dielectric>(scene.materials[material]);
     });
 }
-
 
 std::optional<Rgb> uniform_color(const Scene& scene, const Object& object) {
     if (object.materials.size() != 1) return std::nullopt;
@@ -98,9 +98,10 @@ RasterObject prepare_object(const Scene& scene, const Object& object) {
     return result;
 }
 
-/// Renders the probes of deferred shading.
+/// Renders the probes of deferred shading, if there is light that they could hold.
 void prepare_probes(const RasterSettings& settings, RasterSceneData& data) {
     const Scene& scene = data.scene;
+    if (is_dark(data, settings)) return;
     if (settings.indirect_light) {
         data.irradiance_probes = std::make_shared<const IrradianceProbes>(data, settings);
         data.memory_bytes += static_cast<std::int64_t>(data.irradiance_probes->memory_bytes());
@@ -135,7 +136,7 @@ RasterScene prepare(const Scene& scene, const RasterSettings& settings) {
                          .objects = {},
                          .polygonal = {},
                          .spheres = {},
-                         .irradiance = Irradiance(scene.environment, settings.threads),
+                         .sky_irradiance = environment_irradiance(scene.environment, settings.threads),
                          .shapes = std::vector<PackedShape>(scene.shapes.begin(), scene.shapes.end()),
                          .texture_samplers = texture_samplers(scene.textures),
                          .ambient = mean_radiance(scene.environment)};

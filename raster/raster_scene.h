@@ -45,7 +45,7 @@ struct RasterSceneData {
     /// The list holds those of `polygonal` and `spheres` that are all glass, in order (raster/probes/glass_shapes.h).
     std::vector<std::uint32_t> glass{};
     std::int64_t primitives = 0;          ///< triangles, quads and spheres of all objects
-    Irradiance irradiance;                ///< from the environment
+    IrradianceHarmonics sky_irradiance; ///< from the environment
     std::vector<PackedShape> shapes{};    ///< parallel to Scene::shapes
     std::vector<TextureSampler> texture_samplers{}; ///< one per image
     Rgb ambient{};                        ///< mean radiance of the environment, the ambient light of Shading::kPhong

@@ -25,6 +25,9 @@ template <typename T> struct RgbT {
 using Rgb = RgbT<float>;
 using Rgbd = RgbT<double>;
 
+/// Broadcasts a color to all lanes of a batch.
+template <typename T> constexpr RgbT<T> broadcast(Rgb c) { return {T(c.r), T(c.g), T(c.b)}; }
+
 template <typename T> constexpr RgbT<T> operator+(RgbT<T> a, RgbT<T> b) { return {a.r + b.r, a.g + b.g, a.b + b.b}; }
 template <typename T> constexpr RgbT<T> operator-(RgbT<T> a, RgbT<T> b) { return {a.r - b.r, a.g - b.g, a.b - b.b}; }
 template <typename T> constexpr RgbT<T> operator*(RgbT<T> a, RgbT<T> b) { return {a.r * b.r, a.g * b.g, a.b * b.b}; }

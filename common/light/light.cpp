@@ -104,6 +104,10 @@ float light_power(const Light& light, float scene_radius) {
     return static_cast<float>(f.factor * static_cast<double>(average(f.quantity)));
 }
 
+bool is_black(const Light& light) {
+    return std::visit([](const auto& l) { return is_black(flux(l, 1.0).quantity); }, light);
+}
+
 bool is_delta(const Light& light) { return !std::holds_alternative<SurfaceLight>(light); }
 
 } // namespace duet

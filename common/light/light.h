@@ -60,5 +60,7 @@ bool emits_towards(const SurfaceLight& light, Vec3 p);
 /// radius.
 float light_power(const Light& light, float scene_radius);
 bool is_delta(const Light& light);
+/// Returns whether the light emits nothing.
+bool is_black(const Light& light);
 
 } // namespace duet

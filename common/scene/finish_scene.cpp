@@ -51,6 +51,29 @@ void find_bounds(Scene& scene) {
     if (scene.objects.empty()) scene.bounds = Box3{Vec3(scene.camera.look_at), Vec3(scene.camera.look_at)};
 }
 
+/// Returns the value of a texture's red channel if it is the same everywhere.
+std::optional<float> constant_red(const TextureSet& set, const Texture& texture) {
+    const auto if_equal = [](Rgb a, Rgb b) { return a.r == b.r ? std::optional(a.r) : std::nullopt; };
+    if (const auto* checker = std::get_if<CheckerTexture>(&texture)) return if_equal(checker->even, checker->odd);
+    if (const auto* noise = std::get_if<NoiseTexture>(&texture)) return if_equal(noise->low, noise->high);
+    const auto& pixels = set.images[std::get<ImageTexture>(texture).image].pixels();
+    const bool constant =
+        !pixels.empty() && std::ranges::all_of(pixels, [&](Rgb pixel) { return pixel.r == pixels.front().r; });
+    return constant ? std::optional(pixels.front().r) : std::nullopt;
+}
+
+/// Drops what costs time and changes no pixel: lights that emit nothing, and masks that hide nothing. The alpha channel
+/// of many an image is 1 everywhere.
+void drop_ineffective(Scene& scene) {
+    std::erase_if(scene.lights, [](const Light& light) { return is_black(light); });
+    for (SurfaceMaps& maps : scene.maps) {
+        if (maps.opacity.constant()) continue;
+        const Texture& texture = scene.textures.textures[static_cast<std::size_t>(maps.opacity.texture)];
+        if (const std::optional<float> red = constant_red(scene.textures, texture))
+            maps.opacity = ScalarSlot(maps.opacity.value * *red);
+    }
+}
+
 /// Returns the light of an emissive primitive of a static object. The result is empty for a primitive without area,
 /// and for a sphere that its transform makes an ellipsoid: only BSDF sampling finds such emitters.
 std::optional<SurfaceLight> surface_light(const Shape& shape, const Mat4& to_world, std::uint32_t primitive) {
@@ -173,6 +196,7 @@ SceneNeeds find_needs(const Scene& scene) {
 void finish_scene(Scene& scene) {
     scene.maps.resize(scene.materials.size());
     check_references(scene);
+    drop_ineffective(scene);
     build_mipmaps(scene.textures);
     bake_single_objects(scene);
     find_bounds(scene);

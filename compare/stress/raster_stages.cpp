@@ -35,7 +35,7 @@ struct MeshScene {
                                   .objects = std::vector<raster::RasterObject>(1),
                                   .polygonal = {0},
                                   .spheres = {},
-                                  .irradiance = raster::Irradiance(scene.environment, 1),
+                                  .sky_irradiance = raster::environment_irradiance(scene.environment, 1),
                                   .shapes =
                                       std::vector<raster::PackedShape>(scene.shapes.begin(), scene.shapes.end())} {}
     MeshScene(const MeshScene&) = delete;

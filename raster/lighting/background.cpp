@@ -1,11 +1,17 @@
 #include "raster/lighting/background.h"
 
+#include <algorithm>
 #include <bit>
 
 namespace duet::raster {
 
 bool shows_environment(const RasterSceneData& data, const RasterSettings& settings) {
     return settings.environment && (data.scene.needs.environment || !settings.skips.environment);
+}
+
+bool is_dark(const RasterSceneData& data, const RasterSettings& settings) {
+    return data.scene.lights.empty() && !shows_environment(data, settings) &&
+           std::ranges::none_of(data.emits, [](auto emits) { return emits != 0; });
 }
 
 std::optional<Rgb> constant_background(const RasterSceneData& data, const RasterSettings& settings) {

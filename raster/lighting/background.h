@@ -10,6 +10,8 @@ namespace duet::raster {
 
 /// Returns whether the settings show the scene's environment.
 bool shows_environment(const RasterSceneData& data, const RasterSettings& settings);
+/// Returns whether nothing emits light, so that the image is black.
+bool is_dark(const RasterSceneData& data, const RasterSettings& settings);
 /// Returns the radiance of pixels without geometry if it is the same in every direction.
 std::optional<Rgb> constant_background(const RasterSceneData& data, const RasterSettings& settings);
 

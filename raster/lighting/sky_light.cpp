@@ -10,12 +10,12 @@ namespace duet::raster {
 
 void add_sky_light(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
                    const GtaoImage* occlusion, Planes3& radiance) {
-    const std::array<Rgb, 9> coefficients = data.irradiance.scaled_coefficients(data.scene.environment);
+    const IrradianceHarmonics& coefficients = data.sky_irradiance;
     for_each_batch(gbuffer.width(), gbuffer.height(), settings.threads, [&](int x, int y) {
         const RgbT<Floats> albedo = gbuffer.diffuse.color(x, y);
         const auto lit = gbuffer.visible(x, y) & (albedo.r + albedo.g + albedo.b > Floats(0.0f));
         if (!xsimd::any(lit)) return;
-        const SkyVisibilityT<Floats> sky = occlusion != nullptr ? occlusion->at(x, y) : SkyVisibilityT<Floats>{};
+        const SkyVisibility<Floats> sky = occlusion != nullptr ? occlusion->at(x, y) : SkyVisibility<Floats>{};
         const std::array<Floats, 9> towards = harmonics(gbuffer.normal.vector(x, y)), blocked = harmonics(sky.hidden);
         RgbT<Floats> sum = broadcast<Floats>(coefficients[0]) * sky.visible;
         // Irradiance has scaled order 1 by the cosine's factor of 2/3, but light from a hidden direction is not.

@@ -2,6 +2,7 @@
 
 #include "common/system/control.h"
 #include "common/system/error.h"
+#include "raster/lighting/background.h"
 #include "raster/probes/reflection_probes.h"
 #include "raster/shading/deferred.h"
 #include "raster/shadows/shadow_maps.h"
@@ -101,11 +102,11 @@ std::vector<std::string> approximations(const RasterSceneData& data, const Raste
         add_if(true, "Diffuse light between surfaces is interpolated from irradiance probes; caustics are left out.");
         add_if(settings.ambient_occlusion, "What is nearer than the probes resolve hides light by the image's depths.");
     } else if (parts.environment) {
-        add_if(true, "Light that surfaces reflect onto each other is left out.");
+        add_if(!is_dark(data, settings), "Light that surfaces reflect onto each other is left out.");
         add_if(environment && settings.ambient_occlusion,
                "What hides the environment from diffuse surfaces is estimated from the image's depths.");
         add_if(environment && !settings.ambient_occlusion, "Light from the environment is unoccluded.");
-        add_if(environment && !data.irradiance.is_closed_form(),
+        add_if(environment && std::holds_alternative<ImageEnvironment>(scene.environment),
                "Diffuse surfaces receive the environment image's spherical harmonics up to the second order.");
     }
     add_if(parts.reflection && data.reflection_probes != nullptr,

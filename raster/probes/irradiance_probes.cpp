@@ -26,19 +26,6 @@ constexpr float kBias = 0.4f;
 /// the outermost probes may be hidden.
 constexpr float kInset = 0.02f;
 
-/// For each harmonic, the square of its constant factor times that of the clamped cosine (Ramamoorthi and Hanrahan
-/// 2001, eq. 8): what projection and evaluation apply together.
-constexpr std::array<float, 9> kFactors = [] {
-    constexpr std::array<double, 9> constants = {0.28209479177387814, 0.4886025119029199,  0.4886025119029199,
-                                                 0.4886025119029199,  1.0925484305920792,  1.0925484305920792,
-                                                 0.31539156525252005, 1.0925484305920792,  0.5462742152960396};
-    std::array<float, 9> result{};
-    for (std::size_t i = 0; i < 9; ++i)
-        result[i] = static_cast<float>(constants[i] * constants[i] * kPiDouble *
-                                       (i == 0 ? 1.0 : i < 4 ? 2.0 / 3 : 0.25));
-    return result;
-}();
-
 /// Calls visit for all pixels of a probe's cube, in steps of some columns.
 template <typename Visit> void for_each_pixel(int columns, const Visit& visit) {
     for (std::size_t face = 0; face < 6; ++face)
@@ -57,7 +44,8 @@ public:
         for_each_pixel(1, [&](const ProbeCapture::Pixel& p) {
             const std::array<float, 9> basis = harmonics(ProbeCapture::direction(p, IrradianceProbes::kSide));
             const float solid_angle = ProbeCapture::solid_angle(p, IrradianceProbes::kSide);
-            for (std::size_t i = 0; i < 9; ++i) weights_[p.face][i](p.x, p.y) = basis[i] * kFactors[i] * solid_angle;
+            for (std::size_t i = 0; i < 9; ++i)
+                weights_[p.face][i](p.x, p.y) = basis[i] * static_cast<float>(kIrradianceFactors[i]) * solid_angle;
         });
     }
 
@@ -72,12 +60,6 @@ private:
 const Projection& projection() {
     static const Projection table;
     return table;
-}
-
-template <typename T> RgbT<T> positive_sum(const std::array<Rgb, 9>& coefficients, const std::array<T, 9>& basis) {
-    RgbT<T> sum(T(0.0f));
-    for (std::size_t i = 0; i < 9; ++i) sum += broadcast<T>(coefficients[i]) * basis[i];
-    return {max(sum.r, T(0.0f)), max(sum.g, T(0.0f)), max(sum.b, T(0.0f))};
 }
 
 } // namespace
@@ -102,7 +84,7 @@ IrradianceProbes::IrradianceProbes(const RasterSceneData& data, const RasterSett
     });
     find_sky(data, settings, captures);
     for (int k = 0; k <= kBounces; ++k) {
-        std::vector<Harmonics> next(probes_.size());
+        std::vector<IrradianceHarmonics> next(probes_.size());
         parallel_for(probes_.size(), settings.threads, [&](std::size_t i) {
             if (captures[i]) next[i] = gather(*captures[i], k);
         });
@@ -116,7 +98,7 @@ IrradianceProbes::IrradianceProbes(const RasterSceneData& data, const RasterSett
 void IrradianceProbes::find_sky(const RasterSceneData& data, const RasterSettings& settings,
                                 const std::vector<std::unique_ptr<ProbeCapture>>& captures) {
     if (!shows_environment(data, settings)) return;
-    sky_ = data.irradiance.scaled_coefficients(data.scene.environment);
+    sky_ = data.sky_irradiance;
     float seen = 0, all = 0;
     for (const auto& capture : captures) {
         if (!capture) continue;
@@ -135,7 +117,7 @@ RgbT<Floats> IrradianceProbes::faded_to_sky(const RgbT<Floats>& irradiance, cons
     constexpr float kNear = 0.5f, kFar = 3; // the region ends half a cell beyond its outermost probes
     const Floats fade = clamp((cells - Floats(kNear)) * Floats(1 / (kFar - kNear)), Floats(0.0f), Floats(openness_));
     if (!xsimd::any(fade > Floats(0.0f))) return irradiance;
-    return irradiance + (positive_sum(sky_, basis) - irradiance) * fade;
+    return irradiance + (irradiance_at(sky_, basis) - irradiance) * fade;
 }
 
 void IrradianceProbes::set_distances(const ProbeCapture& capture, Probe& probe) const {
@@ -162,7 +144,7 @@ void IrradianceProbes::set_distances(const ProbeCapture& capture, Probe& probe) 
 
 /// Returns the harmonics of the irradiance at a probe: of the light that the surfaces around it reflect of what the
 /// lights emit, and, after the first bounce, of what the probes held after the last one.
-IrradianceProbes::Harmonics IrradianceProbes::gather(const ProbeCapture& capture, int bounce) const {
+IrradianceHarmonics IrradianceProbes::gather(const ProbeCapture& capture, int bounce) const {
     Projection::Sum sum{};
     for_each_pixel(kBatch, [&](const ProbeCapture::Pixel& p) {
         const ProbeCapture::Face& face = capture.faces()[p.face];
@@ -177,7 +159,7 @@ IrradianceProbes::Harmonics IrradianceProbes::gather(const ProbeCapture& capture
         }
         projection().add(p, light, sum);
     });
-    Harmonics result;
+    IrradianceHarmonics result;
     for (std::size_t i = 0; i < 9; ++i)
         result[i] = {xsimd::hadd(sum[i].r), xsimd::hadd(sum[i].g), xsimd::hadd(sum[i].b)};
     return result;
@@ -191,7 +173,7 @@ struct IrradianceProbes::Corner {
     Corner(const Probe& probe, const Vec3s& to_probe, const Vec3s& n, const std::array<Floats, 9>& basis,
            const Floats& trilinear) {
         weight = trilinear * (probe.distance.empty() ? Floats(kInside) : visibility(probe, to_probe, n));
-        irradiance = positive_sum(probe.irradiance, basis);
+        irradiance = irradiance_at(probe.irradiance, basis);
     }
 
 private:

@@ -31,11 +31,9 @@ public:
     static constexpr int kBounces = 3;
 
 private:
-    /// Spherical harmonics of the orders 0, 1 and 2, with the constant factors included.
-    using Harmonics = std::array<Rgb, 9>;
     struct Probe {
         Vec3d position;
-        Harmonics irradiance{};
+        IrradianceHarmonics irradiance{};
         OctahedralMap distance; ///< of the surfaces: mean and mean square; empty inside an object
     };
 
@@ -43,7 +41,7 @@ private:
     Vec3d grid_point(std::size_t probe) const;
     bool move_out_of_solids(const SolidTest& solids, Vec3d& position) const;
     void set_distances(const ProbeCapture& capture, Probe& probe) const;
-    Harmonics gather(const ProbeCapture& capture, int bounce) const;
+    IrradianceHarmonics gather(const ProbeCapture& capture, int bounce) const;
     void drop_strays(std::vector<std::unique_ptr<ProbeCapture>>& captures) const;
     void fill_solids();
     void find_sky(const RasterSceneData& data, const RasterSettings& settings,
@@ -57,7 +55,7 @@ private:
     Vec3d step_;                ///< between probes, by axis
     std::array<int, 3> size_{}; ///< number of probes, by axis; at least 2
     std::vector<Probe> probes_; ///< x fastest
-    Harmonics sky_{};           ///< irradiance of the environment alone, for points far beyond the probes
+    IrradianceHarmonics sky_{}; ///< of the environment alone, for points far beyond the probes
     float openness_ = 0;        ///< how much of it counts there, in [0, 1]; 0 in a closed room
 };
 

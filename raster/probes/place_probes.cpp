@@ -119,7 +119,7 @@ void IrradianceProbes::fill_solids() {
         const std::vector<bool> before = filled;
         for (std::size_t i = 0; i < probes_.size(); ++i) {
             if (before[i]) continue;
-            Harmonics sum{};
+            IrradianceHarmonics sum{};
             float count = 0;
             for_each_neighbor(i, [&](std::size_t neighbor) {
                 if (!before[neighbor]) return;

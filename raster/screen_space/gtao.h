@@ -22,7 +22,7 @@ public:
     template <typename Irradiance> void add_irradiance(int threads, const Irradiance& irradiance);
 
     /// Returns the visibility of a batch of the G-buffer's pixels, upsampled along depths and normals.
-    SkyVisibilityT<Floats> at(int x, int y) const { return upsampled(x, y).sky; }
+    SkyVisibility<Floats> at(int x, int y) const { return upsampled(x, y).sky; }
     /// Returns the visible fraction and the irradiance of a batch, after add_irradiance(). `found` marks the lanes
     /// whose
     /// surface has a pixel at half resolution nearby; the others have no irradiance.
@@ -44,7 +44,7 @@ private:
         Planes3 hidden;
     };
     struct Upsampled {
-        SkyVisibilityT<Floats> sky;
+        SkyVisibility<Floats> sky;
         xsimd::batch_bool<float> found;
     };
     Upsampled upsampled(int x, int y) const;

@@ -24,7 +24,7 @@ RasterSceneData select_objects(const RasterSceneData& data, const std::vector<bo
                            .objects = data.objects,
                            .polygonal = {},
                            .spheres = {},
-                           .irradiance = data.irradiance,
+                           .sky_irradiance = data.sky_irradiance,
                            .geometries = data.geometries};
     const auto select = [&](const std::vector<std::uint32_t>& objects, std::vector<std::uint32_t>& list) {
         for (const std::uint32_t object : objects)

@@ -34,8 +34,6 @@ namespace duet::raster {
 
 struct PassView;
 
-/// Broadcasts a value to all lanes.
-template <typename T> RgbT<T> broadcast(Rgb c) { return {T(c.r), T(c.g), T(c.b)}; }
 /// Returns v / |v|. v must not be zero.
 template <typename T> Vec3T<T> unit(Vec3T<T> v) { return v * inverse_sqrt(dot(v, v)); }
 /// Represents a direction whose vector has any length. A cosine with it takes one multiplication by `scale`;

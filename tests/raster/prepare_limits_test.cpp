@@ -50,4 +50,23 @@ TEST_SUITE("unit") {
         };
         CHECK(bytes(32, 24) * 4 < bytes(256, 256));
     }
+
+    TEST_CASE("limits: a scene without light needs no maps and no probes, and its image is black") {
+        Scene scene = load_scene(std::string(DUET_SOURCE_DIR) + "/models/spheres.json");
+        const auto rendered = [&] {
+            finish_scene(scene);
+            const View view{scene.camera, 16, 12};
+            Control control;
+            return raster::render(raster::prepare(scene, {}), view, {}, control);
+        };
+        const auto lit = rendered();
+        scene.environment = ConstantEnvironment{Rgb(0.0f)};
+        scene.lights = {SunLight{{0, -1, 0}, Rgb(0.0f)}};
+        for (Material& material : scene.materials)
+            if (auto* emissive = std::get_if<Emissive>(&material)) emissive->radiance = Rgb(0.0f);
+        const auto dark = rendered();
+        CHECK(dark.statistics.memory_bytes * 4 < lit.statistics.memory_bytes);
+        CHECK(std::ranges::all_of(dark.radiance.pixels(), [](Rgb pixel) { return is_black(pixel); }));
+        CHECK(std::ranges::none_of(lit.radiance.pixels(), [](Rgb pixel) { return is_black(pixel); }));
+    }
 }

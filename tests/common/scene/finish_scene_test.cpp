@@ -326,6 +326,37 @@ TEST_SUITE("unit") {
         CHECK(needs(0).environment);
     }
 
+    TEST_CASE("Lights that emit nothing and masks that hide nothing are dropped") {
+        Scene scene = scene_of(Sphere{}, Mat4d());
+        scene.lights = {PointLight{{0, 2, 0}, Rgb(0.0f)}, SunLight{{0, -1, 0}, Rgb(0, 0.1f, 0)},
+                        SunLight{{0, -1, 0}, Rgb(0.0f)}, SpotLight{{0, 2, 0}, {0, -1, 0}, Rgb(0.0f)}};
+        const Scene lit = finished(scene);
+        REQUIRE(lit.lights.size() == 1);
+        CHECK(std::get<SunLight>(lit.lights[0]).irradiance == Rgb(0, 0.1f, 0));
+
+        ImageRgb image(2, 1);
+        image[0] = Rgb(1, 0, 0), image[1] = Rgb(1, 1, 1);
+        scene.textures.images = {image};
+        scene.textures.textures = {CheckerTexture{Rgb(1, 0, 0), Rgb(1, 1, 1)}, CheckerTexture{Rgb(1, 0, 0), Rgb(0.5f)},
+                                   NoiseTexture{Rgb(0.5f), Rgb(0.5f)}, ImageTexture{}};
+        const auto opacity = [&](ScalarSlot slot) {
+            scene.maps = {SurfaceMaps{}};
+            scene.maps[0].opacity = slot;
+            return finished(scene);
+        };
+        CHECK_FALSE(opacity({1, 0}).needs.alpha);
+        CHECK(opacity({1, 1}).needs.alpha);
+        CHECK(opacity({1, 1}).maps[0].opacity.texture == 1);
+        const Scene half = opacity({1, 2});
+        CHECK(half.needs.alpha);
+        CHECK(half.maps[0].opacity.constant());
+        CHECK(half.maps[0].opacity.value == 0.5f);
+        CHECK(opacity({0.25f, 0}).maps[0].opacity.value == 0.25f);
+        CHECK_FALSE(opacity({1, 3}).needs.alpha);
+        scene.textures.images[0][1].r = 0.99f;
+        CHECK(opacity({1, 3}).needs.alpha);
+    }
+
     TEST_CASE("Meshes are found closed, also after a mirroring bake") {
         CHECK(std::get<Mesh>(finished(scene_of(tetrahedron(), Mat4d())).shapes[0]).closed);
         CHECK(std::get<Mesh>(finished(scene_of(tetrahedron(), scaling(Vec3d(1, 1, -1)))).shapes[0]).closed);
