@@ -10,6 +10,7 @@ instance, light or pixel, as the growth over a tenth of them. --scale makes all 
 import argparse
 import json
 import math
+import multiprocessing
 import os
 import pathlib
 import random
@@ -70,6 +71,15 @@ SCENES = {"triangles": (triangles, 10**7), "instances": (instances, 10**5), "lig
           "pixels": (pixels, 9000 * 9000)}
 
 
+def write_scene(make, folder, count):
+    """Writes the scene and returns its count and the size of its image. It runs in a process of its own, because a
+    program's peak memory counts the memory of the process that starts it."""
+    number, scene, size = make(folder, count)
+    scene.update(camera=CAMERA, materials=MATERIALS)
+    (folder / "scene.json").write_text(json.dumps(scene))
+    return number, size
+
+
 def peak_bytes(program, scene, size, folder):
     """The peak resident set of a render. os.wait4 returns that of this process alone."""
     arguments = [program, scene, "--size", f"{size[0]}x{size[1]}", "--quiet", "-o", folder / "image.exr"]
@@ -93,9 +103,8 @@ def main():
             for count in (0.1 * largest * options.scale, largest * options.scale):
                 with tempfile.TemporaryDirectory() as folder:
                     folder = pathlib.Path(folder)
-                    number, scene, size = make(folder, round(count))
-                    scene.update(camera=CAMERA, materials=MATERIALS)
-                    (folder / "scene.json").write_text(json.dumps(scene))
+                    with multiprocessing.Pool(1) as writer:
+                        number, size = writer.apply(write_scene, (make, folder, round(count)))
                     peak = peak_bytes(options.programs / program, folder / "scene.json", size, folder)
                     results.append((number, peak))
             (few, least), (many, most) = results
