@@ -1,11 +1,13 @@
 // This fuzz target reads any bytes as a film. A film that is read must be written and read again to the same samples.
 #include "raytrace/film/film_file.h"
-#include "tests/fuzz/fuzz_files.h"
+#include "tests/fuzz/require.h"
+#include "tests/support/errors.h"
+#include "tests/support/scratch.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t size) {
-    static const std::filesystem::path folder = duet::fuzz_folder();
-    duet::write_bytes(folder / "film.exr", {reinterpret_cast<const char*>(data), size});
-    duet::returns_or_throws_error([] {
+    static const duet::test::ScratchFolder folder;
+    duet::write_file(folder / "film.exr", {reinterpret_cast<const char*>(data), size});
+    duet::test::error_of([] {
         const duet::StoredFilm film = duet::read_film(folder / "film.exr");
         duet::write_film(folder / "again.exr", film);
         const duet::StoredFilm again = duet::read_film(folder / "again.exr");

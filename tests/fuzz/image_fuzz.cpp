@@ -1,11 +1,12 @@
 // This fuzz target decodes any bytes as an image. Each reader must return pixels or throw Error, nothing else.
 #include "common/image/formats.h"
 #include "common/image/image_file.h"
-#include "tests/fuzz/fuzz_files.h"
+#include "tests/fuzz/require.h"
+#include "tests/support/errors.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const duet::ImageBytes file{"fuzz", {reinterpret_cast<const char*>(data), size}};
-    duet::returns_or_throws_error([&] {
+    duet::test::error_of([&] {
         // A file without a signature is decoded as a TGA.
         const duet::StoredImage image = duet::decode_image(file, ".tga");
         const std::size_t pixels = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
@@ -13,6 +14,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         duet::require(image.values.size() == pixels * static_cast<std::size_t>(image.channels));
     });
     if (file.bytes.starts_with("\x76\x2f\x31\x01"))
-        duet::returns_or_throws_error([&] { duet::decode_exr_channels(file); });
+        duet::test::error_of([&] { duet::decode_exr_channels(file); });
     return 0;
 }

@@ -1,7 +1,9 @@
-// This fuzz target loads any bytes as OBJ and MTL files. They must load to a valid mesh or throw Error.
+// This fuzz target loads any bytes as OBJ and MTL files. They must load to a valid mesh or throw Error with one line.
 // The text after the first "%" is the MTL file m.mtl.
 #include "common/scene/obj/load_obj.h"
-#include "tests/fuzz/fuzz_files.h"
+#include "tests/fuzz/require.h"
+#include "tests/support/errors.h"
+#include "tests/support/scratch.h"
 
 #include <algorithm>
 
@@ -26,14 +28,15 @@ void check(const duet::ObjFile& file) {
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const unsigned char* data, std::size_t size) {
-    static const std::filesystem::path folder = duet::fuzz_folder();
+    static const duet::test::ScratchFolder folder;
     const std::string_view text(reinterpret_cast<const char*>(data), size);
     const std::size_t cut = std::min(text.find('%'), text.size());
-    duet::write_bytes(folder / "mesh.obj", text.substr(0, cut));
-    duet::write_bytes(folder / "m.mtl", text.substr(std::min(cut + 1, text.size())));
-    duet::returns_or_throws_error([&] {
+    duet::write_file(folder / "mesh.obj", text.substr(0, cut));
+    duet::write_file(folder / "m.mtl", text.substr(std::min(cut + 1, text.size())));
+    const std::string error = duet::test::error_of([&] {
         check(duet::load_obj(folder / "mesh.obj"));
         check(duet::load_obj(folder / "mesh.obj", {duet::MeshNormals::kSmooth}));
     });
+    require(duet::test::says(error, "")); // a single line
     return 0;
 }

@@ -16,7 +16,9 @@ rm -f build/fuzz/faults/summary
 for target in "$@"; do mkdir -p "build/fuzz/corpus/$target"; done
 
 # UndefinedBehaviorSanitizer is fatal by the compiler's options; a reader may refuse what it can't allocate.
-echo "$@" | tr ' ' '\n' | xargs -P 2 -I{} sh -c 'ASAN_OPTIONS=allocator_may_return_null=1 build/fuzz/bin/{}_fuzz \
+export ASAN_OPTIONS=allocator_may_return_null=1
+[ ! -d /dev/shm ] || export TMPDIR=/dev/shm # files in memory
+echo "$@" | tr ' ' '\n' | xargs -P 2 -I{} sh -c 'build/fuzz/bin/{}_fuzz \
     -runs='"$inputs"' -timeout=20 -rss_limit_mb=4096 -max_len=16384 -print_final_stats=1 \
     -artifact_prefix=build/fuzz/faults/{}- build/fuzz/corpus/{} tests/fuzz/corpus/{} > build/fuzz/{}.log 2>&1 ||
     echo "{}: a fault, see build/fuzz/{}.log" >> build/fuzz/faults/summary'
