@@ -35,8 +35,8 @@ void HitLists::draw() {
         const Batch& batch = geometry_.batches[item.batch];
         for (std::uint32_t k = 0; k < item.count; ++k) {
             const Fragment& fragment = batch.fragments[item.first + k];
-            add_triangle(fragment.id, r.x0 + tile_sample_x(fragment.sample_index),
-                         r.y0 + tile_sample_y(fragment.sample_index));
+            const int x = r.x0 + tile_sample_x(fragment.sample_index), y = r.y0 + tile_sample_y(fragment.sample_index);
+            if (!pixel(x, y).done) add(x, y, ListedTriangle(geometry_.triangles, fragment.id));
         }
     }
     if (geometry_.spheres.empty()) return;
@@ -47,13 +47,15 @@ void HitLists::draw_triangle(const DrawTriangle& triangle) {
     const auto& c = triangle.corners;
     const std::array<EdgeFunction, 3> edges{EdgeFunction(c[0], c[1]), EdgeFunction(c[1], c[2]),
                                             EdgeFunction(c[2], c[0])};
+    const ListedTriangle whole(geometry_.triangles, triangle.id);
     const PixelRect r = intersect(tile_.rect(), pixels_within(c, offset_));
     for (int y = r.y0; y < r.y1; ++y)
         for (int x = r.x0; x < r.x1; ++x) {
+            if (pixel(x, y).done) continue;
             const std::int64_t sx = std::int64_t{x} * kSubpixels + offset_.x,
                                sy = std::int64_t{y} * kSubpixels + offset_.y;
             if (std::all_of(edges.begin(), edges.end(), [&](const EdgeFunction& e) { return e.at(sx, sy) >= 0; }))
-                add_triangle(triangle.id, x, y);
+                add(x, y, whole);
         }
 }
 
@@ -61,6 +63,7 @@ void HitLists::draw_sphere(const DrawSphere& sphere) {
     const PixelRect r = intersect(tile_.rect(), sphere.bounds);
     for (int y = r.y0; y < r.y1; ++y)
         for (int x = r.x0; x < r.x1; ++x) {
+            if (pixel(x, y).done) continue;
             Ray ray = tile_.ray(x, y);
             for (int side = 0; side < 2; ++side) { // front, then inside of the back
                 const std::optional<float> t = sphere.intersect(ray);
@@ -71,21 +74,24 @@ void HitLists::draw_sphere(const DrawSphere& sphere) {
         }
 }
 
-void HitLists::add_triangle(std::uint32_t id, int x, int y) {
-    const Triangles& triangles = geometry_.triangles;
+HitLists::ListedTriangle::ListedTriangle(const Triangles& triangles, std::uint32_t id) {
     const Run& run = triangles.run_of(id);
     const std::uint32_t index = Triangles::index(run, id);
-    const UnclippedTriangle whole = triangles.unclipped(run, index);
+    whole = triangles.unclipped(run, index);
+    object = triangles.objects[run.object].object;
+    primitive = whole.triangle_kind == TriangleKind::kTriangle ? index : index / 2;
+}
+
+void HitLists::add(int x, int y, const ListedTriangle& triangle) {
     add(x, y,
-        hit_triangle(whole, triangles.objects[run.object].object,
-                     whole.triangle_kind == TriangleKind::kTriangle ? index : index / 2, offset_.position(x, y),
+        hit_triangle(triangle.whole, triangle.object, triangle.primitive, offset_.position(x, y),
                      tile_.distance_per_depth(x, y), view_.pinhole.near));
 }
 
 // Inserts a hit into the sorted list of a pixel's nearest unprocessed hits.
 void HitLists::add(int x, int y, const Hit& hit) {
     Pixel& p = pixel(x, y);
-    if (p.done || !nearer(p.last, hit) || !nearer(hit, tile_.hit(x, y))) return;
+    if (!nearer(p.last, hit) || !nearer(hit, tile_.hit(x, y))) return;
     if (p.count == kStored) {
         p.more = true;
         if (!nearer(hit, p.nearest[kStored - 1])) return;

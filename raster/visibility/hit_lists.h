@@ -70,10 +70,18 @@ private:
         Hit last{.t = -1}; ///< this hit and all nearer ones are processed
     };
 
+    /// Represents a triangle whose hits are to be listed.
+    struct ListedTriangle {
+        UnclippedTriangle whole;
+        std::uint32_t object, primitive;
+
+        ListedTriangle(const Triangles& triangles, std::uint32_t id);
+    };
+
     void draw();
     void draw_triangle(const DrawTriangle& triangle);
     void draw_sphere(const DrawSphere& sphere);
-    void add_triangle(std::uint32_t id, int x, int y);
+    void add(int x, int y, const ListedTriangle& triangle);
     void add(int x, int y, const Hit& hit);
     Pixel& pixel(int x, int y) {
         const PixelRect& r = tile_.rect();

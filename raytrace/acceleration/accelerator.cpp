@@ -1,6 +1,5 @@
 #include "raytrace/acceleration/accelerator.h"
 
-#include "common/scene/alpha_mask.h"
 #include "common/system/error.h"
 #include "raytrace/acceleration/bvh_input.h"
 #include "raytrace/acceleration/bvh_packet.h"
@@ -52,13 +51,13 @@ Ray Accelerator::to_instance_space(const BvhInstance& instance, const Ray& ray) 
 }
 
 // Returns the instance test of a ray: it traverses the bottom-level BVH of the instance's shape.
-template <bool kAny> auto Accelerator::instance_test(const Ray& ray, const Hit* after) const {
-    return [this, &ray, after](const BvhInstance& instance, Hit& so_far) {
+template <bool kAny> auto Accelerator::instance_test(const Ray& ray, const AlphaFilter* alpha) const {
+    return [this, &ray, alpha](const BvhInstance& instance, Hit& so_far) {
         const auto no_instance = [](const BvhInstance&, Hit&) { return false; };
         const Ray local = to_instance_space(instance, ray);
         if (!traceable(local)) return false;
         const Bvh& shape = shapes_[instance.shape];
-        return traverse<kAny>(shape, local, instance.object, so_far, no_instance, after);
+        return traverse<kAny>(shape, local, instance.object, so_far, no_instance, alpha);
     };
 }
 
@@ -68,7 +67,7 @@ struct Accelerator::PacketInstances {
     const Accelerator& scene;
     std::span<const Ray, kSize> rays;
 
-    auto operator()(const Ray& ray) const { return scene.instance_test<false>(ray); }
+    auto operator()(const Ray& ray) const { return scene.instance_test<false>(ray, nullptr); }
 
     void operator()(const BvhInstance& instance, unsigned active, PacketHits& best) const {
         const Bvh& shape = scene.shapes_[instance.shape];
@@ -87,59 +86,30 @@ struct Accelerator::PacketInstances {
         for (; active != 0; active &= active - 1) {
             const auto ray = static_cast<std::size_t>(std::countr_zero(active));
             Hit hit = best.get(ray);
-            scene.instance_test<false>(rays[ray])(instance, hit);
+            scene.instance_test<false>(rays[ray], nullptr)(instance, hit);
             best.set(ray, hit);
         }
     }
 };
 
-// Finds the closest hit without regard to alpha: transparent points count as hits. With `after`, it is the closest one
-// that `after` precedes.
-Hit Accelerator::closest_without_alpha(const Ray& ray, const Hit* after) const {
-    Hit best;
-    best.t = min(ray.t_max, std::numeric_limits<float>::max()); // a distance that overflowed is no hit
-    if (!traceable(ray)) return {};
-    return traverse<false>(world_, ray, kNoObject, best, instance_test<false>(ray, after), after) ? best : Hit{};
-}
-
-// Finds the hit that follows `hit`: on another surface at the same distance, or else beyond. The first search allows
-// for the rounding of the boxes' distances.
-Hit Accelerator::next_without_alpha(const Ray& ray, const Hit& hit) const {
-    constexpr float kMargin = 16 * std::numeric_limits<float>::epsilon();
-    Ray part = ray;
-    part.t_min = max(hit.t * (1 - kMargin), ray.t_min);
-    part.t_max = min(hit.t * (1 + kMargin), ray.t_max);
-    const Hit coincident = closest_without_alpha(part, &hit);
-    if (coincident.valid() && coincident.t == hit.t) return coincident;
-    part.t_min = hit.t;
-    part.t_max = ray.t_max;
-    return closest_without_alpha(part);
+// Traverses all hierarchies as `traverse` does. A distance that overflowed is no hit.
+template <bool kAny> bool Accelerator::trace(const Ray& ray, Hit& best) const {
+    best.t = min(best.t, std::numeric_limits<float>::max());
+    if (!traceable(ray)) return false;
+    const AlphaFilter filter{scene_, ray};
+    const AlphaFilter* alpha = has_alpha_masks_ ? &filter : nullptr;
+    return traverse<kAny>(world_, ray, kNoObject, best, instance_test<kAny>(ray, alpha), alpha);
 }
 
 Hit Accelerator::closest(const Ray& ray) const {
-    const Hit hit = closest_without_alpha(ray);
-    return has_alpha_masks_ ? skip_transparent(ray, hit) : hit;
+    Hit best;
+    best.t = ray.t_max;
+    return trace<false>(ray, best) ? best : Hit{};
 }
 
-// Steps from `hit` to the first hit that the ray does not pass through. Each hit follows the previous one in the order
-// of `precedes`, so the loop ends.
-Hit Accelerator::skip_transparent(const Ray& ray, Hit hit) const {
-    while (hit.valid() && passes_alpha_mask(scene_, ray, hit)) hit = next_without_alpha(ray, hit);
-    return hit;
-}
-
-// Returns what traverse<true> returns, but respects alpha by stepping through closest hits.
-bool Accelerator::occluded_with_alpha(Ray ray, const Hit& end) const {
-    ray.t_max = min(ray.t_max, end.t);
-    const auto before_end = [&](const Hit& hit) {
-        return hit.valid() &&
-               (hit.t < end.t || std::pair(hit.object, hit.primitive) < std::pair(end.object, end.primitive));
-    };
-    for (Hit hit = closest_without_alpha(ray); before_end(hit); hit = next_without_alpha(ray, hit)) {
-        const bool is_end = hit.object == end.object && hit.primitive == end.primitive;
-        if (!is_end && !passes_alpha_mask(scene_, ray, hit)) return true;
-    }
-    return false;
+bool Accelerator::occluded(const Ray& ray, const Hit& end) const {
+    Hit clamped = end;
+    return trace<true>(ray, clamped);
 }
 
 void Accelerator::closest(std::span<const Ray> rays, std::span<Hit> hits) const {
@@ -152,16 +122,18 @@ void Accelerator::closest(std::span<const Ray> rays, std::span<Hit> hits) const 
         const auto their_hits = hits.subspan(done).first<kSize>();
         const RayPacket packet(some, world_.bounds);
         if (!packet.coherent()) {
-            for (std::size_t i = 0; i < kSize; ++i) their_hits[i] = closest_without_alpha(some[i]);
+            for (std::size_t i = 0; i < kSize; ++i) their_hits[i] = closest(some[i]);
             continue;
         }
         PacketHits best(xsimd::min(packet.t_max(), max_distance));
         PacketTraversal(world_, packet, some, kAll, kNoObject, PacketInstances{*this, some}, best).run();
         best.store(their_hits);
     }
-    for (; done < rays.size(); ++done) hits[done] = closest_without_alpha(rays[done]);
+    for (; done < rays.size(); ++done) hits[done] = closest(rays[done]);
+    // Packets are traced without regard to alpha.
     if (has_alpha_masks_)
-        for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = skip_transparent(rays[i], hits[i]);
+        for (std::size_t i = 0; i < rays.size(); ++i)
+            if (hits[i].valid() && passes_alpha_mask(scene_, rays[i], hits[i])) hits[i] = closest(rays[i]);
 }
 
 namespace {
@@ -192,7 +164,7 @@ void Accelerator::closest_in_list(std::span<const Ray> rays, std::span<const std
     for (std::size_t k = 0; k < kSize; ++k) some[k] = rays[indices[k < indices.size() ? k : 0]];
     const RayPacket packet{std::span<const Ray, kSize>(some)};
     if (indices.size() < kSize / 4 || !packet.coherent()) {
-        for (const std::uint32_t i : indices) hits[i] = closest_without_alpha(rays[i]);
+        for (const std::uint32_t i : indices) hits[i] = closest(rays[i]);
         return;
     }
     PacketHits best(xsimd::min(packet.t_max(), RayPacket::Batch(std::numeric_limits<float>::max())));
@@ -225,14 +197,7 @@ void Accelerator::closest_sorted_by_class(std::span<const Ray> rays, std::span<c
             closest_in_list(rays, std::span(order).subspan(done, taken), hits);
             done += taken;
         }
-    for (; done < indices.size(); ++done) hits[order[done]] = closest_without_alpha(rays[order[done]]);
-}
-
-bool Accelerator::occluded(const Ray& ray, const Hit& end) const {
-    Hit clamped = end;
-    clamped.t = min(end.t, std::numeric_limits<float>::max()); // a distance that overflowed is no hit
-    if (has_alpha_masks_) return occluded_with_alpha(ray, clamped);
-    return traceable(ray) && traverse<true>(world_, ray, kNoObject, clamped, instance_test<true>(ray));
+    for (; done < indices.size(); ++done) hits[order[done]] = closest(rays[order[done]]);
 }
 
 BvhStatistics Accelerator::statistics() const {

@@ -9,6 +9,8 @@
 
 namespace duet::raytrace {
 
+struct AlphaFilter;
+
 /// Builds and queries a two-level acceleration structure. The top-level BVH holds the primitives of all static,
 /// untransformed objects and the bounds of instances. Each instanced shape has a bottom-level BVH in its object
 /// space. The accelerator refers to the scene, which must outlive it.
@@ -42,16 +44,13 @@ public:
     const Bvh& world() const { return world_; }
 
 private:
-    Hit closest_without_alpha(const Ray& ray, const Hit* after = nullptr) const;
-    Hit next_without_alpha(const Ray& ray, const Hit& hit) const;
     void closest_sorted_by_class(std::span<const Ray> rays, std::span<const std::uint32_t> indices,
                                  std::span<Hit> hits) const;
     void closest_in_list(std::span<const Ray> rays, std::span<const std::uint32_t> indices, std::span<Hit> hits) const;
-    Hit skip_transparent(const Ray& ray, Hit hit) const;
-    bool occluded_with_alpha(Ray ray, const Hit& end) const;
     struct PacketInstances;
+    template <bool kAny> bool trace(const Ray& ray, Hit& best) const;
     Ray to_instance_space(const BvhInstance& instance, const Ray& ray) const;
-    template <bool kAny> auto instance_test(const Ray& ray, const Hit* after = nullptr) const;
+    template <bool kAny> auto instance_test(const Ray& ray, const AlphaFilter* alpha) const;
 
     const Scene& scene_;
     Bvh world_;

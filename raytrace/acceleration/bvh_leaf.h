@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/geometry/hit.h"
+#include "common/scene/alpha_mask.h"
 #include "raytrace/acceleration/bvh_block.h"
 #include "raytrace/acceleration/bvh_spheres.h"
 
@@ -15,14 +16,23 @@ inline bool precedes(const Hit& a, const Hit& b) {
     return a.object != b.object ? a.object < b.object : a.primitive < b.primitive;
 }
 
+/// Decides which hits of a ray count in a scene with alpha masks: those that the ray does not pass through.
+struct AlphaFilter {
+    const Scene& scene;
+    const Ray& ray; ///< in world space
+
+    bool rejects(const Hit& hit) const { return passes_alpha_mask(scene, ray, hit); }
+};
+
 /// Tests leaves against one ray. With kAny, the search ends at the first hit that precedes `best` and is not on its
 /// primitive. `instance(i, best)` is called to find the hits of instances.
 template <bool kAny, typename Instance> class LeafTest {
 public:
     /// If `object` is not kNoObject (inside an instance), hits report it, else they report the primitive's own
-    /// object. With `after`, only hits that it precedes count.
-    LeafTest(const Bvh& bvh, const Ray& ray, std::uint32_t object, const Instance& instance, const Hit* after = nullptr)
-        : bvh_(bvh), object_(object), instance_(instance), after_(after) {
+    /// object. `alpha` may be null; all hits count then.
+    LeafTest(const Bvh& bvh, const Ray& ray, std::uint32_t object, const Instance& instance,
+             const AlphaFilter* alpha = nullptr)
+        : bvh_(bvh), object_(object), instance_(instance), alpha_(alpha) {
         if (bvh.has_polygons()) sheared_.emplace(ray);
         if (!bvh.spheres.empty()) sphere_ray_.emplace(ray);
     }
@@ -75,21 +85,34 @@ private:
         const SphereBlockTest test(*sphere_ray_, block, best.t);
         for (unsigned lanes = test.hits(); lanes != 0; lanes &= lanes - 1) {
             const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
-            if (consider({reported_object(block.object[lane]), 0, 0, 0, test.t(lane)}, best)) return true;
+            Hit hit{reported_object(block.object[lane]), 0, 0, 0, test.t(lane)};
+            if (is_transparent(hit) && !move_to_far_side(block.sphere(lane), best.t, hit)) continue;
+            if (consider(hit, best)) return true;
         }
         return false;
+    }
+    // Moves a hit on the near side of a sphere to the far side. Returns false if the ray starts inside or ends before.
+    bool move_to_far_side(const Sphere& sphere, float end, Hit& hit) const {
+        Ray rest = sphere_ray_->ray;
+        rest.t_min = hit.t;
+        rest.t_max = end;
+        const auto far = intersect_sphere(rest, sphere);
+        if (far) hit.t = *far;
+        return far.has_value();
     }
 
     template <typename Block> bool consider(const Block& block, std::size_t lane, const TriangleHit& hit, Hit& best) {
         return consider({reported_object(block.object[lane]), block.primitive[lane], hit.u, hit.v, hit.t}, best);
     }
     bool consider(const Hit& hit, Hit& best) {
-        if (!precedes(hit, best) || (after_ != nullptr && !precedes(*after_, hit))) return false;
+        if (!precedes(hit, best)) return false;
         if (kAny && hit.object == best.object && hit.primitive == best.primitive) return false;
+        if (is_transparent(hit)) return false;
         found_ = true;
         if (!kAny) best = hit;
         return kAny;
     }
+    bool is_transparent(const Hit& hit) const { return alpha_ != nullptr && alpha_->rejects(hit); }
     std::uint32_t reported_object(std::uint32_t own) const { return object_ == kNoObject ? own : object_; }
 
     const Bvh& bvh_;
@@ -97,7 +120,7 @@ private:
     std::optional<SphereRay> sphere_ray_; // used for spheres
     std::uint32_t object_;
     const Instance& instance_;
-    const Hit* after_;
+    const AlphaFilter* alpha_;
     bool found_ = false;
 };
 

@@ -132,8 +132,8 @@ private:
 /// Tests the leaves of the list, in a hierarchy whose tree is not to be traversed.
 template <bool kAny, typename Instance>
 [[gnu::noinline]] bool traverse_list(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& best,
-                                     const Instance& instance, const Hit* after) {
-    LeafTest<kAny, Instance> test_leaf(bvh, ray, object, instance, after);
+                                     const Instance& instance, const AlphaFilter* alpha) {
+    LeafTest<kAny, Instance> test_leaf(bvh, ray, object, instance, alpha);
     for (const BvhRef leaf : bvh.list)
         if (test_leaf(leaf, best)) return true;
     return test_leaf.found();
@@ -146,13 +146,13 @@ template <bool kAny, typename Instance>
 ///   ignores the light itself. The search ends at the first such hit.
 ///
 /// If `object` is not kNoObject (inside an instance), hits report it as their object. `instance(i, best)` is called to
-/// find the hits of instances in the same manner. With `after`, only hits that it precedes count.
+/// find the hits of instances in the same manner. Hits that `alpha` rejects do not count.
 template <bool kAny, typename Instance>
 bool traverse(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& best, const Instance& instance,
-              const Hit* after = nullptr) {
-    if (!bvh.use_tree()) return traverse_list<kAny>(bvh, ray, object, best, instance, after);
+              const AlphaFilter* alpha = nullptr) {
+    if (!bvh.use_tree()) return traverse_list<kAny>(bvh, ray, object, best, instance, alpha);
     const SlabRay slabs(ray, bvh.bounds);
-    LeafTest<kAny, Instance> test_leaf(bvh, ray, object, instance, after);
+    LeafTest<kAny, Instance> test_leaf(bvh, ray, object, instance, alpha);
     std::conditional_t<kAny, LargestFirst, NearestFirst> children;
     const SlabRay::Batch t_min(ray.t_min);
     BvhRef next = BvhRef::node(0);

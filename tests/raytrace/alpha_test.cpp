@@ -1,6 +1,9 @@
 // These tests check which rays hit alpha-masked and partly transparent surfaces.
 #include "tests/raytrace/estimates.h"
 #include "tests/raytrace/scene_builder.h"
+#include "common/geometry/quad.h"
+#include "common/geometry/sphere.h"
+#include "common/scene/alpha_mask.h"
 #include "raytrace/acceleration/accelerator.h"
 
 #include <doctest/doctest.h>
@@ -37,9 +40,76 @@ SurfaceMaps sheet(float opacity) {
     return maps;
 }
 
+/// Returns the first hit that the ray does not pass through, by testing all hits with all spheres and quads.
+Hit naive_closest(const Scene& scene, const Ray& ray) {
+    Hit best;
+    best.t = ray.t_max;
+    for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+        const auto consider = [&](const Hit& hit) {
+            if (hit.t < best.t && !passes_alpha_mask(scene, ray, hit)) best = hit;
+        };
+        const Shape& shape = scene.shapes[scene.objects[i].shape];
+        if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+            Ray rest = ray;
+            for (int side = 0; side < 2; ++side)
+                if (const auto t = intersect_sphere(rest, *sphere)) consider({i, 0, 0, 0, rest.t_min = *t});
+        } else {
+            const Quad& quad = std::get<QuadList>(shape).quads.front();
+            const std::array corners{quad.corner, quad.corner + quad.u, quad.corner + quad.u + quad.v,
+                                     quad.corner + quad.v};
+            if (const auto hit = intersect_quad(ShearedRay(ray), corners)) consider({i, 0, hit->u, hit->v, hit->t});
+        }
+    }
+    return best.valid() ? best : Hit{};
+}
+
 } // namespace
 
 TEST_SUITE("unit") {
+
+    TEST_CASE("many spheres and squares with holes: every query agrees with testing all primitives") {
+        std::mt19937 random(5);
+        std::uniform_real_distribution<float> uniform(-1, 1);
+        const auto point = [&] { return Vec3(uniform(random), uniform(random), uniform(random)); };
+        for (const bool instances : {false, true}) {
+            SceneBuilder builder;
+            ImageRgb squares(8, 8);
+            for (std::size_t i = 0; i < 64; ++i) squares[i] = Rgb(static_cast<float>((i / 8 + i) % 2));
+            builder.scene.textures = {{ImageTexture{0, {1, 1}, TextureFilter::kNearest}}, {squares}};
+            const std::uint32_t holes = builder.material(Diffuse{}), partial = builder.material(Diffuse{});
+            for (std::uint32_t i = 0; i < 40; ++i) {
+                const std::uint32_t material = i % 2 == 0 ? holes : partial;
+                if (i % 4 < 2)
+                    builder.add(Sphere{point(), 0.5f + 0.3f * uniform(random)}, material);
+                else
+                    builder.add(quad(point(), point(), point()), material);
+            }
+            builder.scene.maps = {half_open(), sheet(0.2f)};
+            Scene scene = builder.finish();
+            if (instances)
+                for (Object& object : scene.objects) object.identity = false;
+            const Accelerator accelerator(scene, 1);
+            std::vector<Ray> rays;
+            for (int i = 0; i < 2000; ++i) {
+                const Vec3 from = i % 2 == 0 ? point() * 4.0f : Vec3(0, 0, 5); // every other ray from one point
+                rays.push_back({from, point() - from});
+            }
+            std::vector<Hit> hits(rays.size());
+            accelerator.closest(rays, hits);
+            std::size_t found = 0;
+            for (std::size_t i = 0; i < rays.size(); ++i) {
+                const Hit expected = naive_closest(scene, rays[i]);
+                found += expected.valid();
+                CHECK(accelerator.closest(rays[i]) == expected);
+                CHECK(hits[i] == expected);
+                Hit end;
+                end.t = 1;
+                CHECK(accelerator.occluded(rays[i], end) == (expected.valid() && expected.t < 1));
+            }
+            CHECK(found > rays.size() / 2);
+            CHECK(found < rays.size());
+        }
+    }
 
     TEST_CASE("rays go through holes, and only there; many at once and one by one alike") {
         const Scene scene = two_squares(half_open());
