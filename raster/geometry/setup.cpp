@@ -5,14 +5,19 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace duet::raster {
 Interpolation::Interpolation(const PixelVertex& a, const PixelVertex& b, const PixelVertex& c, FixedPoint beside)
     : origin_x(floor_pixel(beside.x)), origin_y(floor_pixel(beside.y)), depth(a.depth, b.depth, c.depth) {
     const auto local = [&](const PixelVertex& v) { return Vec3d(v.xw - origin_x * v.w, v.yw - origin_y * v.w, v.w); };
-    const Vec3d va = local(a), vb = local(b), vc = local(c);
-    e = {cross(vb, vc), cross(vc, va), cross(va, vb)};
-    if (dot(va, e[0]) < 0) e = {-e[0], -e[1], -e[2]};
+    vertices = {local(a), local(b), local(c)};
+    e = {cross(vertices[1], vertices[2]), cross(vertices[2], vertices[0]), cross(vertices[0], vertices[1])};
+    const double determinant = dot(vertices[0], e[0]);
+    constexpr double kRounding = 1e-15; // of the determinant, relative to its two factors
+    is_edge_on = determinant * determinant <=
+                 kRounding * kRounding * dot(vertices[0], vertices[0]) * dot(e[0], e[0]);
+    if (determinant < 0) e = {-e[0], -e[1], -e[2]};
 }
 
 // A sample that only the snapped triangle covers may lie outside, by less than 1/256 pixel. It is mirrored at the
@@ -52,6 +57,31 @@ Vec2d Interpolation::nearest_on_boundary(Vec2d p) const {
     return nearest;
 }
 
+// Seen edge-on, a triangle is a segment in the image, with two points of its edges at each position along it.
+// A sample beside the segment shows the nearer one.
+Interpolated Interpolation::edge_on(Vec2d p) const {
+    const auto steepness = [](const Vec3d& edge) { return edge.x * edge.x + edge.y * edge.y; };
+    const Vec3d line = *std::ranges::max_element(e, {}, steepness);
+    std::array<double, 3> along; // w times the distance from the sample along the segment, up to a factor
+    for (std::size_t i = 0; i < 3; ++i)
+        along[i] = (vertices[i].y - p.y * vertices[i].z) * line.x - (vertices[i].x - p.x * vertices[i].z) * line.y;
+    std::pair least(std::numeric_limits<double>::infinity(), 0.0); // distance along the segment, then depth
+    Interpolated nearest{1, 0, 0, 1, depth.x};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t j = (i + 1) % 3;
+        const bool level = (along[i] < 0) != (along[j] < 0); // the sample lies between the ends
+        const double s = level ? along[i] / (along[i] - along[j]) : std::abs(along[i]) < std::abs(along[j]) ? 0.0 : 1.0;
+        const double w = lerp(vertices[i].z, vertices[j].z, s), its_depth = lerp(depth[i], depth[j], s);
+        const std::pair here(level ? 0.0 : std::abs(lerp(along[i], along[j], s)) / w, its_depth);
+        if (!(w > 0 && here < least)) continue; // beyond another point, or behind the eye
+        least = here;
+        std::array<double, 3> b{};
+        b[i] = 1 - s, b[j] = s;
+        nearest = {b[0], b[1], b[2], 1, its_depth};
+    }
+    return nearest;
+}
+
 namespace {
 
 /// Returns true if a sample lies in the other half of the quad, beyond the diagonal, which is not an edge of the
@@ -74,6 +104,7 @@ bool in_other_half(const Interpolated& at, TriangleKind triangle_kind) {
 
 Interpolated Interpolation::at(Vec2d pixel, TriangleKind triangle_kind) const {
     Vec2d p(pixel.x - origin_x, pixel.y - origin_y);
+    if (is_edge_on) return edge_on(p);
     const auto value = [&](std::size_t i) { return e[i].x * p.x + e[i].y * p.y + e[i].z; };
     Interpolated result{value(0), value(1), value(2), 0, 0};
     const bool outside = result.b0 < 0 || result.b1 < 0 || result.b2 < 0;
@@ -85,7 +116,6 @@ Interpolated Interpolation::at(Vec2d pixel, TriangleKind triangle_kind) const {
         result = {std::max(0.0, value(0)), std::max(0.0, value(1)), std::max(0.0, value(2)), 0, 0};
     }
     result.sum = result.b0 + result.b1 + result.b2;
-    if (!(result.sum > 0)) result = {1, 1, 1, 3, 0}; // exactly edge-on: use an arbitrary point of the triangle
     result.depth_sum = result.b0 * depth.x + result.b1 * depth.y + result.b2 * depth.z;
     return result;
 }

@@ -71,8 +71,10 @@ struct DepthPlane {
 /// image. All is in double.
 struct Interpolation {
     double origin_x = 0, origin_y = 0;
-    std::array<Vec3d, 3> e; ///< e[i] = coefficients of x, y, 1; positive inside, for front and back faces
-    Vec3d depth;            ///< camera-space depths of the three vertices, meters
+    std::array<Vec3d, 3> e;        ///< e[i] = coefficients of x, y, 1; positive inside, for front and back faces
+    std::array<Vec3d, 3> vertices; ///< xw, yw, w
+    bool is_edge_on = false;       ///< the sign of the area is rounding error
+    Vec3d depth;                   ///< camera-space depths of the three vertices, meters
 
     Interpolation() = default;
     Interpolation(const PixelVertex& a, const PixelVertex& b, const PixelVertex& c, FixedPoint beside);
@@ -81,6 +83,7 @@ struct Interpolation {
 private:
     Vec2d mirrored_inside(Vec2d p) const;
     Vec2d nearest_on_boundary(Vec2d p) const;
+    Interpolated edge_on(Vec2d p) const;
 };
 
 /// Represents a triangle of a mesh, or one half of a quad, before clipping.

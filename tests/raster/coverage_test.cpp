@@ -137,6 +137,29 @@ TEST_SUITE("unit") {
         CHECK(depth == doctest::Approx(6.62).epsilon(0.01)); // the ends have depths 5.91 and 7.53
     }
 
+    TEST_CASE("a sample beside a triangle seen edge-on sees the nearer of the two edges there") {
+        // In the image, the corners lie on one line through (10, 10) with the slope 1/2.
+        const auto vertex = [](double along, double depth) {
+            return PixelVertex{.xw = (10 + along) * depth, .yw = (10 + along / 2) * depth, .w = depth, .depth = depth};
+        };
+        std::array corners{vertex(0, 2), vertex(4, 8), vertex(8, 4)};
+        for (int rotation = 0; rotation < 3; ++rotation, std::ranges::rotate(corners, corners.begin() + 1)) {
+            const Interpolation triangle(corners[0], corners[1], corners[2], {2560, 2560});
+            const auto depth_at = [&](double along, double beside) {
+                const Interpolated at = triangle.at({10 + along - beside / 2, 10 + along / 2 + beside},
+                                                    TriangleKind::kTriangle);
+                CHECK(min(at.b0, min(at.b1, at.b2)) >= 0);
+                CHECK(at.sum == doctest::Approx(at.b0 + at.b1 + at.b2));
+                return at.depth_sum / at.sum;
+            };
+            // The nearer edge, from the first to the last corner, has an inverse depth linear in the image.
+            for (const double along : {0.5, 3.0, 4.0, 7.5})
+                CHECK(depth_at(along, 1e-3) == doctest::Approx(1 / (0.5 + along / 8 * (0.25 - 0.5))));
+            CHECK(depth_at(-1e-3, 0) == doctest::Approx(2)); // beyond the ends
+            CHECK(depth_at(8.001, -1e-3) == doctest::Approx(4));
+        }
+    }
+
     TEST_CASE("a fan around a vertex covers each sample once") {
         Random random(4);
         const std::vector<FixedPoint> frame{{-500, -500},
