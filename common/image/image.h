@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/image/rgb.h"
-#include "common/system/cache_aligned.h"
+#include "common/system/huge_pages.h"
 #include "common/system/error.h"
 
 #include <vector>
@@ -30,7 +30,7 @@ public:
     Pixel& operator()(int x, int y) { return pixels_[index(x, y)]; }
     const Pixel& operator[](std::size_t i) const { return pixels_[i]; }
     Pixel& operator[](std::size_t i) { return pixels_[i]; }
-    using Pixels = std::vector<Pixel, CacheAlignedAllocator<Pixel>>;
+    using Pixels = std::vector<Pixel, HugePageAllocator<Pixel>>;
     const Pixels& pixels() const { return pixels_; }
     Pixels& pixels() { return pixels_; }
     auto begin() const { return pixels_.begin(); }

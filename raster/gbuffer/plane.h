@@ -37,7 +37,7 @@ public:
 private:
     static constexpr int kPadding = 16;
     int width_ = 0, height_ = 0, stride_ = 0;
-    std::vector<T, CacheAlignedAllocator<T>> values_;
+    std::vector<T, HugePageAllocator<T>> values_;
 };
 
 using PlaneFloat = Plane<float>;
@@ -57,6 +57,10 @@ struct Planes3 {
 
     Planes3() = default;
     Planes3(int width, int height) : x(width, height), y(width, height), z(width, height) {}
+    /// Sets the size. The contents are undefined; images of that size already keep their memory.
+    void set_size(int width, int height) {
+        if (x.width() != width || x.height() != height) *this = Planes3(width, height);
+    }
     bool empty() const { return x.empty(); }
     std::size_t memory_bytes() const { return 3 * x.memory_bytes(); }
 
@@ -88,6 +92,12 @@ template <typename Visit> void for_each_batch(int width, int height, int threads
         for (int y = first; y < std::min(first + kBandRows, height); ++y)
             for (int x = 0; x < width; x += static_cast<int>(Floats::size)) visit(x, y);
     });
+}
+
+/// Copies an image in parallel.
+inline void copy(const Planes3& from, int threads, Planes3& to) {
+    to.set_size(from.x.width(), from.x.height());
+    for_each_batch(from.x.width(), from.x.height(), threads, [&](int x, int y) { to.set(x, y, from.vector(x, y)); });
 }
 
 } // namespace duet::raster

@@ -18,9 +18,10 @@ public:
 
     /// Lights a row of pixels by the given lights.
     void light_row(int y, std::span<const WeightedLight> lights) {
-        for (int x = 0; x < gbuffer_.width(); x += kBatch)
-            if (const auto lanes = gbuffer_.visible(x, y); lane_bits(lanes) != 0)
-                store(x, y, light_batch(x, y, lanes, lights));
+        for (int x = 0; x < gbuffer_.width(); x += kBatch) {
+            const auto lanes = gbuffer_.visible(x, y);
+            store(x, y, lane_bits(lanes) != 0 ? light_batch(x, y, lanes, lights) : Sum());
+        }
     }
 
     /// Lights the tile that starts at column x of row y by the lights that reach it.
@@ -28,7 +29,6 @@ public:
         const Cluster tile{.x = x, .y = y, .columns = kTileSide, .rows = kTileSide};
         std::array<Cluster, kDepthSlices> slices;
         const std::size_t count = slices_of_depth(gbuffer_, tile, slices);
-        if (count == 0) return;
         sums_.fill({});
         for (std::size_t k = 0; k < count; ++k) light_cluster(slices[k], light_set_, 0);
         for_each_batch_of(gbuffer_, tile, [&](int column, int row) { store(column, row, sum_at(column, row)); });
@@ -161,33 +161,34 @@ private:
 
 } // namespace
 
-DirectLight direct_light(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
-                         const ShadowLookup* shadows, const ChosenLights& chosen) {
+void compute_direct_light(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
+                          const ShadowLookup* shadows, DirectLight& light, const ChosenLights& chosen) {
     const int width = gbuffer.width(), height = gbuffer.height();
-    DirectLight result;
-    result.exact = Planes3(width, height);
-    if (!settings.components.direct) return result;
-    const std::vector<FrameLight> lights = frame_lights(data.scene.lights, gbuffer.projection);
-    if (lights.empty()) return result;
-    const auto noisy = [&](const FrameLight& light) {
-        return shadows != nullptr && shadows->shadows(light.index) && shadows->noisy(light.index);
-    };
-    if (std::ranges::any_of(lights, noisy))
-        result.unshadowed = Planes3(width, height), result.shadowed = Planes3(width, height);
+    std::vector<FrameLight> lights;
+    if (settings.components.direct) lights = frame_lights(data.scene.lights, gbuffer.projection);
+    const bool noisy = std::ranges::any_of(lights, [&](const FrameLight& its) {
+        return shadows != nullptr && shadows->shadows(its.index) && shadows->noisy(its.index);
+    });
+    light.exact.set_size(width, height);
+    for (Planes3* image : {&light.unshadowed, &light.shadowed}) {
+        if (noisy)
+            image->set_size(width, height);
+        else
+            *image = {};
+    }
     const LightSet light_set(lights, shadows);
     const bool few = lights.size() <= LightSet::kFewLights; // which lists would not make fewer
     std::vector<WeightedLight> all_of_few;
     if (few)
         for (const std::uint32_t i : light_set.lights()) all_of_few.push_back({i, 1});
     parallel_for(static_cast<std::size_t>((height + kTileSide - 1) / kTileSide), settings.threads, [&](std::size_t i) {
-        PixelLighter lighter(gbuffer, lights, light_set, shadows, chosen, result);
+        PixelLighter lighter(gbuffer, lights, light_set, shadows, chosen, light);
         const int first = static_cast<int>(i) * kTileSide;
         if (few)
             for (int y = first; y < std::min(first + kTileSide, height); ++y) lighter.light_row(y, all_of_few);
         else
             for (int x = 0; x < width; x += kTileSide) lighter.light_tile(x, first);
     });
-    return result;
 }
 
 } // namespace duet::raster

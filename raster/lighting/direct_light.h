@@ -11,7 +11,7 @@
 
 namespace duet::raster {
 
-/// Holds radiance towards the viewer, for each pixel.
+/// Holds radiance towards the viewer, for each pixel; 0 for the background.
 struct DirectLight {
     Planes3 exact; ///< from lights without shadows, and lights whose shadows are not noisy
     /// From lights with noisy shadows; empty if there are none. The quotient is the visible fraction of these lights
@@ -28,9 +28,9 @@ struct ChosenLights {
     float random = 0;
 };
 
-/// Computes the direct light of all pixels; it is 0 for the background. Lobes whose alpha is below
-/// MetalBsdf::kSmoothAlpha are mirrors, which the reflections show. `shadows` may be null.
-DirectLight direct_light(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
-                         const ShadowLookup* shadows, const ChosenLights& chosen = {});
+/// Computes the direct light of all pixels. Lobes whose alpha is below MetalBsdf::kSmoothAlpha are mirrors, which the
+/// reflections show. `shadows` may be null. `light` may be that of an earlier frame, whose memory is then reused.
+void compute_direct_light(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
+                          const ShadowLookup* shadows, DirectLight& light, const ChosenLights& chosen = {});
 
 } // namespace duet::raster

@@ -32,8 +32,8 @@ struct LightField {
 struct LightsOfCluster {
     std::vector<std::uint32_t> near, far; ///< columns of a LightSet; `field` holds the irradiance of the far ones
     LightField field;
-    std::vector<float, CacheAlignedAllocator<float>> most;  ///< about the lights' greatest irradiance, by column
-    std::vector<float, CacheAlignedAllocator<float>> error, distant; ///< scratch memory, one number per light
+    std::vector<float, HugePageAllocator<float>> most;  ///< about the lights' greatest irradiance, by column
+    std::vector<float, HugePageAllocator<float>> error, distant; ///< scratch memory, one number per light
 };
 
 /// Refers to a light that stands for several.
@@ -103,7 +103,7 @@ private:
 
     std::vector<std::uint32_t> lights_;
     std::size_t stride_ = 0;
-    std::vector<float, CacheAlignedAllocator<float>> bounds_; ///< kRows rows with a column per light, and padding
+    std::vector<float, HugePageAllocator<float>> bounds_; ///< kRows rows with a column per light, and padding
 };
 
 } // namespace duet::raster

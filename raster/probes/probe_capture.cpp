@@ -47,8 +47,9 @@ ProbeCapture::Face capture(const RasterSceneData& data, const RasterSettings& se
         shadows.emplace(data, face.gbuffer, pass.time, 1);
     ChosenLights chosen = selection.chosen;
     chosen.random = std::fmod(chosen.random + 0.381966f * static_cast<float>(face_index), 1.0f);
-    add_direct_light(face.gbuffer, direct_light(data, settings, face.gbuffer, shadows ? &*shadows : nullptr, chosen), 1,
-                     face.direct);
+    DirectLight light;
+    compute_direct_light(data, settings, face.gbuffer, shadows ? &*shadows : nullptr, light, chosen);
+    add_direct_light(face.gbuffer, light, 1, face.direct);
     return face;
 }
 

@@ -17,8 +17,7 @@ using Rgbs = RgbT<Floats>;
 } // namespace
 
 void add_reflections(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
-                     const ReflectionProbes* probes, Planes3& radiance) {
-    const Planes3 before = probes != nullptr ? radiance : Planes3(); // reflections read other pixels
+                     const ReflectionProbes* probes, const Planes3& before, Planes3& radiance) {
     constexpr int kBandRows = 8;
     parallel_for(static_cast<std::size_t>((gbuffer.height() + kBandRows - 1) / kBandRows), settings.threads,
                  [&](std::size_t band) {

@@ -10,9 +10,9 @@ namespace duet::raster {
 class ReflectionProbes; // raster/probes/reflection_probes.h
 
 /// Adds what the surfaces reflect of their surroundings, without the lights' own light on rough surfaces, which is
-/// direct light. Without probes the environment alone is reflected. Where a sharp reflection lies within the image, it
-/// shows the image's own pixels, as they are before the call.
+/// direct light. Without probes the environment alone is reflected. With them, where a sharp reflection lies within the
+/// image, it shows the pixels of `before`, a copy of `radiance` before the call.
 void add_reflections(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
-                     const ReflectionProbes* probes, Planes3& radiance);
+                     const ReflectionProbes* probes, const Planes3& before, Planes3& radiance);
 
 } // namespace duet::raster

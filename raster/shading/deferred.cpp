@@ -66,7 +66,7 @@ void DeferredFrame::start(const Scene& scene, const ScreenProjection& projection
         gbuffer->projection = projection;
     } else {
         gbuffer.emplace(projection, width, height, any_clear_coat(scene));
-        radiance = Planes3(width, height);
+        radiance.set_size(width, height);
     }
 }
 
@@ -87,11 +87,14 @@ void shade_gbuffer(const RasterSceneData& data, const RasterSettings& settings, 
         std::optional<MapShadows> shadows;
         if (settings.shadows && data.soft_shadows)
             shadows.emplace(data, gbuffer, options.time, threads, options.sparse);
-        const DirectLight light = direct_light(data, settings, gbuffer, shadows ? &*shadows : nullptr);
+        compute_direct_light(data, settings, gbuffer, shadows ? &*shadows : nullptr, frame.direct);
         done("direct light and shadows");
-        add_direct_light(gbuffer, light, threads, radiance);
+        add_direct_light(gbuffer, frame.direct, threads, radiance);
         recorder.record(&LightComponentImages::direct);
-        if (options.components != nullptr) recorder.record_shadowed(direct_light(data, settings, gbuffer, nullptr));
+        if (options.components != nullptr) {
+            compute_direct_light(data, settings, gbuffer, nullptr, frame.direct);
+            recorder.record_shadowed(frame.direct);
+        }
         done("shadow filter");
     }
     const bool occluded = settings.ambient_occlusion;
@@ -109,7 +112,8 @@ void shade_gbuffer(const RasterSceneData& data, const RasterSettings& settings, 
     }
     recorder.record(&LightComponentImages::environment);
     if (data.reflection_probes && parts.reflection) {
-        add_reflections(data, settings, gbuffer, data.reflection_probes.get(), radiance);
+        copy(radiance, threads, frame.unreflected);
+        add_reflections(data, settings, gbuffer, data.reflection_probes.get(), frame.unreflected, radiance);
         done("reflections");
         if (data.scene.needs.transmission) {
             add_refraction(data, settings, gbuffer, radiance);

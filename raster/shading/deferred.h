@@ -4,6 +4,7 @@
 #include "raster/gbuffer/gbuffer.h"
 #include "raster/geometry/geometry.h"
 #include "raster/geometry/tiles.h"
+#include "raster/lighting/direct_light.h"
 #include "raster/screen_space/gtao.h"
 #include "raster/shading/blended_layers.h"
 
@@ -30,7 +31,9 @@ struct LightComponentImages {
 struct DeferredFrame {
     std::optional<GBuffer> gbuffer;
     Planes3 radiance;
+    DirectLight direct;
     GtaoImage occlusion;
+    Planes3 unreflected; ///< the radiance before reflections, which read it at other pixels
     std::vector<std::pair<std::string, double>> seconds; ///< wall-clock time of each stage, in order
 
     /// Sets the size and the projection. The contents are undefined.

@@ -5,7 +5,7 @@
 #include "raster/geometry/geometry.h"
 #include "raster/visibility/depth_tile.h"
 
-#include "common/system/cache_aligned.h"
+#include "common/system/huge_pages.h"
 
 #include <algorithm>
 #include <array>

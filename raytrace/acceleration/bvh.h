@@ -5,7 +5,7 @@
 #include "common/geometry/shape.h"
 #include "common/vec/box.h"
 #include "common/vec/simd.h"
-#include "raytrace/acceleration/huge_pages.h"
+#include "common/system/huge_pages.h"
 
 #include <array>
 #include <cstdint>

@@ -102,7 +102,9 @@ struct Frame1 {
     }
     DirectLight light(int threads, const ShadowLookup* shadows = nullptr, std::size_t most = ChosenLights::kAll) {
         settings.threads = threads;
-        return direct_light(prepared->data(), settings, *gbuffer, shadows, {most});
+        DirectLight result;
+        compute_direct_light(prepared->data(), settings, *gbuffer, shadows, result, {most});
+        return result;
     }
     /// Evaluates all lights at all pixels.
     Planes3 all_lights() const {
