@@ -94,10 +94,4 @@ template <typename Visit> void for_each_batch(int width, int height, int threads
     });
 }
 
-/// Copies an image in parallel.
-inline void copy(const Planes3& from, int threads, Planes3& to) {
-    to.set_size(from.x.width(), from.x.height());
-    for_each_batch(from.x.width(), from.x.height(), threads, [&](int x, int y) { to.set(x, y, from.vector(x, y)); });
-}
-
 } // namespace duet::raster

@@ -6,6 +6,7 @@
 #include "common/system/parallel.h"
 
 #include <algorithm>
+#include <functional>
 
 namespace duet::raster {
 namespace {
@@ -37,16 +38,22 @@ OctahedralMap shape_of(const RasterSceneData& data, const RasterSettings& settin
 } // namespace
 
 GlassShapes::GlassShapes(const RasterSceneData& data, const RasterSettings& settings) {
+    const auto is_sphere = [&](std::uint32_t i) {
+        const Object& object = data.scene.objects[i];
+        return object.identity && std::holds_alternative<Sphere>(data.scene.shapes[object.shape]);
+    };
     std::vector<std::uint32_t> objects = data.glass;
+    const auto mapped = std::ranges::stable_partition(objects, is_sphere);
     const auto size = [&](std::uint32_t i) { return length(data.objects[i].bounds.diagonal()); };
-    std::stable_sort(objects.begin(), objects.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return size(a) > size(b); });
-    if (objects.size() > kMost) objects.resize(kMost);
+    std::ranges::stable_sort(mapped, std::ranges::greater(), size);
+    const std::size_t spheres = objects.size() - mapped.size();
+    if (mapped.size() > kMost) objects.resize(spheres + kMost);
     shapes_.resize(objects.size());
     of_object_.assign(data.scene.objects.size(), shapes_.size());
     parallel_for(objects.size(), settings.threads, [&](std::size_t i) {
         const Vec3d center(data.objects[objects[i]].bounds.center());
-        shapes_[i] = {center, shape_of(data, settings, objects[i], center)};
+        shapes_[i].center = center;
+        if (i >= spheres) shapes_[i].map = shape_of(data, settings, objects[i], center);
     });
     for (std::size_t i = 0; i < objects.size(); ++i) of_object_[objects[i]] = i;
 }
@@ -60,18 +67,23 @@ std::optional<GlassShapes::Exit> GlassShapes::exit(std::int32_t object, const Ve
     const Vec3s start = p + Vec3s{Floats(offset.x), Floats(offset.y), Floats(offset.z)};
     const Floats none(0.0f), across = dot(start, w);
     Floats t = max(-across, none) * Floats(2.0f); // of a sphere about the center
+    if (!shape.map) {
+        const Vec3s n = start + w * t;
+        return Exit{p + w * t, n * inverse_sqrt(max(dot(n, n), Floats(1e-20f))), t};
+    }
     for (int i = 0; i < kSteps; ++i) {
-        const Floats radius = shape.map.at<4>(start + w * t)[3];
+        const Floats radius = shape.map->at<4>(start + w * t)[3];
         t = max(xsimd::sqrt(max(radius * radius - dot(start, start) + across * across, none)) - across, none);
     }
-    const auto [x, y, z, distance] = shape.map.at<4>(start + w * t);
+    const auto [x, y, z, distance] = shape.map->at<4>(start + w * t);
     const Vec3s n{x, y, z};
     return Exit{p + w * t, n * inverse_sqrt(max(dot(n, n), Floats(1e-20f))), t};
 }
 
 std::size_t GlassShapes::memory_bytes() const {
     std::size_t sum = 0;
-    for (const Shape& shape : shapes_) sum += shape.map.memory_bytes();
+    for (const Shape& shape : shapes_)
+        if (shape.map) sum += shape.map->memory_bytes();
     return sum;
 }
 

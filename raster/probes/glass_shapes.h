@@ -1,6 +1,5 @@
 // The shapes of glass objects as seen from within: how far the surface is and which way it faces, in each direction
-// from
-// the object's center. A refracted ray finds there where it leaves.
+// from the object's center. A refracted ray finds there where it leaves.
 #pragma once
 
 #include "raster/probes/octahedral_map.h"
@@ -10,8 +9,8 @@
 
 namespace duet::raster {
 
-/// Holds the shapes of a scene's glass objects. A shape is exact if each ray from the center leaves it once, up to the
-/// map's resolution.
+/// Holds the shapes of a scene's glass objects. Spheres are exact. Other shapes are exact up to the resolution of a
+/// map, if each ray from the center leaves them once.
 class GlassShapes {
 public:
     GlassShapes(const RasterSceneData& data, const RasterSettings& settings);
@@ -28,12 +27,12 @@ public:
     std::size_t memory_bytes() const;
 
     static constexpr int kSide = 128;       ///< texels of a map
-    static constexpr std::size_t kMost = 24; ///< objects with a shape; the largest
+    static constexpr std::size_t kMost = 24; ///< objects with a map; the largest. Smaller ones have no shape
 
 private:
     struct Shape {
         Vec3d center;
-        OctahedralMap map; ///< outward normal and distance
+        std::optional<OctahedralMap> map; ///< outward normal and distance; a sphere needs none
     };
     std::vector<Shape> shapes_;
     std::vector<std::size_t> of_object_; ///< shapes_.size() if it has none

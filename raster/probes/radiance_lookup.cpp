@@ -11,12 +11,8 @@ using Mask = Floats::batch_bool_type;
 using Vec3s = Vec3T<Floats>;
 using Rgbs = RgbT<Floats>;
 
-/// Lobes narrower than this GGX width show the image's own pixels; wider ones would need them blurred.
+/// The dominant direction of lobes narrower than this GGX width meets the same surfaces as the mirrored direction.
 constexpr float kSharpest = 0.02f;
-/// Specular reflectance at normal incidence below which the diffuse light is most of what a pixel shows.
-constexpr float kMostlyDiffuse = 0.2f;
-/// A pixel shows a point if their depths differ by less than this fraction.
-constexpr float kDepthTolerance = 0.02f;
 
 } // namespace
 
@@ -39,8 +35,8 @@ struct RadianceLookup::Query {
 };
 
 RadianceLookup::RadianceLookup(const RasterSceneData& data, const GBuffer& gbuffer, const ReflectionProbes* probes,
-                               const Planes3& image, int x, int y)
-    : data_(data), gbuffer_(gbuffer), probes_(probes), image_(image) {
+                               int x, int y)
+    : data_(data), gbuffer_(gbuffer), probes_(probes) {
     load(gbuffer.object, x, y).store_aligned(objects_.data());
 }
 
@@ -71,37 +67,7 @@ Rgbs RadianceLookup::from_probe(std::size_t probe, const Query& query) const {
     const Mask sharp = query.alpha < Floats(kSharpest);
     // The axis of a wide lobe meets surfaces elsewhere.
     const Vec3s unit_axis = query.axis * inverse_sqrt(max(dot(query.axis, query.axis), Floats(1e-20f)));
-    const Rgbs from_map = query.at(probes_->map(probe), hit, xsimd::all(sharp) ? hit : trace(unit_axis, false));
-    if (!xsimd::any(sharp)) return from_map;
-    const Vec3 center = gbuffer_.projection.relative(probes_->center(probe));
-    return on_screen(hit + Vec3s{Floats(center.x), Floats(center.y), Floats(center.z)}, sharp, query.mirror, from_map);
-}
-
-/// Returns the image's pixels where they show the points q, relative to the eye. Only mirrors see what emits: the light
-/// that wider lobes reflect of it is direct light.
-Rgbs RadianceLookup::on_screen(const Vec3s& q, const Mask& lanes, const Mask& mirror, const Rgbs& otherwise) const {
-    const auto [xw, yw, depth, w] = gbuffer_.projection.homogeneous(q);
-    const Floats over = Floats(1.0f) / w, x = xw * over, y = yw * over, none(0.0f);
-    const Floats right(static_cast<float>(gbuffer_.width() - 1)), bottom(static_cast<float>(gbuffer_.height() - 1));
-    const Mask inside =
-        lanes & (depth > Floats(gbuffer_.projection.near())) & (x >= none) & (y >= none) & (x <= right) & (y <= bottom);
-    if (!xsimd::any(inside)) return otherwise;
-    const Ints index = truncated(xsimd::select(inside, y + Floats(0.5f), none)) * Ints(image_.x.stride()) +
-                       truncated(xsimd::select(inside, x + Floats(0.5f), none));
-    const Floats seen =
-        Floats(gbuffer_.projection.near()) / max(gather(gbuffer_.reversed_depth.row(0), index), Floats(1e-30f));
-    // The image does not hold reflections yet. Surfaces that mostly reflect are in the probe's map, with the
-    // environment's reflection.
-    const auto reflectance = [&](const PlaneFloat& plane) { return gather(plane.row(0), index); };
-    const Planes3& specular = gbuffer_.specular;
-    const Mask diffuse =
-        max(reflectance(specular.x), max(reflectance(specular.y), reflectance(specular.z))) < Floats(kMostlyDiffuse);
-    const Ints object = xsimd::max(gather(gbuffer_.object.row(0), index), Ints(0));
-    const Mask dark = mirror | xsimd::bool_cast(gather(data_.emits.data(), object) == Ints(0));
-    const Mask shows = inside & diffuse & dark & (abs(seen - depth) < Floats(kDepthTolerance) * depth);
-    return blend(shows,
-                 {gather(image_.x.row(0), index), gather(image_.y.row(0), index), gather(image_.z.row(0), index)},
-                 otherwise);
+    return query.at(probes_->map(probe), hit, xsimd::all(sharp) ? hit : trace(unit_axis, false));
 }
 
 } // namespace duet::raster

@@ -1,5 +1,4 @@
-// Looks up the radiance that arrives at points from given directions: from the image where it shows what the ray meets,
-// else from probes, else from the environment.
+// Looks up the radiance that arrives at points from given directions: from probes, or else from the environment.
 #pragma once
 
 #include "raster/geometry/lane_math.h"
@@ -12,10 +11,8 @@ namespace duet::raster {
 /// Serves one batch of pixels, whose objects select the probes.
 class RadianceLookup {
 public:
-    /// `probes` may be null: the environment alone arrives. `image` is the radiance of the pixels without what is
-    /// looked up here.
-    RadianceLookup(const RasterSceneData& data, const GBuffer& gbuffer, const ReflectionProbes* probes,
-                   const Planes3& image, int x, int y);
+    /// `probes` may be null: the environment alone arrives.
+    RadianceLookup(const RasterSceneData& data, const GBuffer& gbuffer, const ReflectionProbes* probes, int x, int y);
 
     /// Returns what arrives at points p relative to the eye from about the unit direction w, filtered by a GGX lobe of
     /// width alpha on a surface of normal n. Mirrors see the lights, wider lobes do not.
@@ -25,13 +22,10 @@ public:
 private:
     struct Query;
     RgbT<Floats> from_probe(std::size_t probe, const Query& query) const;
-    RgbT<Floats> on_screen(const Vec3T<Floats>& q, const xsimd::batch_bool<float>& lanes,
-                           const xsimd::batch_bool<float>& mirror, const RgbT<Floats>& otherwise) const;
 
     const RasterSceneData& data_;
     const GBuffer& gbuffer_;
     const ReflectionProbes* probes_;
-    const Planes3& image_;
     alignas(64) std::array<std::int32_t, Ints::size> objects_;
 };
 

@@ -17,7 +17,7 @@ using Rgbs = RgbT<Floats>;
 } // namespace
 
 void add_reflections(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
-                     const ReflectionProbes* probes, const Planes3& before, Planes3& radiance) {
+                     const ReflectionProbes* probes, Planes3& radiance) {
     constexpr int kBandRows = 8;
     parallel_for(static_cast<std::size_t>((gbuffer.height() + kBandRows - 1) / kBandRows), settings.threads,
                  [&](std::size_t band) {
@@ -36,7 +36,7 @@ void add_reflections(const RasterSceneData& data, const RasterSettings& settings
                 const Floats cosine = viewer_cosine(n, wo);
                 const Vec3s mirrored = n * (Floats(2.0f) * cosine) - wo;
                 const Vec3s p = gbuffer.points(x, y);
-                const RadianceLookup lookup(data, gbuffer, probes, before, x, y);
+                const RadianceLookup lookup(data, gbuffer, probes, x, y);
                 const Floats alpha = load(gbuffer.alpha, x, y);
                 Rgbs sum(zero);
                 if (xsimd::any(lanes))

@@ -10,9 +10,8 @@ namespace duet::raster {
 class ReflectionProbes; // raster/probes/reflection_probes.h
 
 /// Adds what the surfaces reflect of their surroundings, without the lights' own light on rough surfaces, which is
-/// direct light. Without probes the environment alone is reflected. With them, where a sharp reflection lies within the
-/// image, it shows the pixels of `before`, a copy of `radiance` before the call.
+/// direct light. Without probes the environment alone is reflected.
 void add_reflections(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
-                     const ReflectionProbes* probes, const Planes3& before, Planes3& radiance);
+                     const ReflectionProbes* probes, Planes3& radiance);
 
 } // namespace duet::raster

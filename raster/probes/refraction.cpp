@@ -89,7 +89,6 @@ private:
 
 void add_refraction(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
                     Planes3& radiance) {
-    const Planes3 before = radiance;
     for_each_batch(gbuffer.width(), gbuffer.height(), settings.threads, [&](int x, int y) {
         alignas(64) std::array<std::int32_t, Ints::size> objects, materials;
         load(gbuffer.object, x, y).store_aligned(objects.data());
@@ -108,7 +107,7 @@ void add_refraction(const RasterSceneData& data, const RasterSettings& settings,
             left &= ~own;
             const auto* glass = std::get_if<Dielectric>(&data.scene.materials[static_cast<std::size_t>(materials[i])]);
             if (glass == nullptr) continue;
-            if (!lookup) lookup.emplace(data, gbuffer, data.reflection_probes.get(), before, x, y);
+            if (!lookup) lookup.emplace(data, gbuffer, data.reflection_probes.get(), x, y);
             const Mask lanes = lanes_from<float>(own);
             sum = blend(lanes, GlassBatch(data, gbuffer, *lookup, x, y).through(objects[i], *glass, lanes), sum);
             any = true;

@@ -51,7 +51,7 @@ void add_reflected_light(const RasterSceneData& data, RasterSettings settings, P
     settings.threads = 1;
     for (ProbeCapture::Face& face : capture.faces()) {
         if (data.irradiance_probes) add_indirect_light(settings, face.gbuffer, *data.irradiance_probes, face.direct);
-        add_reflections(data, settings, face.gbuffer, nullptr, Planes3(), face.direct);
+        add_reflections(data, settings, face.gbuffer, nullptr, face.direct);
     }
 }
 

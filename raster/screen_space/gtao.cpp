@@ -24,6 +24,9 @@ constexpr float kFadeFrom = 0.75f;    ///< fraction of the radius at which horiz
 constexpr float kLeastCosine = 0.02f; ///< between normal and viewer; interpolated normals may face away
 constexpr int kBlock = 4;             ///< pixels of half resolution along a side, each with a direction of its own
 
+/// Returns the weight of a pixel at a distance along one axis: those half a block away repeat the same directions.
+constexpr float block_weight(int distance) { return distance == kBlock / 2 || distance == -kBlock / 2 ? 0.5f : 1.0f; }
+
 /// Returns arccos with an error of at most 7e-5 (Abramowitz and Stegun 1964, 4.4.45).
 Floats arc_cosine(const Floats& x) {
     const Floats a = min(abs(x), Floats(1.0f));
@@ -212,7 +215,8 @@ void GtaoImage::search_row(int y, float radius) {
     }
 }
 
-/// Averages a row over the 4 × 4 pixels about each, which together hold all directions.
+/// Averages a row over the 5 × 5 pixels about each. The outermost ones count half, so that each direction has the same
+/// weight, and the average changes little from one pixel to the next.
 void GtaoImage::filter_row(int y) {
     const ScreenProjection& projection = gbuffer_->projection;
     for (int x = 0; x < depth_.width(); x += static_cast<int>(Floats::size)) {
@@ -223,12 +227,13 @@ void GtaoImage::filter_row(int y) {
             Floats(kPlaneTolerance) * projection.pixel_size(Floats(projection.near()) / max(depth, Floats(1e-30f)));
         Floats all(0.0f), lost(0.0f);
         Vec3s hidden{Floats(0.0f), Floats(0.0f), Floats(0.0f)};
-        for (int dy = -kBlock / 2; dy < kBlock / 2; ++dy)
-            for (int dx = -kBlock / 2; dx < kBlock / 2; ++dx) {
+        for (int dy = -kBlock / 2; dy <= kBlock / 2; ++dy)
+            for (int dx = -kBlock / 2; dx <= kBlock / 2; ++dx) {
                 const Floats other = load_at(depth_, x + dx, y + dy);
                 const Floats alike = likeness(p, n, tolerance, point(x + dx, y + dy, other),
                                               load_at(normal_, x + dx, y + dy));
-                const Floats weight = xsimd::select(other > Floats(0.0f), alike, Floats(0.0f));
+                const Floats share(block_weight(dx) * block_weight(dy));
+                const Floats weight = xsimd::select(other > Floats(0.0f), alike * share, Floats(0.0f));
                 all += weight * load_at(all_, x + dx, y + dy);
                 lost += weight * load_at(lost_, x + dx, y + dy);
                 hidden += load_at(lost_directions_, x + dx, y + dy) * weight;

@@ -112,8 +112,7 @@ void shade_gbuffer(const RasterSceneData& data, const RasterSettings& settings, 
     }
     recorder.record(&LightComponentImages::environment);
     if (data.reflection_probes && parts.reflection) {
-        copy(radiance, threads, frame.unreflected);
-        add_reflections(data, settings, gbuffer, data.reflection_probes.get(), frame.unreflected, radiance);
+        add_reflections(data, settings, gbuffer, data.reflection_probes.get(), radiance);
         done("reflections");
         if (data.scene.needs.transmission) {
             add_refraction(data, settings, gbuffer, radiance);

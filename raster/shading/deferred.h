@@ -33,7 +33,6 @@ struct DeferredFrame {
     Planes3 radiance;
     DirectLight direct;
     GtaoImage occlusion;
-    Planes3 unreflected; ///< the radiance before reflections, which read it at other pixels
     std::vector<std::pair<std::string, double>> seconds; ///< wall-clock time of each stage, in order
 
     /// Sets the size and the projection. The contents are undefined.

@@ -6,6 +6,7 @@
 #include "raster/probes/radiance_map.h"
 #include "raster/probes/solid_test.h"
 #include "raster/raster_scene.h"
+#include "raytrace/render.h"
 
 #include "compare/stress/accelerated_scene.h"
 
@@ -200,5 +201,59 @@ TEST_SUITE("unit") {
                 CHECK(image(x, y).g < 1.05f * kRadiance);
             }
         CHECK(reflecting > 20);
+    }
+
+    TEST_CASE("glass spheres, however many, show the world upside down") {
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-50, 0, 50), Vec3(100, 0, 0), Vec3(0, 0, -100)}}}, Mat4(), Diffuse{{Rgb(0.02f)}});
+        constexpr int kColumns = 6, kRows = 5; // more spheres than GlassShapes has maps
+        const auto center = [](int column, int row) {
+            return Vec3(static_cast<float>(column) - 2.5f, 1.0f + static_cast<float>(row), 0);
+        };
+        for (int row = 0; row < kRows; ++row)
+            for (int column = 0; column < kColumns; ++column)
+                add(scene, Sphere{center(column, row), 0.3f}, Mat4(), Dielectric{1.5f});
+        scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        scene.camera = look({0, 3, 12}, {0, 3, 0}, 40);
+        finish_scene(scene);
+        const View view{scene.camera, 240, 240};
+        const ImageRgb image = render(scene, view, {}).radiance;
+        const double scale = 120 / (12 * std::tan(radians(20))); // pixels per meter in the plane of the centers
+        for (int row = 0; row < kRows; ++row)
+            for (int column = 0; column < kColumns; ++column) {
+                const Vec3 c = center(column, row);
+                const auto shown = [&](double above) {
+                    return image(static_cast<int>(120 + static_cast<double>(c.x) * scale),
+                                 static_cast<int>(120 - (static_cast<double>(c.y) - 3 + above) * scale));
+                };
+                CHECK(shown(-0.2).g > 0.8f);
+                CHECK(shown(0.2).g < 0.2f);
+            }
+    }
+
+    TEST_CASE("a mirror shows a small ball before it as large as the path tracer does") {
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-50, 0, 50), Vec3(100, 0, 0), Vec3(0, 0, -100)}}}, Mat4(), Diffuse{{Rgb(0.5f)}});
+        add(scene, Sphere{Vec3(0, 1, 0), 1}, Mat4(), Metal{{Rgb(1.0f)}, {0.0f}});
+        for (const float x : {-1.2f, 0.0f, 1.2f})
+            add(scene, Sphere{Vec3(x, 0.2f, 1.4f), 0.2f}, Mat4(), Diffuse{{Rgb(0.8f, 0.02f, 0.02f)}});
+        scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        scene.camera = look({0, 1.5, 5}, {0, 1, 0}, 30);
+        finish_scene(scene);
+        const View view{scene.camera, 200, 200};
+        raytrace::PathTracerSettings settings;
+        settings.samples_per_pixel = 16;
+        Control control;
+        const ImageRgb truth = raytrace::render(raytrace::prepare(scene, settings), view, settings, control).radiance,
+                       image = render(scene, view, {}).radiance;
+        const auto is_red = [](Rgb c) { return c.r > 2 * c.g; };
+        int red = 0, differ = 0;
+        for (int y = 0; y < 133; ++y) // the lowest row of the mirror above the balls themselves
+            for (int x = 0; x < 200; ++x) {
+                red += is_red(truth(x, y));
+                differ += is_red(truth(x, y)) != is_red(image(x, y));
+            }
+        CHECK(red > 100);
+        CHECK(differ < red / 4);
     }
 }
