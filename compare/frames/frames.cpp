@@ -4,7 +4,9 @@
 #include "common/image/srgb.h"
 #include "common/program/program.h"
 #include "common/program/statistics.h"
+#include "common/system/file.h"
 #include "compare/frames/cpu_affinity.h"
+#include "compare/frames/lit_frames.h"
 
 #include <algorithm>
 #include <iomanip>
@@ -150,20 +152,33 @@ int frames(const FramesOptions& options) {
     const std::vector<int> threads = thread_counts(options);
     if (!options.folder.empty()) std::filesystem::create_directories(options.folder);
     std::vector<MeshRows> meshes;
+    std::vector<LitScene> scenes;
     {
         ProgressBar bar("frames", options.quiet);
-        const double share = 1.0 / static_cast<double>(options.meshes.size());
-        for (std::size_t i = 0; i < options.meshes.size(); ++i) {
-            const Scene scene = frame_scene(options.meshes[i], options.texture);
-            MeshRows mesh{options.meshes[i].stem().string(), std::get<Mesh>(scene.shapes[0]).triangles.size(), {}};
+        const double share = 1.0 / static_cast<double>(options.files.size());
+        for (std::size_t i = 0; i < options.files.size(); ++i) {
+            if (lower_case_extension(options.files[i]) == ".json") {
+                FrameSettings settings = options.settings;
+                settings.stop = &interrupt.flag();
+                scenes.push_back(measure_lit_frames(options.files[i], threads, settings));
+                if (interrupt.raised()) return kExitInterrupted;
+                bar.update(static_cast<double>(i + 1) * share);
+                continue;
+            }
+            const Scene scene = frame_scene(options.files[i], options.texture);
+            MeshRows mesh{options.files[i].stem().string(), std::get<Mesh>(scene.shapes[0]).triangles.size(), {}};
             if (!measure_mesh(options, threads, mesh, scene, bar, static_cast<double>(i) * share, share, interrupt))
                 return kExitInterrupted;
             if (!options.folder.empty()) write_images(options.folder, mesh);
             meshes.push_back(std::move(mesh));
         }
     }
-    if (!options.quiet && options.stats != "-") print_table(std::cout, options, meshes);
-    json rows = json::array();
+    if (!options.quiet && options.stats != "-") {
+        if (!meshes.empty()) print_table(std::cout, options, meshes);
+        if (!scenes.empty()) print_lit_frames(std::cout, scenes, options.settings);
+    }
+    json rows = json::array(), lit = json::array();
+    for (const LitScene& scene : scenes) lit.push_back(lit_json(scene));
     int code = kExitOk;
     for (const MeshRows& mesh : meshes)
         for (const FrameRow& row : mesh.rows) {
@@ -179,7 +194,8 @@ int frames(const FramesOptions& options) {
                                    {"width", options.settings.width},
                                    {"height", options.settings.height},
                                    {"repeats", options.settings.repeats},
-                                   {"rows", rows}});
+                                   {"rows", rows},
+                                   {"lit", lit}});
     return code;
 }
 

@@ -10,7 +10,7 @@
 namespace duet::compare {
 
 struct FramesOptions {
-    std::vector<std::filesystem::path> meshes;
+    std::vector<std::filesystem::path> files; ///< meshes, and scene files (.json) for lit frames
     std::filesystem::path texture; ///< base color of all meshes; empty: gray. The peer does not support it
     std::vector<FrameView> views{FrameView::kWhole, FrameView::kClose};
     std::vector<FrameWork> works{FrameWork::kPhong, FrameWork::kDepth};
@@ -21,9 +21,9 @@ struct FramesOptions {
     bool quiet = false;           ///< no table, no progress bar
 };
 
-/// Prints a table of rows. Returns 1 if the rasterizer's image and the peer's differ, 130 after an interrupt
-/// signal. Throws Error for a mesh that cannot be used, and if the peer is requested (settings.peer) and built
-/// but cannot run.
+/// Prints a table of the meshes' rows, and one of the scenes'. Returns 1 if the rasterizer's image and the peer's
+/// differ, 130 after an interrupt signal. Throws Error for a file that cannot be used, and if the peer is requested
+/// (settings.peer) and built but cannot run.
 int frames(const FramesOptions& options);
 
 } // namespace duet::compare

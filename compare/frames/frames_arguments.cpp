@@ -35,7 +35,7 @@ void add_frames(CommandLine& program) {
     const auto size = std::make_shared<ImageSize>(ImageSize{0, 0});
     const auto no_peer = std::make_shared<bool>(false);
     FramesOptions& options = *all;
-    frames.add("MESH", options.meshes, "Meshes (.obj)").required();
+    frames.add("FILE", options.files, "Meshes (.obj), or scene files (.json) for lit frames").required();
     frames
         .add_parsed(
             "--view",
@@ -74,8 +74,10 @@ void add_frames(CommandLine& program) {
         std::string("A frame is: clear, transform, shade by Phong's model with interpolated normals, encode to "
                     "8-bit sRGB in memory; back faces are culled. Both draw the same mesh by the same matrices "
                     "under the same light; where their images differ the exit code is 1. A ratio above 1 is "
-                    "the rasterizer ahead.\n\nExample:\n  compare frames models/generated/octopus.obj "
-                    "--threads 1 --view close") +
+                    "the rasterizer ahead.\n\nOf a scene file, the time of preparation, of whole lit frames and of "
+                    "their stages is measured, without a peer; --view and --work are for meshes.\n\n"
+                    "Examples:\n  compare frames models/generated/octopus.obj --threads 1 --view close\n"
+                    "  compare frames models/cornell.json models/demo.json") +
         kExitCodes);
     frames.set_action([all, size, no_peer] {
         if (size->width > 0) {

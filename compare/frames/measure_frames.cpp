@@ -61,12 +61,6 @@ FrameDifference difference(const ImageFloat& ours, const ImageFloat& peer) {
     return {mismatched_fraction(ours, peer), common > 0 ? sum / static_cast<double>(common) : 0, 0};
 }
 
-double median(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    const std::size_t middle = values.size() / 2;
-    return values.size() % 2 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
-}
-
 /// Returns the CPU time that all threads of this process have used.
 double processor_seconds() {
     timespec time{};
@@ -76,14 +70,15 @@ double processor_seconds() {
 
 /// Draws frames for the duration of a burst and returns the seconds per frame.
 double time_burst(const std::function<void()>& draw, const FrameSettings& settings) {
-    const double start = processor_seconds();
+    const FrameClock clock(settings);
     const Stopwatch watch;
+    const double start = clock.seconds();
     int frames = 0;
     do {
         draw();
         ++frames;
     } while (watch.seconds() < settings.burst_seconds);
-    return (settings.processor_time ? processor_seconds() - start : watch.seconds()) / frames;
+    return (clock.seconds() - start) / frames;
 }
 
 void measure(FrameRow& row, const std::function<void()>& ours, const std::function<void()>& peer,
@@ -120,6 +115,15 @@ void compare_images_of_frame(FrameRow& row, const Rendering& ours, const ImageFl
 }
 
 } // namespace
+
+double FrameClock::seconds() const { return processor_time_ ? processor_seconds() : watch_.seconds(); }
+
+double median(std::vector<double> values) {
+    if (values.empty()) return 0;
+    std::sort(values.begin(), values.end());
+    const std::size_t middle = values.size() / 2;
+    return values.size() % 2 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
+}
 
 // Coverage may differ where an edge passes close to a sample. Both snap vertices to a grid of 1/256 pixel, but
 // the peer transforms them in float first. Elsewhere both shade the same point. The peer's sRGB curve is an

@@ -3,6 +3,7 @@
 
 #include "compare/frames/frame_scene.h"
 #include "compare/frames/llvmpipe.h"
+#include "common/system/stopwatch.h"
 #include "raster/render.h"
 
 #include <atomic>
@@ -43,6 +44,20 @@ struct FrameSettings {
     bool peer = true;      ///< measure the peer, if it is built
     const std::atomic<bool>* stop = nullptr;
 };
+
+/// Reads the clock that the settings choose: wall-clock time, or the CPU time of all threads of this process.
+class FrameClock {
+public:
+    explicit FrameClock(const FrameSettings& settings) : processor_time_(settings.processor_time) {}
+    double seconds() const; ///< since an arbitrary moment
+
+private:
+    bool processor_time_;
+    Stopwatch watch_;
+};
+
+/// Returns the median; 0 for no values.
+double median(std::vector<double> values);
 
 /// Measures the rows of one mesh, view and thread count, one per work in `works`. `prepared` must be prepared
 /// from `scene`. Makes fewer repeats if `stop` is set.

@@ -6,7 +6,6 @@
 #include "common/system/parallel.h"
 
 #include <algorithm>
-#include <functional>
 
 namespace duet::raster {
 namespace {
@@ -43,11 +42,11 @@ GlassShapes::GlassShapes(const RasterSceneData& data, const RasterSettings& sett
         return object.identity && std::holds_alternative<Sphere>(data.scene.shapes[object.shape]);
     };
     std::vector<std::uint32_t> objects = data.glass;
-    const auto mapped = std::ranges::stable_partition(objects, is_sphere);
+    const auto mapped = std::stable_partition(objects.begin(), objects.end(), is_sphere);
+    const auto spheres = static_cast<std::size_t>(mapped - objects.begin());
     const auto size = [&](std::uint32_t i) { return length(data.objects[i].bounds.diagonal()); };
-    std::ranges::stable_sort(mapped, std::ranges::greater(), size);
-    const std::size_t spheres = objects.size() - mapped.size();
-    if (mapped.size() > kMost) objects.resize(spheres + kMost);
+    std::stable_sort(mapped, objects.end(), [&](std::uint32_t a, std::uint32_t b) { return size(a) > size(b); });
+    if (objects.size() > spheres + kMost) objects.resize(spheres + kMost);
     shapes_.resize(objects.size());
     of_object_.assign(data.scene.objects.size(), shapes_.size());
     parallel_for(objects.size(), settings.threads, [&](std::size_t i) {

@@ -4,13 +4,18 @@ namespace duet::raster {
 namespace {
 
 using Vec3s = Vec3T<Floats>;
+using Mask = Floats::batch_bool_type;
 
 /// Steps that a ray takes from impostor to impostor. Three bring most rays within a texel.
 constexpr int kSteps = 4;
-/// Points of a ray that are searched where the steps do not end on a surface.
-constexpr int kSearched = 16;
-/// Relative differences of distances below this are a hit.
-constexpr float kTolerance = 0.03f;
+/// Points of a ray that are searched where the steps do not end on a surface, and bisections between two of them.
+constexpr int kSearched = 16, kBisections = 5;
+/// About three texels, as a fraction of the angle that a ray passes: lookups there do not read the silhouette itself.
+constexpr float kTexels = 0.03f;
+/// The background, in meters. Its square is still a float.
+constexpr float kFarthest = 1e15f;
+/// Relative differences of distances below the first are a hit, above the second the step at a silhouette.
+constexpr float kTolerance = 0.03f, kStep = 0.15f;
 
 /// Follows a batch of rays through a radiance map. Vectors are relative to the map's center.
 class ImpostorTracer {
@@ -20,8 +25,8 @@ public:
 
     Vec3s hit() const {
         Floats t = advance(map_.distance(w_, lights_), kSteps);
-        const auto lost = mismatch(t) > Floats(kTolerance);
-        if (xsimd::any(lost)) t = xsimd::select(lost, best_match(t), t);
+        const Mask lost = mismatch(t) > Floats(kTolerance);
+        if (xsimd::any(lost)) t = xsimd::select(lost, search(), t);
         return start_ + w_ * t;
     }
 
@@ -36,25 +41,56 @@ private:
         }
         return t;
     }
-    /// Returns by how much the distance of the point at t differs from that of the surface in its direction.
-    Floats mismatch(const Floats& t) const {
-        const Vec3s q = start_ + w_ * t;
-        const Floats distance = xsimd::sqrt(dot(q, q)), radius = map_.distance(q, lights_);
-        return abs(distance - radius) / max(min(distance, radius), Floats(1e-20f));
+    /// Returns the point at the fraction s of the angle between `start` and w, as t.
+    Floats at_fraction(const Floats& s) const {
+        return min(xsimd::sqrt(squared_) * s / max(Floats(1.0f) - s, Floats(1e-20f)), Floats(kFarthest));
     }
-    /// Returns the point whose distance matches best. Where an object hides from the center what the ray meets, that is
-    /// near the object's silhouette, on the surface behind.
-    Floats best_match(const Floats& otherwise) const {
-        const Floats length = xsimd::sqrt(squared_);
-        Floats best = otherwise, least = mismatch(otherwise);
-        for (int i = 1; i < kSearched; ++i) {
-            const float s = static_cast<float>(i) / kSearched; // even in angle between `start` and w
-            const Floats t = length * Floats(s / (1 - s)), difference = mismatch(t);
-            const auto better = difference < least;
-            best = xsimd::select(better, t, best), least = min(difference, least);
+    struct Depths {
+        Floats ray, surface; ///< distances from the center
+    };
+    Depths depths(const Floats& t) const {
+        const Vec3s q = start_ + w_ * t;
+        return {xsimd::sqrt(dot(q, q)), map_.distance(q, lights_)};
+    }
+    Floats mismatch(const Floats& t) const {
+        const auto [ray, surface] = depths(t);
+        return abs(ray - surface) / max(min(ray, surface), Floats(1e-20f));
+    }
+    /// Walks along the ray to where it first meets a surface that the map shows. If it ends behind one instead, the map
+    /// does not show what it meets; returns the point before the silhouette, in whose direction is what lies farther.
+    Floats search() const {
+        Floats before(0.0f), result(kFarthest); // where nothing hides the ray, it ends at the background
+        Mask found = before > before, hidden = found;
+        for (int i = 1; i <= kSearched && !xsimd::all(found); ++i) {
+            const Floats s(static_cast<float>(i) / kSearched);
+            const auto [ray, surface] = depths(at_fraction(s));
+            const Mask behind = ray > surface * Floats(1 + kTolerance), enters = behind & ~(hidden | found);
+            if (xsimd::any(enters)) {
+                const auto [front, back] = bisect(before, s);
+                const Floats t = at_fraction(back);
+                const auto [there, met] = depths(t);
+                const Mask hit = there < met * Floats(1 + kStep);
+                const Floats beside = at_fraction(max(front - Floats(kTexels), Floats(0.0f)));
+                result = xsimd::select(enters, xsimd::select(hit, t, beside), result);
+                found = found | (enters & hit);
+            }
+            result = xsimd::select(~(behind | found), Floats(kFarthest), result);
+            hidden = behind, before = s;
         }
-        const Floats refined = advance(best, 2);
-        return xsimd::select(mismatch(refined) < least, refined, best);
+        return result;
+    }
+    /// Narrows an interval of fractions from a point in front of the surfaces to one behind them.
+    struct Interval {
+        Floats front, back;
+    };
+    Interval bisect(Floats front, Floats back) const {
+        for (int i = 0; i < kBisections; ++i) {
+            const Floats middle = (front + back) * Floats(0.5f);
+            const auto [ray, surface] = depths(at_fraction(middle));
+            const Mask behind = ray > surface;
+            front = xsimd::select(behind, front, middle), back = xsimd::select(behind, middle, back);
+        }
+        return {front, back};
     }
 
     const RadianceMap& map_;

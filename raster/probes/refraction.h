@@ -8,7 +8,7 @@
 namespace duet::raster {
 
 /// Adds the light that arrives through glass: refracted on entry, where the ray leaves the object (GlassShapes), and
-/// then looked up in the object's reflection probe. Reflections are add_reflections()'s.
+/// then sampled in the object's reflection probe. Reflections are add_reflections()'s.
 void add_refraction(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
                     Planes3& radiance);
 

@@ -16,6 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 const fs::path kMesh = fs::path(DUET_SOURCE_DIR) / "models/meshes/pear.obj";
+const fs::path kScene = fs::path(DUET_SOURCE_DIR) / "models/cornell.json";
 
 /// Returns whether llvmpipe is available here. Otherwise there is nothing to compare with.
 bool has_peer(const Scene& scene) {
@@ -94,7 +95,7 @@ TEST_SUITE("unit") {
         const fs::path folder = fs::temp_directory_path() / ("duet-frames-" + std::to_string(getpid()));
         fs::create_directories(folder);
         FramesOptions options;
-        options.meshes = {kMesh};
+        options.files = {kMesh, kScene};
         options.views = {FrameView::kWhole};
         options.threads = {1};
         options.settings.width = 64;
@@ -107,7 +108,7 @@ TEST_SUITE("unit") {
         options.quiet = true;
         CHECK(frames(options) == 0);
         std::ifstream file(folder / "rows.json");
-        const nlohmann::json rows = nlohmann::json::parse(file).at("rows");
+        const nlohmann::json all = nlohmann::json::parse(file), &rows = all.at("rows");
         REQUIRE(rows.size() == 2);
         CHECK(rows[0].at("work") == "phong");
         CHECK(rows[1].at("work") == "depth");
@@ -120,6 +121,15 @@ TEST_SUITE("unit") {
             CHECK(row.at("peer").is_null());
         }
         CHECK(fs::exists(folder / "pear-whole-ours.png"));
+        const nlohmann::json lit = all.at("lit").at(0), row = lit.at("rows").at(0);
+        CHECK(lit.at("scene") == "cornell");
+        CHECK(lit.at("prepare_seconds").get<double>() > 0);
+        CHECK(row.at("threads") == 1);
+        CHECK(row.at("frame_seconds").get<double>() > 0);
+        CHECK(row.at("stages").at("direct light and shadows").get<double>() > 0);
+        double sum = 0;
+        for (const auto& [stage, seconds] : row.at("stages").items()) sum += seconds.get<double>();
+        CHECK(sum == doctest::Approx(row.at("frame_seconds").get<double>()).epsilon(0.5)); // a sum of medians
         fs::remove_all(folder);
     }
 }

@@ -1,0 +1,115 @@
+#include "compare/frames/lit_frames.h"
+
+#include "common/scene/scene.h"
+#include "common/system/stopwatch.h"
+#include "compare/frames/cpu_affinity.h"
+
+#include <algorithm>
+#include <iomanip>
+#include <map>
+#include <nlohmann/json.hpp>
+
+namespace duet::compare {
+namespace {
+
+raster::RasterSettings lit_settings(int threads) {
+    raster::RasterSettings settings;
+    settings.threads = threads;
+    settings.output = raster::Output::kSrgb8;
+    return settings;
+}
+
+LitRow measure_row(const raster::RasterScene& prepared, const View& view, int threads, const FrameSettings& settings) {
+    const CpuAffinity pinned(threads);
+    const raster::RasterSettings lit = lit_settings(threads);
+    const FrameClock clock(settings);
+    Control control;
+    Rendering image;
+    raster::render(prepared, view, lit, control, image); // touches the memory
+    std::vector<double> frames;
+    std::vector<std::string> names;
+    std::map<std::string, std::vector<double>> stages;
+    for (int i = 0; i < settings.repeats && !(settings.stop != nullptr && *settings.stop); ++i) {
+        const double start = clock.seconds();
+        raster::render(prepared, view, lit, control, image);
+        frames.push_back(clock.seconds() - start);
+        double rest = frames.back();
+        std::vector<std::pair<std::string, double>> these = image.statistics.seconds;
+        for (const auto& [name, seconds] : these) rest -= seconds;
+        these.emplace_back("other", rest);
+        for (const auto& [name, seconds] : these) {
+            if (stages[name].empty()) names.push_back(name);
+            stages[name].push_back(seconds);
+        }
+    }
+    LitRow row{threads, median(frames), {}};
+    for (const std::string& name : names) row.stages.emplace_back(name, median(stages[name]));
+    return row;
+}
+
+std::string milliseconds(double seconds) {
+    std::ostringstream text;
+    text << std::fixed << std::setprecision(1) << 1000 * seconds;
+    return text.str();
+}
+
+/// Returns the speedup of a row over one processor, or "-" if that was not measured.
+std::string scaling(const LitScene& scene, const LitRow& row) {
+    for (const LitRow& one : scene.rows)
+        if (one.threads == 1 && row.threads > 1) {
+            std::ostringstream text;
+            text << std::fixed << std::setprecision(2) << one.frame / row.frame;
+            return text.str();
+        }
+    return "-";
+}
+
+} // namespace
+
+LitScene measure_lit_frames(const std::filesystem::path& path, const std::vector<int>& threads,
+                            const FrameSettings& settings) {
+    const Scene scene = load_scene(path);
+    const Stopwatch watch;
+    const raster::RasterScene prepared = raster::prepare(scene, lit_settings(threads.back()));
+    LitScene result{path.stem().string(), watch.seconds(), {}};
+    const View view{scene.camera, settings.width, settings.height};
+    for (const int count : threads) result.rows.push_back(measure_row(prepared, view, count, settings));
+    return result;
+}
+
+void print_lit_frames(std::ostream& out, const std::vector<LitScene>& scenes, const FrameSettings& settings) {
+    constexpr int kName = 16, kColumn = 9;
+    out << "Lit frames of " << settings.width << "x" << settings.height << " pixels, one sample a pixel: milliseconds ("
+        << "medians of " << settings.repeats << ")\n"
+        << std::left << std::setw(kName) << "scene" << std::right;
+    for (const char* column : {"threads", "prepare", "frame", "scaling"}) out << std::setw(kColumn) << column;
+    out << '\n';
+    for (const LitScene& scene : scenes)
+        for (const LitRow& row : scene.rows)
+            out << std::left << std::setw(kName) << scene.name << std::right << std::setw(kColumn) << row.threads
+                << std::setw(kColumn) << milliseconds(scene.prepare) << std::setw(kColumn) << milliseconds(row.frame)
+                << std::setw(kColumn) << scaling(scene, row) << '\n';
+    for (const LitScene& scene : scenes) {
+        const LitRow& row = scene.rows.back();
+        out << scene.name << ", " << row.threads << (row.threads == 1 ? " thread:" : " threads:");
+        const char* separator = " ";
+        for (const auto& [name, seconds] : row.stages) {
+            if (seconds < 5e-5) continue;
+            out << separator << name << ' ' << milliseconds(seconds);
+            separator = ", ";
+        }
+        out << '\n';
+    }
+}
+
+nlohmann::json lit_json(const LitScene& scene) {
+    nlohmann::json rows = nlohmann::json::array();
+    for (const LitRow& row : scene.rows) {
+        nlohmann::json stages = nlohmann::json::object();
+        for (const auto& [name, seconds] : row.stages) stages[name] = seconds;
+        rows.push_back({{"threads", row.threads}, {"frame_seconds", row.frame}, {"stages", stages}});
+    }
+    return {{"scene", scene.name}, {"prepare_seconds", scene.prepare}, {"rows", rows}};
+}
+
+} // namespace duet::compare
