@@ -116,7 +116,8 @@ void prepare_probes(const RasterSettings& settings, RasterSceneData& data) {
     data.reflection_probes = std::make_shared<const ReflectionProbes>(data, settings);
     data.glass_shapes = std::make_shared<const GlassShapes>(data, settings);
     data.memory_bytes += static_cast<std::int64_t>(data.environment_map->memory_bytes() +
-                                                   data.reflection_probes->memory_bytes());
+                                                   data.reflection_probes->memory_bytes() +
+                                                   data.glass_shapes->memory_bytes());
 }
 
 /// Renders what Shading::kLit reads: shadow maps, then the probes, whose light they shadow.
@@ -145,7 +146,8 @@ RasterScene prepare(const Scene& scene, const RasterSettings& settings) {
         const Shape& shape = scene.shapes[object.shape];
         data.objects.push_back(prepare_object(scene, object));
         const auto emits = [&](std::uint32_t material) { return emitter(scene.materials[material]) != nullptr; };
-        data.emits.push_back(std::ranges::any_of(object.materials, emits) ? 1 : 0);
+        const bool object_emits = std::ranges::any_of(object.materials, emits);
+        data.any_emits = data.any_emits || object_emits;
         if (std::ranges::all_of(object.materials, emits)) data.emitters.push_back(i);
         const bool sphere = std::holds_alternative<Sphere>(shape);
         if (can_be_seen_through(scene, object))
@@ -155,8 +157,7 @@ RasterScene prepare(const Scene& scene, const RasterSettings& settings) {
         if (all_glass(scene, object) && !can_be_seen_through(scene, object)) data.glass.push_back(i);
         data.primitives += primitive_count(shape);
         const bool stretched = std::holds_alternative<Sphere>(shape) && surface_light_index(scene, i, 0) < 0;
-        data.unsampled_emitters =
-            data.unsampled_emitters || ((object.moving || stretched) && data.emits.back() == 1);
+        data.unsampled_emitters = data.unsampled_emitters || ((object.moving || stretched) && object_emits);
     }
     std::size_t packed = 0;
     for (const PackedShape& shape : data.shapes)

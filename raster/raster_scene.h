@@ -35,7 +35,7 @@ class GlassShapes; // raster/probes/glass_shapes.h
 struct RasterSceneData {
     const Scene& scene;
     std::vector<RasterObject> objects;    ///< parallel to Scene::objects
-    std::vector<std::int32_t> emits{};    ///< parallel to Scene::objects: 1 if any of its materials emits, else 0
+    bool any_emits = false;               ///< whether any surface emits light
     std::vector<std::uint32_t> emitters{}; ///< indices of the objects all of whose materials emit, in order
     std::vector<std::uint32_t> polygonal; ///< indices of the mesh and quad objects, in order
     std::vector<std::uint32_t> spheres;   ///< indices of the sphere objects, in order

@@ -4,6 +4,7 @@
 #include "common/image/srgb.h"
 #include "common/program/program.h"
 #include "common/program/statistics.h"
+#include "common/system/error.h"
 #include "common/system/file.h"
 #include "compare/frames/cpu_affinity.h"
 #include "compare/frames/lit_frames.h"
@@ -52,14 +53,6 @@ json row_json(const MeshRows& mesh, const FrameRow& row) {
     return result;
 }
 
-std::string fixed(double value, int digits) {
-    std::ostringstream text;
-    text << std::fixed << std::setprecision(digits) << value;
-    return text.str();
-}
-
-std::string milliseconds(double seconds) { return fixed(1000 * seconds, seconds < 0.01 ? 2 : 1); }
-
 std::string difference_text(const FrameRow& row) {
     if (!row.difference) return "";
     const FrameDifference& d = *row.difference;
@@ -105,11 +98,16 @@ void print_table(std::ostream& out, const FramesOptions& options, const std::vec
     out << (LlvmpipeRenderer::built() ? "no peer was requested\n" : "no peer: this program was built without EGL\n");
 }
 
+/// Writes an image of sRGB-encoded values.
+void write_encoded(const std::filesystem::path& path, ImageRgb image) {
+    for (Rgb& pixel : image.pixels()) pixel = {srgb_decode(pixel.r), srgb_decode(pixel.g), srgb_decode(pixel.b)};
+    write_image(path, image);
+}
+
 void write_images(const std::filesystem::path& folder, const MeshRows& mesh) {
-    const auto write = [&](const FrameRow& row, const char* whose, ImageRgb image) {
+    const auto write = [&](const FrameRow& row, const char* whose, const ImageRgb& image) {
         if (image.empty()) return;
-        for (Rgb& pixel : image.pixels()) pixel = {srgb_decode(pixel.r), srgb_decode(pixel.g), srgb_decode(pixel.b)};
-        write_image(folder / (mesh.mesh + "-" + name(row.view) + "-" + whose + ".png"), image);
+        write_encoded(folder / (mesh.mesh + "-" + name(row.view) + "-" + whose + ".png"), image);
     };
     for (const FrameRow& row : mesh.rows) {
         if (row.threads != mesh.rows.front().threads) continue;
@@ -117,6 +115,8 @@ void write_images(const std::filesystem::path& folder, const MeshRows& mesh) {
         write(row, "peer", row.peer_image);
     }
 }
+
+bool is_scene(const std::filesystem::path& file) { return lower_case_extension(file) == ".json"; }
 
 /// Measures all rows of a mesh. Returns false after an interrupt signal.
 bool measure_mesh(const FramesOptions& options, const std::vector<int>& threads, MeshRows& mesh, const Scene& scene,
@@ -148,6 +148,9 @@ std::vector<int> thread_counts(const FramesOptions& options) {
 
 int frames(const FramesOptions& options) {
     check_json_path(options.stats);
+    if (!options.texture.empty())
+        for (const std::filesystem::path& file : options.files)
+            if (is_scene(file)) throw Error(message("--texture: found the scene ", file, ", expected meshes alone"));
     const InterruptFlag interrupt;
     const std::vector<int> threads = thread_counts(options);
     if (!options.folder.empty()) std::filesystem::create_directories(options.folder);
@@ -157,11 +160,13 @@ int frames(const FramesOptions& options) {
         ProgressBar bar("frames", options.quiet);
         const double share = 1.0 / static_cast<double>(options.files.size());
         for (std::size_t i = 0; i < options.files.size(); ++i) {
-            if (lower_case_extension(options.files[i]) == ".json") {
+            if (is_scene(options.files[i])) {
                 FrameSettings settings = options.settings;
                 settings.stop = &interrupt.flag();
                 scenes.push_back(measure_lit_frames(options.files[i], threads, settings));
                 if (interrupt.raised()) return kExitInterrupted;
+                if (!options.folder.empty())
+                    write_encoded(options.folder / (scenes.back().name + "-lit.png"), scenes.back().image);
                 bar.update(static_cast<double>(i + 1) * share);
                 continue;
             }

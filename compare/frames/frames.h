@@ -16,7 +16,7 @@ struct FramesOptions {
     std::vector<FrameWork> works{FrameWork::kPhong, FrameWork::kDepth};
     std::vector<int> threads; ///< thread counts; empty: 1 and all processors
     FrameSettings settings;
-    std::filesystem::path folder; ///< output folder for both renderers' images; empty: none
+    std::filesystem::path folder; ///< output folder for all images; empty: none
     std::string stats;            ///< file for the rows as JSON; "-" for standard output; empty: none
     bool quiet = false;           ///< no table, no progress bar
 };

@@ -4,7 +4,6 @@
 #include "common/system/stopwatch.h"
 #include "compare/frames/cpu_affinity.h"
 
-#include <algorithm>
 #include <iomanip>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -19,21 +18,22 @@ raster::RasterSettings lit_settings(int threads) {
     return settings;
 }
 
-LitRow measure_row(const raster::RasterScene& prepared, const View& view, int threads, const FrameSettings& settings) {
+LitRow measure_row(const raster::RasterScene& prepared, const View& view, int threads, const FrameSettings& settings,
+                   Rendering& image) {
     const CpuAffinity pinned(threads);
     const raster::RasterSettings lit = lit_settings(threads);
     const FrameClock clock(settings);
     Control control;
-    Rendering image;
     raster::render(prepared, view, lit, control, image); // touches the memory
     std::vector<double> frames;
     std::vector<std::string> names;
     std::map<std::string, std::vector<double>> stages;
     for (int i = 0; i < settings.repeats && !(settings.stop != nullptr && *settings.stop); ++i) {
         const double start = clock.seconds();
+        const Stopwatch watch;
         raster::render(prepared, view, lit, control, image);
+        double rest = watch.seconds();
         frames.push_back(clock.seconds() - start);
-        double rest = frames.back();
         std::vector<std::pair<std::string, double>> these = image.statistics.seconds;
         for (const auto& [name, seconds] : these) rest -= seconds;
         these.emplace_back("other", rest);
@@ -47,20 +47,10 @@ LitRow measure_row(const raster::RasterScene& prepared, const View& view, int th
     return row;
 }
 
-std::string milliseconds(double seconds) {
-    std::ostringstream text;
-    text << std::fixed << std::setprecision(1) << 1000 * seconds;
-    return text.str();
-}
-
 /// Returns the speedup of a row over one processor, or "-" if that was not measured.
 std::string scaling(const LitScene& scene, const LitRow& row) {
     for (const LitRow& one : scene.rows)
-        if (one.threads == 1 && row.threads > 1) {
-            std::ostringstream text;
-            text << std::fixed << std::setprecision(2) << one.frame / row.frame;
-            return text.str();
-        }
+        if (one.threads == 1 && row.threads > 1) return fixed(one.frame / row.frame, 2);
     return "-";
 }
 
@@ -69,11 +59,18 @@ std::string scaling(const LitScene& scene, const LitRow& row) {
 LitScene measure_lit_frames(const std::filesystem::path& path, const std::vector<int>& threads,
                             const FrameSettings& settings) {
     const Scene scene = load_scene(path);
-    const Stopwatch watch;
-    const raster::RasterScene prepared = raster::prepare(scene, lit_settings(threads.back()));
-    LitScene result{path.stem().string(), watch.seconds(), {}};
+    LitScene result;
+    result.name = path.stem().string();
+    const FrameClock clock(settings);
+    const auto prepared = [&] {
+        const CpuAffinity pinned(threads.back());
+        return raster::prepare(scene, lit_settings(threads.back()));
+    }();
+    result.prepare = clock.seconds();
     const View view{scene.camera, settings.width, settings.height};
-    for (const int count : threads) result.rows.push_back(measure_row(prepared, view, count, settings));
+    Rendering image;
+    for (const int count : threads) result.rows.push_back(measure_row(prepared, view, count, settings, image));
+    result.image = encoded_values(image.srgb);
     return result;
 }
 

@@ -16,13 +16,15 @@ namespace duet::compare {
 /// Medians over the repeats, in seconds.
 struct LitRow {
     int threads = 1;
-    double frame = 0;
-    std::vector<std::pair<std::string, double>> stages; ///< in the order of the frame; "other" is the rest
+    double frame = 0; ///< by the clock of FrameSettings
+    /// Wall-clock time of the stages, in the order of the frame. "other" is the rest of the frame.
+    std::vector<std::pair<std::string, double>> stages;
 };
 struct LitScene {
     std::string name;
     double prepare = 0; ///< seconds, once per scene, with the last row's threads
     std::vector<LitRow> rows;
+    ImageRgb image; ///< sRGB-encoded values
 };
 
 /// Renders frames of a scene from its own camera, one sample per pixel, and encodes them to 8-bit sRGB in memory. The

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <ctime>
 #include <functional>
+#include <iomanip>
+#include <sstream>
 
 namespace duet::compare {
 namespace {
@@ -20,14 +22,6 @@ raster::RasterSettings settings_for(FrameWork work, int threads) {
     settings.shading = raster::Shading::kPhong;
     settings.output = work == FrameWork::kPhong ? raster::Output::kSrgb8 : raster::Output::kReversedDepth;
     return settings;
-}
-
-ImageRgb encoded_values(const Image<Rgba8>& image) {
-    ImageRgb result(image.width(), image.height());
-    const auto value = [](std::uint8_t code) { return static_cast<float>(code) / 255; };
-    for (std::size_t i = 0; i < result.size(); ++i)
-        result[i] = {value(image[i].r), value(image[i].g), value(image[i].b)};
-    return result;
 }
 
 double covered_fraction(const ImageFloat& reversed_depth) {
@@ -72,13 +66,12 @@ double processor_seconds() {
 double time_burst(const std::function<void()>& draw, const FrameSettings& settings) {
     const FrameClock clock(settings);
     const Stopwatch watch;
-    const double start = clock.seconds();
     int frames = 0;
     do {
         draw();
         ++frames;
     } while (watch.seconds() < settings.burst_seconds);
-    return (clock.seconds() - start) / frames;
+    return clock.seconds() / frames;
 }
 
 void measure(FrameRow& row, const std::function<void()>& ours, const std::function<void()>& peer,
@@ -116,7 +109,26 @@ void compare_images_of_frame(FrameRow& row, const Rendering& ours, const ImageFl
 
 } // namespace
 
-double FrameClock::seconds() const { return processor_time_ ? processor_seconds() : watch_.seconds(); }
+FrameClock::FrameClock(const FrameSettings& settings)
+    : processor_time_(settings.processor_time), start_(processor_time_ ? processor_seconds() : 0) {}
+
+double FrameClock::seconds() const { return processor_time_ ? processor_seconds() - start_ : watch_.seconds(); }
+
+ImageRgb encoded_values(const Image<Rgba8>& image) {
+    ImageRgb result(image.width(), image.height());
+    const auto value = [](std::uint8_t code) { return static_cast<float>(code) / 255; };
+    for (std::size_t i = 0; i < result.size(); ++i)
+        result[i] = {value(image[i].r), value(image[i].g), value(image[i].b)};
+    return result;
+}
+
+std::string fixed(double value, int digits) {
+    std::ostringstream text;
+    text << std::fixed << std::setprecision(digits) << value;
+    return text.str();
+}
+
+std::string milliseconds(double seconds) { return fixed(1000 * seconds, seconds < 0.01 ? 2 : 1); }
 
 double median(std::vector<double> values) {
     if (values.empty()) return 0;

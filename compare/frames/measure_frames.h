@@ -48,16 +48,23 @@ struct FrameSettings {
 /// Reads the clock that the settings choose: wall-clock time, or the CPU time of all threads of this process.
 class FrameClock {
 public:
-    explicit FrameClock(const FrameSettings& settings) : processor_time_(settings.processor_time) {}
-    double seconds() const; ///< since an arbitrary moment
+    explicit FrameClock(const FrameSettings& settings);
+    double seconds() const; ///< since construction
 
 private:
     bool processor_time_;
+    double start_;
     Stopwatch watch_;
 };
 
 /// Returns the median; 0 for no values.
 double median(std::vector<double> values);
+
+/// Converts 8-bit values to fractions of 255.
+ImageRgb encoded_values(const Image<Rgba8>& image);
+
+std::string fixed(double value, int digits); ///< prints this number of digits after the point
+std::string milliseconds(double seconds);
 
 /// Measures the rows of one mesh, view and thread count, one per work in `works`. `prepared` must be prepared
 /// from `scene`. Makes fewer repeats if `stop` is set.

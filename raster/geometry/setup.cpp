@@ -8,15 +8,27 @@
 #include <utility>
 
 namespace duet::raster {
+// The error of the determinant is that of the local vertices, whose subtractions have rounded numbers as large as the
+// vertices in the image, times the e that they are multiplied with.
+double Interpolation::rounding_error(const std::array<const PixelVertex*, 3>& corners) const {
+    constexpr double kRoundoffs = 4 * std::numeric_limits<double>::epsilon();
+    double sum = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const PixelVertex& v = *corners[i];
+        const Vec3d terms(std::abs(v.xw) + std::abs(origin_x * v.w), std::abs(v.yw) + std::abs(origin_y * v.w),
+                          std::abs(v.w));
+        sum += dot(terms, abs(e[i]));
+    }
+    return kRoundoffs * sum;
+}
+
 Interpolation::Interpolation(const PixelVertex& a, const PixelVertex& b, const PixelVertex& c, FixedPoint beside)
     : origin_x(floor_pixel(beside.x)), origin_y(floor_pixel(beside.y)), depth(a.depth, b.depth, c.depth) {
     const auto local = [&](const PixelVertex& v) { return Vec3d(v.xw - origin_x * v.w, v.yw - origin_y * v.w, v.w); };
     vertices = {local(a), local(b), local(c)};
     e = {cross(vertices[1], vertices[2]), cross(vertices[2], vertices[0]), cross(vertices[0], vertices[1])};
     const double determinant = dot(vertices[0], e[0]);
-    constexpr double kRounding = 1e-15; // of the determinant, relative to its two factors
-    is_edge_on = determinant * determinant <=
-                 kRounding * kRounding * dot(vertices[0], vertices[0]) * dot(e[0], e[0]);
+    is_edge_on = std::abs(determinant) <= rounding_error({&a, &b, &c});
     if (determinant < 0) e = {-e[0], -e[1], -e[2]};
 }
 
@@ -57,8 +69,8 @@ Vec2d Interpolation::nearest_on_boundary(Vec2d p) const {
     return nearest;
 }
 
-// Seen edge-on, a triangle is a segment in the image, with two points of its edges at each position along it.
-// A sample beside the segment shows the nearer one.
+// Seen edge-on, a triangle is a segment in the image, with two points of its edges at each position along it. A sample
+// beside the segment shows the nearer one, a sample beyond it the nearest corner.
 Interpolated Interpolation::edge_on(Vec2d p) const {
     const auto steepness = [](const Vec3d& edge) { return edge.x * edge.x + edge.y * edge.y; };
     const Vec3d line = *std::ranges::max_element(e, {}, steepness);
@@ -67,17 +79,20 @@ Interpolated Interpolation::edge_on(Vec2d p) const {
         along[i] = (vertices[i].y - p.y * vertices[i].z) * line.x - (vertices[i].x - p.x * vertices[i].z) * line.y;
     std::pair least(std::numeric_limits<double>::infinity(), 0.0); // distance along the segment, then depth
     Interpolated nearest{1, 0, 0, 1, depth.x};
+    const auto offer = [&](std::size_t i, std::size_t j, double s, double distance) {
+        const double its_depth = lerp(depth[i], depth[j], s);
+        if (!(std::pair(distance, its_depth) < least)) return;
+        least = {distance, its_depth};
+        std::array<double, 3> b{};
+        b[i] = 1 - s, b[j] += s;
+        nearest = {b[0], b[1], b[2], 1, its_depth};
+    };
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t j = (i + 1) % 3;
-        const bool level = (along[i] < 0) != (along[j] < 0); // the sample lies between the ends
-        const double s = level ? along[i] / (along[i] - along[j]) : std::abs(along[i]) < std::abs(along[j]) ? 0.0 : 1.0;
-        const double w = lerp(vertices[i].z, vertices[j].z, s), its_depth = lerp(depth[i], depth[j], s);
-        const std::pair here(level ? 0.0 : std::abs(lerp(along[i], along[j], s)) / w, its_depth);
-        if (!(w > 0 && here < least)) continue; // beyond another point, or behind the eye
-        least = here;
-        std::array<double, 3> b{};
-        b[i] = 1 - s, b[j] = s;
-        nearest = {b[0], b[1], b[2], 1, its_depth};
+        if (vertices[i].z > 0) offer(i, j, 0, std::abs(along[i]) / vertices[i].z); // not behind the eye
+        if ((along[i] < 0) == (along[j] < 0)) continue; // both ends lie on the same side of the sample
+        const double s = along[i] / (along[i] - along[j]);
+        if (lerp(vertices[i].z, vertices[j].z, s) > 0) offer(i, j, s, 0);
     }
     return nearest;
 }
@@ -116,6 +131,7 @@ Interpolated Interpolation::at(Vec2d pixel, TriangleKind triangle_kind) const {
         result = {std::max(0.0, value(0)), std::max(0.0, value(1)), std::max(0.0, value(2)), 0, 0};
     }
     result.sum = result.b0 + result.b1 + result.b2;
+    if (!(result.sum > 0)) return edge_on({pixel.x - origin_x, pixel.y - origin_y});
     result.depth_sum = result.b0 * depth.x + result.b1 * depth.y + result.b2 * depth.z;
     return result;
 }

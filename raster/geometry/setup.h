@@ -84,6 +84,7 @@ private:
     Vec2d mirrored_inside(Vec2d p) const;
     Vec2d nearest_on_boundary(Vec2d p) const;
     Interpolated edge_on(Vec2d p) const;
+    double rounding_error(const std::array<const PixelVertex*, 3>& corners) const;
 };
 
 /// Represents a triangle of a mesh, or one half of a quad, before clipping.

@@ -11,7 +11,7 @@ bool shows_environment(const RasterSceneData& data, const RasterSettings& settin
 
 bool is_dark(const RasterSceneData& data, const RasterSettings& settings) {
     return data.scene.lights.empty() && !shows_environment(data, settings) &&
-           std::ranges::none_of(data.emits, [](auto emits) { return emits != 0; });
+           !data.any_emits;
 }
 
 std::optional<Rgb> constant_background(const RasterSceneData& data, const RasterSettings& settings) {

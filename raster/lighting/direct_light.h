@@ -18,6 +18,10 @@ struct DirectLight {
     /// together, which may be filtered without blurring the surfaces (Heitz, Hill and McGuire 2018, "Combining Analytic
     /// Direct Illumination and Stochastic Shadows").
     Planes3 unshadowed, shadowed;
+
+    std::size_t memory_bytes() const {
+        return exact.memory_bytes() + unshadowed.memory_bytes() + shadowed.memory_bytes();
+    }
 };
 
 /// Says how many lights stand for all. If a cluster of pixels has more near lights than `most`, about so many are

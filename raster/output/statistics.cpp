@@ -110,7 +110,7 @@ std::vector<std::string> approximations(const RasterSceneData& data, const Raste
                "Diffuse surfaces receive the environment image's spherical harmonics up to the second order.");
     }
     add_if(parts.reflection && data.reflection_probes != nullptr,
-           "Reflections show the image's pixels, or probes that see the scene from one point per object.");
+           "Reflections show probes that see the scene from one point per object.");
     add_if(parts.reflection && needs.transmission,
            "Glass refracts once on entry and once on exit, and casts no caustics.");
     add_if(parts.direct && needs.glossy && needs.surface_lights,

@@ -3,6 +3,7 @@
 #include "raster/prepare_limits.h"
 #include "raster/probes/probe_capture.h"
 
+#include "common/scene/bake.h"
 #include "common/system/parallel.h"
 
 #include <algorithm>
@@ -34,15 +35,18 @@ OctahedralMap shape_of(const RasterSceneData& data, const RasterSettings& settin
     return map;
 }
 
+bool is_sphere(const Scene& scene, std::uint32_t index) {
+    const Object& object = scene.objects[index];
+    const auto* sphere = std::get_if<Sphere>(&scene.shapes[object.shape]);
+    return sphere != nullptr && !object.moving && (object.identity || transformed(*sphere, object.to_world));
+}
+
 } // namespace
 
 GlassShapes::GlassShapes(const RasterSceneData& data, const RasterSettings& settings) {
-    const auto is_sphere = [&](std::uint32_t i) {
-        const Object& object = data.scene.objects[i];
-        return object.identity && std::holds_alternative<Sphere>(data.scene.shapes[object.shape]);
-    };
     std::vector<std::uint32_t> objects = data.glass;
-    const auto mapped = std::stable_partition(objects.begin(), objects.end(), is_sphere);
+    const auto mapped = std::stable_partition(objects.begin(), objects.end(),
+                                              [&](std::uint32_t i) { return is_sphere(data.scene, i); });
     const auto spheres = static_cast<std::size_t>(mapped - objects.begin());
     const auto size = [&](std::uint32_t i) { return length(data.objects[i].bounds.diagonal()); };
     std::stable_sort(mapped, objects.end(), [&](std::uint32_t a, std::uint32_t b) { return size(a) > size(b); });

@@ -9,8 +9,8 @@
 
 namespace duet::raster {
 
-/// Holds the shapes of a scene's glass objects. Spheres are exact. Other shapes are exact up to the resolution of a
-/// map, if each ray from the center leaves them once.
+/// Holds the shapes of a scene's glass objects. Spheres at rest are exact. Other shapes are exact up to the resolution
+/// of a map, if each ray from the center leaves them once.
 class GlassShapes {
 public:
     GlassShapes(const RasterSceneData& data, const RasterSettings& settings);

@@ -53,14 +53,17 @@ Rgbs RadianceLookup::operator()(const Vec3s& p, const Vec3s& n, const Vec3s& w, 
             if (probes_->probe_of(objects_[static_cast<std::size_t>(i)]) == probe) own |= 1u << i;
         }
         left &= ~own;
-        result = blend(lanes_from<float>(own), from_probe(probe, query), result);
+        const Mask of_probe = lanes_from<float>(own);
+        result = blend(of_probe, from_probe(probe, query, of_probe), result);
     }
     return result;
 }
 
-Rgbs RadianceLookup::from_probe(std::size_t probe, const Query& query) const {
+Rgbs RadianceLookup::from_probe(std::size_t probe, const Query& query, const Mask& lanes) const {
     const Vec3d eye = gbuffer_.projection.eye();
-    const auto trace = [&](const Vec3s& w, bool lights) { return probes_->trace(probe, eye, query.p, w, lights); };
+    const auto trace = [&](const Vec3s& w, bool lights) {
+        return probes_->trace(probe, eye, query.p, w, lights, lanes);
+    };
     Vec3s hit = trace(query.w, xsimd::all(query.mirror));
     if (probes_->map(probe).has_lights() && xsimd::any(query.mirror) && !xsimd::all(query.mirror))
         hit = select(query.mirror, trace(query.w, true), hit);

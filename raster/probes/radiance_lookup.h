@@ -21,7 +21,7 @@ public:
 
 private:
     struct Query;
-    RgbT<Floats> from_probe(std::size_t probe, const Query& query) const;
+    RgbT<Floats> from_probe(std::size_t probe, const Query& query, const xsimd::batch_bool<float>& lanes) const;
 
     const RasterSceneData& data_;
     const GBuffer& gbuffer_;

@@ -86,7 +86,7 @@ RadianceMap::RadianceMap(int side, const Source& without_lights, const Source& w
     const auto sample = [&](const Source& source, OctahedralMap& map) {
         for_each_texel(map, threads, [&](Vec3 w) -> OctahedralMap::Texel {
             const auto [radiance, distance] = source(w);
-            return {radiance.r, radiance.g, radiance.b, min(distance, 1e15f)}; // finite, so that steps along a ray are
+            return {radiance.r, radiance.g, radiance.b, min(distance, kFarthest)};
         });
     };
     sample(without_lights, sharp_);

@@ -15,6 +15,8 @@ namespace duet::raster {
 class RadianceMap {
 public:
     static constexpr int kLevels = 5;
+    /// The distance of the background, in meters: beyond all coordinates, while its square is still a float.
+    static constexpr float kFarthest = 4e18f;
 
     RadianceMap() = default;
     /// What arrives from a direction, and the distance of where it comes from.

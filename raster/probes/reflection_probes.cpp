@@ -9,13 +9,12 @@ using Mask = Floats::batch_bool_type;
 /// Steps that a ray takes from impostor to impostor. Three bring most rays within a texel.
 constexpr int kSteps = 4;
 /// Points of a ray that are searched where the steps do not end on a surface, and bisections between two of them.
-constexpr int kSearched = 16, kBisections = 5;
-/// About three texels, as a fraction of the angle that a ray passes: lookups there do not read the silhouette itself.
-constexpr float kTexels = 0.03f;
-/// The background, in meters. Its square is still a float.
-constexpr float kFarthest = 1e15f;
+constexpr int kSearched = 16, kBisections = 9;
 /// Relative differences of distances below the first are a hit, above the second the step at a silhouette.
 constexpr float kTolerance = 0.03f, kStep = 0.15f;
+/// Lookups beside a silhouette keep this fraction of the ray's way away from it, about three texels of a long way, so
+/// that they do not read the silhouette itself.
+constexpr float kBeside = 0.03f;
 
 /// Follows a batch of rays through a radiance map. Vectors are relative to the map's center.
 class ImpostorTracer {
@@ -23,10 +22,11 @@ public:
     ImpostorTracer(const RadianceMap& map, const Vec3s& start, const Vec3s& w, bool lights)
         : map_(map), start_(start), w_(w), lights_(lights), across_(dot(start, w)), squared_(dot(start, start)) {}
 
-    Vec3s hit() const {
+    /// Returns the hits of some lanes; those of the others are unspecified.
+    Vec3s hit(const Mask& lanes) const {
         Floats t = advance(map_.distance(w_, lights_), kSteps);
-        const Mask lost = mismatch(t) > Floats(kTolerance);
-        if (xsimd::any(lost)) t = xsimd::select(lost, search(), t);
+        const Mask lost = lanes & (mismatch(t) > Floats(kTolerance));
+        if (xsimd::any(lost)) t = xsimd::select(lost, search(lost), t);
         return start_ + w_ * t;
     }
 
@@ -41,9 +41,10 @@ private:
         }
         return t;
     }
-    /// Returns the point at the fraction s of the angle between `start` and w, as t.
+    /// Returns the point whose direction from the center lies at the fraction s of the chord between the unit vectors
+    /// of `start` and w, as t.
     Floats at_fraction(const Floats& s) const {
-        return min(xsimd::sqrt(squared_) * s / max(Floats(1.0f) - s, Floats(1e-20f)), Floats(kFarthest));
+        return min(xsimd::sqrt(squared_) * s / max(Floats(1.0f) - s, Floats(1e-20f)), Floats(RadianceMap::kFarthest));
     }
     struct Depths {
         Floats ray, surface; ///< distances from the center
@@ -58,9 +59,11 @@ private:
     }
     /// Walks along the ray to where it first meets a surface that the map shows. If it ends behind one instead, the map
     /// does not show what it meets; returns the point before the silhouette, in whose direction is what lies farther.
-    Floats search() const {
-        Floats before(0.0f), result(kFarthest); // where nothing hides the ray, it ends at the background
-        Mask found = before > before, hidden = found;
+    /// (McGuire, Mara, Nowrouzezahrai and Luebke 2017, "Real-Time Global Illumination using Precomputed Light Field
+    /// Probes", §4, march through several probes with the same three outcomes: hit, miss and unknown.)
+    Floats search(const Mask& lost) const {
+        Floats before(0.0f), result(RadianceMap::kFarthest); // where nothing hides the ray, it ends at the background
+        Mask found = ~lost, hidden = before > before;
         for (int i = 1; i <= kSearched && !xsimd::all(found); ++i) {
             const Floats s(static_cast<float>(i) / kSearched);
             const auto [ray, surface] = depths(at_fraction(s));
@@ -70,11 +73,11 @@ private:
                 const Floats t = at_fraction(back);
                 const auto [there, met] = depths(t);
                 const Mask hit = there < met * Floats(1 + kStep);
-                const Floats beside = at_fraction(max(front - Floats(kTexels), Floats(0.0f)));
+                const Floats beside = at_fraction(max(front - Floats(kBeside), Floats(0.0f)));
                 result = xsimd::select(enters, xsimd::select(hit, t, beside), result);
                 found = found | (enters & hit);
             }
-            result = xsimd::select(~(behind | found), Floats(kFarthest), result);
+            result = xsimd::select(~(behind | found), Floats(RadianceMap::kFarthest), result);
             hidden = behind, before = s;
         }
         return result;
@@ -101,10 +104,11 @@ private:
 
 } // namespace
 
-Vec3s ReflectionProbes::trace(std::size_t probe, const Vec3d& eye, const Vec3s& p, const Vec3s& w, bool lights) const {
+Vec3s ReflectionProbes::trace(std::size_t probe, const Vec3d& eye, const Vec3s& p, const Vec3s& w, bool lights,
+                              const Mask& lanes) const {
     const Vec3 offset(eye - probes_[probe].center);
     const Vec3s start = p + Vec3s{Floats(offset.x), Floats(offset.y), Floats(offset.z)};
-    return ImpostorTracer(probes_[probe].map, start, w, lights).hit();
+    return ImpostorTracer(probes_[probe].map, start, w, lights).hit(lanes);
 }
 
 std::size_t ReflectionProbes::memory_bytes() const {

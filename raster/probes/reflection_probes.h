@@ -21,9 +21,10 @@ public:
     /// Returns the probe of an object.
     std::size_t probe_of(std::int32_t object) const { return of_object_[static_cast<std::size_t>(object)]; }
     /// Returns the vector from a probe's center to what a ray from the point p, relative to the eye at `eye`, meets in
-    /// the unit direction w, with or without lights. It is very long where that is the background.
+    /// the unit direction w, with or without lights. It is very long where that is the background. Where the probe does
+    /// not see what the ray meets, it points to what lies beside. Lanes that are not in `lanes` are unspecified.
     Vec3T<Floats> trace(std::size_t probe, const Vec3d& eye, const Vec3T<Floats>& p, const Vec3T<Floats>& w,
-                        bool lights) const;
+                        bool lights, const xsimd::batch_bool<float>& lanes) const;
     const RadianceMap& map(std::size_t probe) const { return probes_[probe].map; }
     Vec3d center(std::size_t probe) const { return probes_[probe].center; }
     std::size_t memory_bytes() const;

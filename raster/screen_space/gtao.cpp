@@ -215,8 +215,8 @@ void GtaoImage::search_row(int y, float radius) {
     }
 }
 
-/// Averages a row over the 5 × 5 pixels about each. The outermost ones count half, so that each direction has the same
-/// weight, and the average changes little from one pixel to the next.
+/// Averages a row over the 5 × 5 pixels about each, with the weights ½, 1, 1, 1, ½ along each axis: each direction has
+/// the same weight, and the average changes little from one pixel to the next.
 void GtaoImage::filter_row(int y) {
     const ScreenProjection& projection = gbuffer_->projection;
     for (int x = 0; x < depth_.width(); x += static_cast<int>(Floats::size)) {

@@ -1,6 +1,6 @@
 // Ground-truth ambient occlusion (GTAO): how much of the environment the surfaces in the image hide from each pixel
 // (Jimenez et al. 2016, "Practical Realtime Strategies for Accurate Indirect Occlusion", §4). Horizons are searched
-// at half resolution, averaged over 4 × 4 neighbors on the same surface, and upsampled along depths and normals.
+// at half resolution, averaged over 5 × 5 neighbors on the same surface, and upsampled along depths and normals.
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"
@@ -34,6 +34,11 @@ public:
     Lit lit_at(int x, int y) const {
         const auto [s, found] = upsampled(x, y);
         return {s.visible, {s.hidden.x, s.hidden.y, s.hidden.z}, found};
+    }
+
+    std::size_t memory_bytes() const {
+        return depth_.memory_bytes() + normal_.memory_bytes() + lost_.memory_bytes() + all_.memory_bytes() +
+               lost_directions_.memory_bytes() + smooth_.visible.memory_bytes() + smooth_.hidden.memory_bytes();
     }
 
     static constexpr int kSteps = 10; ///< depths read on each side of a pixel

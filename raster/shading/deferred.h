@@ -27,7 +27,7 @@ struct LightComponentImages {
     Planes3 shadowed;    ///< not included in the sum: the direct light that shadows remove
 };
 
-/// Holds the images of a frame. Rendering frame after frame into the same one allocates no memory.
+/// Holds the images of a frame. Rendering frame after frame into the same one keeps their memory.
 struct DeferredFrame {
     std::optional<GBuffer> gbuffer;
     Planes3 radiance;
@@ -37,7 +37,10 @@ struct DeferredFrame {
 
     /// Sets the size and the projection. The contents are undefined.
     void start(const Scene& scene, const ScreenProjection& projection, int width, int height);
-    std::size_t memory_bytes() const { return (gbuffer ? gbuffer->memory_bytes() : 0) + radiance.memory_bytes(); }
+    std::size_t memory_bytes() const {
+        return (gbuffer ? gbuffer->memory_bytes() : 0) + radiance.memory_bytes() + direct.memory_bytes() +
+               occlusion.memory_bytes();
+    }
 };
 
 /// Shades the surfaces in frame.gbuffer. frame.radiance holds what they emit, and receives the radiance towards the

@@ -1,6 +1,7 @@
 #include "raster/visibility/hit_lists.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace duet::raster {
 namespace {
@@ -47,15 +48,16 @@ void HitLists::draw_triangle(const DrawTriangle& triangle) {
     const auto& c = triangle.corners;
     const std::array<EdgeFunction, 3> edges{EdgeFunction(c[0], c[1]), EdgeFunction(c[1], c[2]),
                                             EdgeFunction(c[2], c[0])};
-    const ListedTriangle whole(geometry_.triangles, triangle.id);
+    std::optional<ListedTriangle> whole; // few triangles cover a pixel that is not done
     const PixelRect r = intersect(tile_.rect(), pixels_within(c, offset_));
     for (int y = r.y0; y < r.y1; ++y)
         for (int x = r.x0; x < r.x1; ++x) {
             if (pixel(x, y).done) continue;
             const std::int64_t sx = std::int64_t{x} * kSubpixels + offset_.x,
                                sy = std::int64_t{y} * kSubpixels + offset_.y;
-            if (std::all_of(edges.begin(), edges.end(), [&](const EdgeFunction& e) { return e.at(sx, sy) >= 0; }))
-                add(x, y, whole);
+            if (!std::ranges::all_of(edges, [&](const EdgeFunction& e) { return e.at(sx, sy) >= 0; })) continue;
+            if (!whole) whole.emplace(geometry_.triangles, triangle.id);
+            add(x, y, *whole);
         }
 }
 

@@ -5,8 +5,6 @@
 #include "raster/geometry/geometry.h"
 #include "raster/visibility/depth_tile.h"
 
-#include "common/system/huge_pages.h"
-
 #include <algorithm>
 #include <array>
 

@@ -128,12 +128,12 @@ void Accelerator::closest(std::span<const Ray> rays, std::span<Hit> hits) const 
         PacketHits best(xsimd::min(packet.t_max(), max_distance));
         PacketTraversal(world_, packet, some, kAll, kNoObject, PacketInstances{*this, some}, best).run();
         best.store(their_hits);
+        if (!has_alpha_masks_) continue; // packets are traced without regard to alpha
+        for (std::size_t i = 0; i < kSize; ++i)
+            if (their_hits[i].valid() && passes_alpha_mask(scene_, some[i], their_hits[i]))
+                their_hits[i] = closest(some[i]);
     }
     for (; done < rays.size(); ++done) hits[done] = closest(rays[done]);
-    // Packets are traced without regard to alpha.
-    if (has_alpha_masks_)
-        for (std::size_t i = 0; i < rays.size(); ++i)
-            if (hits[i].valid() && passes_alpha_mask(scene_, rays[i], hits[i])) hits[i] = closest(rays[i]);
 }
 
 namespace {

@@ -86,8 +86,12 @@ private:
         for (unsigned lanes = test.hits(); lanes != 0; lanes &= lanes - 1) {
             const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
             Hit hit{reported_object(block.object[lane]), 0, 0, 0, test.t(lane)};
-            if (is_transparent(hit) && !move_to_far_side(block.sphere(lane), best.t, hit)) continue;
-            if (consider(hit, best)) return true;
+            if (!counts(hit, best)) continue;
+            if (is_transparent(hit)) {
+                if (!move_to_far_side(block.sphere(lane), best.t, hit) || !counts(hit, best) || is_transparent(hit))
+                    continue;
+            }
+            if (accept(hit, best)) return true;
         }
         return false;
     }
@@ -104,10 +108,12 @@ private:
     template <typename Block> bool consider(const Block& block, std::size_t lane, const TriangleHit& hit, Hit& best) {
         return consider({reported_object(block.object[lane]), block.primitive[lane], hit.u, hit.v, hit.t}, best);
     }
-    bool consider(const Hit& hit, Hit& best) {
-        if (!precedes(hit, best)) return false;
-        if (kAny && hit.object == best.object && hit.primitive == best.primitive) return false;
-        if (is_transparent(hit)) return false;
+    bool consider(const Hit& hit, Hit& best) { return counts(hit, best) && !is_transparent(hit) && accept(hit, best); }
+    // Returns whether a hit, if it is opaque, is one to find.
+    static bool counts(const Hit& hit, const Hit& best) {
+        return precedes(hit, best) && !(kAny && hit.object == best.object && hit.primitive == best.primitive);
+    }
+    bool accept(const Hit& hit, Hit& best) {
         found_ = true;
         if (!kAny) best = hit;
         return kAny;

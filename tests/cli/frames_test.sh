@@ -5,7 +5,7 @@
 expect 0 "$bin/compare" frames --help
 grep -q Example "$scratch/stdout" || fail "compare frames --help shows no example"
 expect 2 "$bin/compare" frames
-one_line_error MESH
+one_line_error FILE
 expect 2 "$bin/compare" frames models/meshes/pear.obj --view sideways
 one_line_error --view
 expect 2 "$bin/compare" frames models/meshes/pear.obj --threads 1000
@@ -24,6 +24,16 @@ expect 0 "$bin/compare" frames models/meshes/pear.obj --size 64x48 --repeats 1 -
 grep -q whole "$scratch/stdout" || fail "no row of the whole mesh in the table"
 grep -q close "$scratch/stdout" || fail "no row of the mesh close up in the table"
 grep -q '"work": "depth"' "$scratch/rows.json" || fail "no row of depths in the JSON"
+
+expect 0 "$bin/compare" frames models/cornell.json --size 64x48 --repeats 1 --threads 1 -o "$scratch/lit" --stats \
+    "$scratch/lit.json"
+grep -q "direct light" "$scratch/stdout" || fail "no stages of a lit frame"
+grep -q '"frame_seconds"' "$scratch/lit.json" || fail "no lit frame in the JSON"
+[ -s "$scratch/lit/cornell-lit.png" ] || fail "no image of the lit frame"
+expect 2 "$bin/compare" frames "$scratch/none.json"
+one_line_error none.json
+expect 2 "$bin/compare" frames models/cornell.json --texture models/textures/none.png
+one_line_error --texture
 
 # The rows that are requested, and no others: as JSON alone, or not a word.
 expect 0 "$bin/compare" frames models/meshes/pear.obj --size 64x48 --repeats 2 --threads 1 --no-peer --view close \

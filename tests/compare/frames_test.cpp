@@ -127,9 +127,8 @@ TEST_SUITE("unit") {
         CHECK(row.at("threads") == 1);
         CHECK(row.at("frame_seconds").get<double>() > 0);
         CHECK(row.at("stages").at("direct light and shadows").get<double>() > 0);
-        double sum = 0;
-        for (const auto& [stage, seconds] : row.at("stages").items()) sum += seconds.get<double>();
-        CHECK(sum == doctest::Approx(row.at("frame_seconds").get<double>()).epsilon(0.5)); // a sum of medians
+        CHECK(row.at("stages").at("other").get<double>() > 0); // no stage counts twice
+        CHECK(fs::exists(folder / "cornell-lit.png"));
         fs::remove_all(folder);
     }
 }

@@ -179,7 +179,8 @@ TEST_SUITE("unit") {
         const Shares s = shares(shown_images);
         CHECK(std::abs(s.sum - 1) < 1e-12);
         CHECK(share_of(s, "reflections") > 0.75); // measured: 0.79
-        // The mirror shows the square as black with a side of 12 pixels; only its edges are wrong. Measured: 96 pixels
+        // The mirror shows the square as black with a side of 12 pixels; only its edges are wrong,
+        // two pixels wide, as the probe's texels are. Measured: 96 pixels
         CHECK(map_causes(shown_images).visible < 110.0 / (kSize * kSize));
         CHECK(shown_images.image(7)(kSize / 2, kSize / 2).g == 0);
     }

@@ -62,7 +62,7 @@ TEST_SUITE("unit") {
                 for (int x = 60; x < 100; ++x) mean += static_cast<double>(found(x, y).g) / 40;
                 const double hidden = (1 - z / std::sqrt(z * z + 1)) / 2;
                 CAPTURE(z);
-                CHECK(std::abs(1 - mean - hidden) < 0.055); // measured: 0.0538 at the foot
+                CHECK(std::abs(1 - mean - hidden) < 0.055); // measured: 0.0538 at the foot, by averaging over 10 pixels
                 ++rows;
             }
             CHECK(rows > 30);

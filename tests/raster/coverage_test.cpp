@@ -160,6 +160,46 @@ TEST_SUITE("unit") {
         }
     }
 
+    TEST_CASE("samples at the ends of a triangle seen edge-on see the corner there, however near the others are") {
+        const auto vertex = [](double x, double y, double w) {
+            return PixelVertex{.xw = x * w, .yw = y * w, .w = w, .depth = w};
+        };
+        const auto depth_at = [&](std::array<PixelVertex, 3> corners, Vec2d p) {
+            const Interpolation triangle(corners[0], corners[1], corners[2], {2560, 2560});
+            const Interpolated at = triangle.at(p, TriangleKind::kTriangle);
+            return at.depth_sum / at.sum;
+        };
+        CHECK(depth_at({vertex(10, 10, 1e6), vertex(310, 160, 1), vertex(160, 85, 2)}, {9.999, 9.9995}) == 1e6);
+        CHECK(depth_at({vertex(10, 10, 4096), vertex(18, 14, 1.0 / 128), vertex(14, 12, 1)}, {9.999, 9.9995}) == 4096);
+        // Two corners are behind the eye.
+        CHECK(depth_at({vertex(12, 11, -1e-3), vertex(11, 10.5, -2e-3), vertex(10, 10, 100)}, {10.0019, 10.00095}) > 0);
+    }
+
+    TEST_CASE("triangles seen edge-on anywhere in the image have depths between those of their corners") {
+        std::mt19937 random(7);
+        std::uniform_real_distribution<double> uniform(0, 1);
+        int outside = 0;
+        for (int i = 0; i < 100000; ++i) {
+            const Vec2d from(16000 * uniform(random), 16000 * uniform(random));
+            const Vec2d direction = i % 2 == 0 ? Vec2d(40, 0) : Vec2d(80 * uniform(random) - 40, 80 * uniform(random));
+            std::array<PixelVertex, 3> corners;
+            std::array<double, 3> along{0, uniform(random), 1};
+            for (std::size_t k = 0; k < 3; ++k) {
+                const double w = 0.1 + 20 * uniform(random);
+                const Vec2d p = from + direction * along[k];
+                corners[k] = {.xw = p.x * w, .yw = p.y * w, .w = w, .depth = w};
+            }
+            const Vec2d sample = from + direction * uniform(random) + Vec2d(1e-3, 1e-3) * uniform(random);
+            const FixedPoint beside{static_cast<std::int32_t>(from.x) * 256, static_cast<std::int32_t>(from.y) * 256};
+            const Interpolated at =
+                Interpolation(corners[0], corners[1], corners[2], beside).at(sample, TriangleKind::kTriangle);
+            const double depth = at.depth_sum / at.sum;
+            const auto [least, most] = std::minmax({corners[0].depth, corners[1].depth, corners[2].depth});
+            outside += !(depth >= least * (1 - 1e-9) && depth <= most * (1 + 1e-9));
+        }
+        CHECK(outside == 0);
+    }
+
     TEST_CASE("a fan around a vertex covers each sample once") {
         Random random(4);
         const std::vector<FixedPoint> frame{{-500, -500},

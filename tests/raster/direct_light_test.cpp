@@ -103,8 +103,13 @@ struct Frame1 {
     DirectLight light(int threads, const ShadowLookup* shadows = nullptr, std::size_t most = ChosenLights::kAll) {
         settings.threads = threads;
         DirectLight result;
-        compute_direct_light(prepared->data(), settings, *gbuffer, shadows, result, {most});
+        light_into(result, threads, shadows, most);
         return result;
+    }
+    void light_into(DirectLight& result, int threads, const ShadowLookup* shadows = nullptr,
+                    std::size_t most = ChosenLights::kAll) {
+        settings.threads = threads;
+        compute_direct_light(prepared->data(), settings, *gbuffer, shadows, result, {most});
     }
     /// Evaluates all lights at all pixels.
     Planes3 all_lights() const {
@@ -409,6 +414,28 @@ TEST_SUITE("unit") {
         const Difference difference(half.shadowed, one.exact);
         CHECK(difference.mean == doctest::Approx(0.5));
         CHECK(difference.worst == doctest::Approx(0.5));
+    }
+
+    TEST_CASE("all pixels of an earlier frame's images are overwritten, by few lights and by many") {
+        for (const char* file : {"everything.json", "lanterns.json"}) {
+            Frame1 view(model(file), 200, 112);
+            view.gbuffer->reversed_depth.fill(0); // the background, but for a band of rows
+            for (int y = 40; y < 60; ++y)
+                for (int x = 0; x < 200; ++x) view.gbuffer->reversed_depth(x, y) = 0.1f;
+            const HalfShadows shadows;
+            const DirectLight fresh = view.light(1, &shadows), unshadowed = view.light(1);
+            REQUIRE_FALSE(fresh.shadowed.empty());
+            DirectLight reused = view.light(1, &shadows);
+            for (Planes3* image : {&reused.exact, &reused.unshadowed, &reused.shadowed})
+                for (PlaneFloat* plane : {&image->x, &image->y, &image->z}) plane->fill(7);
+            view.light_into(reused, 1, &shadows);
+            CHECK(bitwise_equal(reused.exact, fresh.exact));
+            CHECK(bitwise_equal(reused.unshadowed, fresh.unshadowed));
+            CHECK(bitwise_equal(reused.shadowed, fresh.shadowed));
+            view.light_into(reused, 1);
+            CHECK(bitwise_equal(reused.exact, unshadowed.exact));
+            CHECK(reused.shadowed.empty());
+        }
     }
 
     TEST_CASE("a thousand lights: clusters lose no light and err little; none if all lights have shadows") {

@@ -108,6 +108,16 @@ TEST_SUITE("unit") {
             for (int n = 1; n < 10; ++n)
                 CHECK(std::abs(fractal_noise(p, n + 1) - fractal_noise(p, n)) <= std::exp2(-n));
         }
+        constexpr Vec3d kShift{0.618033988749895, 0.381966011250105, 0.236067977499790};
+        for (const double size : {30.0, 1e15})
+            for (int n = 1; n <= 16; ++n) {
+                const Vec3d p = random_point(random, size);
+                double sum = 0;
+                for (int i = 0; i < n; ++i)
+                    sum += std::exp2(-i) * gradient_noise(p * std::exp2(i) + kShift * static_cast<double>(i),
+                                                          static_cast<std::uint32_t>(i));
+                CHECK(fractal_noise(p, n) == sum);
+            }
         int zeros = 0;
         for (int i = 0; i < 100; ++i) zeros += std::abs(fractal_noise({double(i), double(-i), 7}, 4)) < 1e-3 ? 1 : 0;
         CHECK(zeros < 5);
