@@ -143,7 +143,8 @@ TEST_SUITE("unit") {
             return PixelVertex{.xw = (10 + along) * depth, .yw = (10 + along / 2) * depth, .w = depth, .depth = depth};
         };
         std::array corners{vertex(0, 2), vertex(4, 8), vertex(8, 4)};
-        for (int rotation = 0; rotation < 3; ++rotation, std::ranges::rotate(corners, corners.begin() + 1)) {
+        for (int rotation = 0; rotation < 3; ++rotation) {
+            std::rotate(corners.begin(), corners.begin() + 1, corners.end());
             const Interpolation triangle(corners[0], corners[1], corners[2], {2560, 2560});
             const auto depth_at = [&](double along, double beside) {
                 const Interpolated at = triangle.at({10 + along - beside / 2, 10 + along / 2 + beside},
