@@ -119,18 +119,16 @@ void write_images(const std::filesystem::path& folder, const MeshRows& mesh) {
 bool is_scene(const std::filesystem::path& file) { return lower_case_extension(file) == ".json"; }
 
 /// Measures all rows of a mesh. Returns false after an interrupt signal.
-bool measure_mesh(const FramesOptions& options, const std::vector<int>& threads, MeshRows& mesh, const Scene& scene,
-                  ProgressBar& bar, double first, double share, const InterruptFlag& interrupt) {
+bool measure_mesh(const FramesOptions& options, const FrameSettings& settings, const std::vector<int>& threads,
+                  MeshRows& mesh, const Scene& scene, ProgressBar& bar, double first, double share) {
     raster::RasterSettings phong; // no frame here casts shadows
     phong.shading = raster::Shading::kPhong;
     const raster::RasterScene prepared = raster::prepare(scene, phong);
-    FrameSettings settings = options.settings;
-    settings.stop = &interrupt.flag();
     double done = 0;
     for (const FrameView view : options.views)
         for (const int count : threads) {
             std::vector<FrameRow> rows = measure_frames(scene, prepared, view, count, options.works, settings);
-            if (interrupt.raised()) return false;
+            if (*settings.stop) return false;
             std::move(rows.begin(), rows.end(), std::back_inserter(mesh.rows));
             done += 1;
             bar.update(first + share * done / static_cast<double>(options.views.size() * threads.size()));
@@ -152,6 +150,8 @@ int frames(const FramesOptions& options) {
         for (const std::filesystem::path& file : options.files)
             if (is_scene(file)) throw Error(message("--texture: found the scene ", file, ", expected meshes alone"));
     const InterruptFlag interrupt;
+    FrameSettings settings = options.settings;
+    settings.stop = &interrupt.flag();
     const std::vector<int> threads = thread_counts(options);
     if (!options.folder.empty()) std::filesystem::create_directories(options.folder);
     std::vector<MeshRows> meshes;
@@ -161,8 +161,6 @@ int frames(const FramesOptions& options) {
         const double share = 1.0 / static_cast<double>(options.files.size());
         for (std::size_t i = 0; i < options.files.size(); ++i) {
             if (is_scene(options.files[i])) {
-                FrameSettings settings = options.settings;
-                settings.stop = &interrupt.flag();
                 scenes.push_back(measure_lit_frames(options.files[i], threads, settings));
                 if (interrupt.raised()) return kExitInterrupted;
                 if (!options.folder.empty())
@@ -172,7 +170,7 @@ int frames(const FramesOptions& options) {
             }
             const Scene scene = frame_scene(options.files[i], options.texture);
             MeshRows mesh{options.files[i].stem().string(), std::get<Mesh>(scene.shapes[0]).triangles.size(), {}};
-            if (!measure_mesh(options, threads, mesh, scene, bar, static_cast<double>(i) * share, share, interrupt))
+            if (!measure_mesh(options, settings, threads, mesh, scene, bar, static_cast<double>(i) * share, share))
                 return kExitInterrupted;
             if (!options.folder.empty()) write_images(options.folder, mesh);
             meshes.push_back(std::move(mesh));

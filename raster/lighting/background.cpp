@@ -10,8 +10,7 @@ bool shows_environment(const RasterSceneData& data, const RasterSettings& settin
 }
 
 bool is_dark(const RasterSceneData& data, const RasterSettings& settings) {
-    return data.scene.lights.empty() && !shows_environment(data, settings) &&
-           !data.any_emits;
+    return data.scene.lights.empty() && !shows_environment(data, settings) && !data.any_emits;
 }
 
 std::optional<Rgb> constant_background(const RasterSceneData& data, const RasterSettings& settings) {

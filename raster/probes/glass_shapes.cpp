@@ -38,7 +38,7 @@ OctahedralMap shape_of(const RasterSceneData& data, const RasterSettings& settin
 bool is_sphere(const Scene& scene, std::uint32_t index) {
     const Object& object = scene.objects[index];
     const auto* sphere = std::get_if<Sphere>(&scene.shapes[object.shape]);
-    return sphere != nullptr && !object.moving && (object.identity || transformed(*sphere, object.to_world));
+    return sphere != nullptr && !object.moving && transformed(*sphere, object.to_world);
 }
 
 } // namespace
@@ -70,16 +70,15 @@ std::optional<GlassShapes::Exit> GlassShapes::exit(std::int32_t object, const Ve
     const Vec3s start = p + Vec3s{Floats(offset.x), Floats(offset.y), Floats(offset.z)};
     const Floats none(0.0f), across = dot(start, w);
     Floats t = max(-across, none) * Floats(2.0f); // of a sphere about the center
-    if (!shape.map) {
-        const Vec3s n = start + w * t;
-        return Exit{p + w * t, n * inverse_sqrt(max(dot(n, n), Floats(1e-20f))), t};
-    }
-    for (int i = 0; i < kSteps; ++i) {
+    for (int i = 0; shape.map && i < kSteps; ++i) {
         const Floats radius = shape.map->at<4>(start + w * t)[3];
         t = max(xsimd::sqrt(max(radius * radius - dot(start, start) + across * across, none)) - across, none);
     }
-    const auto [x, y, z, distance] = shape.map->at<4>(start + w * t);
-    const Vec3s n{x, y, z};
+    Vec3s n = start + w * t; // of a sphere
+    if (shape.map) {
+        const auto [x, y, z, distance] = shape.map->at<4>(n);
+        n = {x, y, z};
+    }
     return Exit{p + w * t, n * inverse_sqrt(max(dot(n, n), Floats(1e-20f))), t};
 }
 
