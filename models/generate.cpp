@@ -23,6 +23,7 @@ std::span<const Model> all_models() {
         {"lanterns", kCommitted, {"lanterns.json"}, write_lanterns},
         {"pear", kCommitted, {"meshes/pear.obj", "meshes/pear.mtl", "textures/pear.png"}, write_pear},
         {"plinth", kCommitted, {"meshes/plinth.obj"}, write_plinth},
+        {"ring", kCommitted, {"meshes/ring.obj"}, write_ring},
         {"sky", kCommitted, {"textures/sky.hdr"}, write_sky},
         {"spheres", kCommitted, {"spheres.json"}, write_spheres},
         {"test-ball", kCommitted, ball_files(), write_test_ball},

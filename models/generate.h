@@ -38,6 +38,7 @@ void write_hall(const std::filesystem::path& folder);
 void write_lanterns(const std::filesystem::path& folder);
 void write_pear(const std::filesystem::path& folder);
 void write_plinth(const std::filesystem::path& folder);
+void write_ring(const std::filesystem::path& folder);
 void write_sky(const std::filesystem::path& folder);
 void write_spheres(const std::filesystem::path& folder);
 

@@ -109,6 +109,7 @@ void add_revolution(MeshBuilder& mesh, std::span<const Vec2d> profile, int colum
     surface.closed_s = true;
     surface.pole_low = profile.front().x == 0;
     surface.pole_high = profile.back().x == 0;
+    surface.closed_t = profile.front() == profile.back();
     const auto row = [&](double t) { return static_cast<std::size_t>(std::lround(t * surface.rows)); };
     surface.point = [&](double s, double t) {
         const double angle = 2 * kPiDouble * s;

@@ -50,8 +50,8 @@ struct ParametricSurface {
 void add_parametric_surface(MeshBuilder& mesh, const ParametricSurface& surface);
 
 /// Adds the surface of revolution about the y axis of a profile of (radius, height), given upward along the outside.
-/// The surface is closed where the profile's ends are on the axis (radius 0). u runs once around, to the right seen
-/// from outside; v is v_of(row).
+/// The surface is closed if the profile's ends are on the axis (radius 0), or are the same point. u runs once around,
+/// to the right seen from outside; v is v_of(row).
 void add_revolution(MeshBuilder& mesh, std::span<const Vec2d> profile, int columns,
                     const std::function<double(std::size_t row)>& v_of);
 

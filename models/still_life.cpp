@@ -1,4 +1,5 @@
-// This file generates the objects of a still life: pear.obj (three materials: pear.mtl), bowl.obj and plinth.obj.
+// This file generates the objects of still lifes: pear.obj (three materials: pear.mtl), bowl.obj, plinth.obj and
+// ring.obj.
 #include "common/system/file.h"
 #include "models/distance_field.h"
 #include "models/generate.h"
@@ -117,6 +118,14 @@ void write_plinth(const std::filesystem::path& folder) {
     compute_normals(mesh, 40);
     write_obj(folder / "meshes/plinth.obj", mesh,
               "A round plinth of radius and height 1, made by models/still_life.cpp.");
+}
+
+void write_ring(const std::filesystem::path& folder) {
+    constexpr std::array kProfile = {Vec2d(0.95, 0), Vec2d(1, 0), Vec2d(1, 0.35), Vec2d(0.95, 0.35), Vec2d(0.95, 0)};
+    MeshBuilder mesh;
+    add_revolution(mesh, kProfile, 192, [](std::size_t row) { return static_cast<double>(row) / 4; });
+    compute_normals(mesh, 40);
+    write_obj(folder / "meshes/ring.obj", mesh, "A ring of radius 1, made by models/still_life.cpp.");
 }
 
 } // namespace duet::models

@@ -2,6 +2,7 @@
 
 #include "common/system/error.h"
 #include "common/system/stopwatch.h"
+#include "raytrace/bidirectional/bidirectional_pass.h"
 #include "raytrace/film/film_checkpoint.h"
 #include "raytrace/render_pass.h"
 #include "raytrace/sample_schedule.h"
@@ -54,6 +55,8 @@ std::int64_t film_bytes(const Film& film) {
 Rendering render(const PathTracerScene& prepared, const View& view, const PathTracerSettings& settings,
                  Control& control) {
     check(view, settings);
+    const bool bidirectional = settings.integrator == Integrator::kBidirectional;
+    if (bidirectional) check_bidirectional(prepared.data().scene, settings);
     Stopwatch watch;
     Rendering rendering;
     const RenderPlan plan(prepared.data(), view, settings);
@@ -75,7 +78,7 @@ Rendering render(const PathTracerScene& prepared, const View& view, const PathTr
         const double after = total_target(film) - static_cast<double>(samples_at_start);
         const double time = spent.samples > 0 ? spent.seconds * after / static_cast<double>(spent.samples) : 0;
         const double next = std::max(progress, fraction_done(settings, total_target(film) / pixels, time));
-        if (!render_pass(context, progress, next)) {
+        if (!(bidirectional ? render_bidirectional_pass : render_pass)(context, progress, next)) {
             statistics.interrupted = true;
             break;
         }

@@ -17,18 +17,19 @@ namespace duet::raytrace {
 inline constexpr int kEstimatorVersion = 7;
 
 enum class Integrator {
-    kPath,        ///< light and BSDF sampling, combined by multiple importance sampling
-    kNaive,       ///< BSDF sampling only, as in book 1 of Ray Tracing in One Weekend
-    kDirect,      ///< emission and direct light: paths of at most one scattering event
-    kUnshadowed,  ///< direct light by light sampling without visibility: the rasterizer's quantity
-    kLights,      ///< components of path: LightComponents::emission and direct, Scene::lights and their shadows
-    kEnvironment, ///< component of path: LightComponents::environment, the environment's light on diffuse surfaces
-    kReflection,  ///< component of path: LightComponents::reflection, light through metal and glass at the first hit
-    kNormal,      ///< the shading normal as a color: (n + 1)/2
-    kAlbedo,      ///< base colors
+    kPath,          ///< light and BSDF sampling, combined by multiple importance sampling
+    kNaive,         ///< BSDF sampling only, as in book 1 of Ray Tracing in One Weekend
+    kBidirectional, ///< paths from the camera and from the lights, joined: Veach 1997, §10
+    kDirect,        ///< emission and direct light: paths of at most one scattering event
+    kUnshadowed,    ///< direct light by light sampling without visibility: the rasterizer's quantity
+    kLights,        ///< components of path: LightComponents::emission and direct, Scene::lights and their shadows
+    kEnvironment,   ///< component of path: LightComponents::environment, the environment's light on diffuse surfaces
+    kReflection,    ///< component of path: LightComponents::reflection, light through metal and glass at the first hit
+    kNormal,        ///< the shading normal as a color: (n + 1)/2
+    kAlbedo,        ///< base colors
 };
-/// Returns the integrator named "path", "naive", "direct", "unshadowed", "lights", "environment", "reflection",
-/// "normal" or "albedo". Throws Error for any other name.
+/// Returns the integrator named "path", "naive", "bidirectional", "direct", "unshadowed", "lights", "environment",
+/// "reflection", "normal" or "albedo". Throws Error for any other name.
 Integrator integrator(std::string_view name);
 std::string_view integrator_name(Integrator integrator);
 

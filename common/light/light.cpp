@@ -54,9 +54,9 @@ std::optional<LightSample> draw(const SurfaceLight& light, Vec3 p, Vec2 u) {
     return LightSample{Vec3(s->wi), static_cast<float>(s->distance), light.radiance, static_cast<float>(s->pdf), false};
 }
 
-double area(const Triangle& t) { return 0.5 * length(cross(Vec3d(t.b) - Vec3d(t.a), Vec3d(t.c) - Vec3d(t.a))); }
-double area(const Quad& q) { return length(cross(Vec3d(q.u), Vec3d(q.v))); }
-double area(const Sphere& s) { return 4 * kPiDouble * sqr(static_cast<double>(s.radius)); }
+double area_of(const Triangle& t) { return 0.5 * length(cross(Vec3d(t.b) - Vec3d(t.a), Vec3d(t.c) - Vec3d(t.a))); }
+double area_of(const Quad& q) { return length(cross(Vec3d(q.u), Vec3d(q.v))); }
+double area_of(const Sphere& s) { return 4 * kPiDouble * sqr(static_cast<double>(s.radius)); }
 
 /// A light's flux is factor·quantity. The quantity is its radiance, intensity or irradiance.
 struct Flux {
@@ -71,8 +71,7 @@ Flux flux(const SpotLight& light, double) {
 }
 Flux flux(const SunLight& light, double scene_radius) { return {kPiDouble * sqr(scene_radius), light.irradiance}; }
 Flux flux(const SurfaceLight& light, double) {
-    const double a = std::visit([](const auto& shape) { return area(shape); }, light.shape);
-    return {kPiDouble * a * (light.two_sided ? 2 : 1), light.radiance};
+    return {kPiDouble * area(light) * (light.two_sided ? 2 : 1), light.radiance};
 }
 
 } // namespace
@@ -97,6 +96,12 @@ float light_pdf(const SurfaceLight& light, Vec3 p, Vec3 q) {
     const double pdf =
         std::visit([&](const auto& shape) { return solid_angle_pdf(shape, Vec3d(p), Vec3d(q)); }, light.shape);
     return is_usable_pdf(pdf) ? static_cast<float>(pdf) : 0.0f;
+}
+
+Rgb intensity(const SpotLight& light, Vec3 w) { return light.intensity * spot_falloff(light, dot(w, light.direction)); }
+
+double area(const SurfaceLight& light) {
+    return std::visit([](const auto& shape) { return area_of(shape); }, light.shape);
 }
 
 float light_power(const Light& light, float scene_radius) {

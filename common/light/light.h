@@ -56,6 +56,10 @@ std::optional<LightSample> sample_light(const Light& light, Vec3 p, Vec2 u);
 float light_pdf(const SurfaceLight& light, Vec3 p, Vec3 q);
 /// Returns whether p lies on an emitting side. A point in a flat light's own plane does not.
 bool emits_towards(const SurfaceLight& light, Vec3 p);
+/// Returns the intensity in the unit direction w of propagation, in W/sr.
+Rgb intensity(const SpotLight& light, Vec3 w);
+/// Returns the area in m². Of a light with two sides, each has this area.
+double area(const SurfaceLight& light);
 /// Returns the emitted flux in W, averaged over channels. For a sun it is the flux through a disk of the scene's
 /// radius.
 float light_power(const Light& light, float scene_radius);

@@ -43,8 +43,8 @@ template <KnownBsdf BsdfType, typename Vec> auto pdf(const BsdfType& bsdf, const
     return bsdf.pdf(wo, wi, TransportMode::kRadiance);
 }
 template <KnownBsdf BsdfType, typename T>
-auto sample(const BsdfType& bsdf, const Vec3T<T>& wo, T lobe, const Vec2T<T>& u) {
-    return bsdf.sample(wo, lobe, u, TransportMode::kRadiance);
+auto sample(const BsdfType& bsdf, const Vec3T<T>& wo, T lobe, const Vec2T<T>& u, TransportMode mode) {
+    return bsdf.sample(wo, lobe, u, mode);
 }
 template <KnownBsdf BsdfType> constexpr bool is_transmissive(const BsdfType&) { return BsdfType::kTransmissive; }
 template <KnownBsdf BsdfType> auto refraction_index(const BsdfType& bsdf) {

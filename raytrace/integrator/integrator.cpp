@@ -10,8 +10,9 @@ namespace duet::raytrace {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, Integrator>, 9> kNames{{{"path", Integrator::kPath},
+constexpr std::array<std::pair<std::string_view, Integrator>, 10> kNames{{{"path", Integrator::kPath},
                                                                          {"naive", Integrator::kNaive},
+                                                                         {"bidirectional", Integrator::kBidirectional},
                                                                          {"direct", Integrator::kDirect},
                                                                          {"unshadowed", Integrator::kUnshadowed},
                                                                          {"lights", Integrator::kLights},
@@ -26,7 +27,7 @@ Integrator integrator(std::string_view name) {
     for (const auto& [known, value] : kNames)
         if (known == name) return value;
     throw Error(message("unknown integrator '", name,
-                        "': expected path, naive, direct, unshadowed, lights, environment, "
+                        "': expected path, naive, bidirectional, direct, unshadowed, lights, environment, "
                         "reflection, normal or albedo"));
 }
 
@@ -53,9 +54,12 @@ RadianceFunction radiance_function(Integrator integrator) {
     case Integrator::kPath:
     case Integrator::kNaive:
     case Integrator::kDirect:
+        return path_radiance;
+    case Integrator::kBidirectional: // light paths reach other pixels: render_bidirectional_pass()
         break;
     }
-    return path_radiance;
+    throw Error(message("the integrator ", integrator_name(integrator),
+                        " renders whole images only: expected another for a single sample"));
 }
 
 void radiances(Integrator integrator, const RenderPlan& plan, std::span<Ray> rays, std::span<Hit> hits,

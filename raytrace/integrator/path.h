@@ -18,8 +18,7 @@
 namespace duet::raytrace {
 
 /// Returns the light that the vertex scatters from a light sample to the viewer, unless the light is occluded. It is
-/// not
-/// divided by the sample's density yet.
+/// not divided by the sample's density yet.
 template <typename AnyVertex, typename T>
 inline RgbT<T> scattered_light(const AnyVertex& vertex, const LightLiSampleT<T>& light) {
     return scattering(vertex, light.wi) * light.radiance;
@@ -50,16 +49,17 @@ template <typename T> struct ScatteringT {
 
 /// Samples the next direction from the BSDF of the vertex and multiplies the path's throughput by the sample's weight.
 template <typename AnyVertex, typename T>
-inline ScatteringT<T> scatter(const AnyVertex& vertex, const VertexRandomSamplesT<T>& u, PathThroughputT<T>& path) {
-    ScatteringT<T> next{sample(vertex.bsdf, vertex.wo, u.lobe, u.bsdf)};
+inline ScatteringT<T> scatter(const AnyVertex& vertex, const VertexRandomSamplesT<T>& u, PathThroughputT<T>& path,
+                              TransportMode mode = TransportMode::kRadiance) {
+    ScatteringT<T> next{sample(vertex.bsdf, vertex.wo, u.lobe, u.bsdf, mode)};
     if (none_of(next.scatters)) return next;
     const BsdfSampleT<T>& s = *next.sample;
     next.scatters = next.scatters & !is_black(s.weight);
     next.wi = normalize(vertex.frame.to_world(s.wi));
     next.continues = next.scatters & is_consistent(vertex, next.wi, s.wi);
     path.throughput *= s.weight;
-    if (is_transmissive(vertex.bsdf)) {
-        // Entering glass scales the throughput by 1/η², and leaving it by η². Roulette must ignore both.
+    if (is_transmissive(vertex.bsdf) && mode == TransportMode::kRadiance) {
+        // Entering glass scales radiance by 1/η², and leaving it by η². Roulette must ignore both.
         const T eta2 = sqr(T(refraction_index(vertex.bsdf)));
         const T factor = select(vertex.wo.z > T(0), T(1) / eta2, eta2);
         path.refraction = select(s.transmitted, path.refraction * factor, path.refraction);

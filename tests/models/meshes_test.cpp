@@ -85,5 +85,6 @@ TEST_SUITE("unit") {
         check_mesh("meshes/bowl.obj", 1000, 4000, true);
         check_mesh("meshes/pear.obj", 1000, 4000, true);
         check_mesh("meshes/plinth.obj", 500, 2000, true);
+        check_mesh("meshes/ring.obj", 500, 2000, true);
     }
 }

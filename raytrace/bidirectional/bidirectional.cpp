@@ -1,0 +1,221 @@
+#include "raytrace/bidirectional/bidirectional.h"
+
+#include "common/vec/robust.h"
+
+#include <cmath>
+
+namespace duet::raytrace {
+
+namespace {
+
+// Returns the MIS weight of a strategy, from the sums over the strategies whose connection is on either side.
+// It is 0 where a density is too large for a double.
+float weight(double light_side, double camera_side) {
+    const double others = light_side + camera_side;
+    return others >= 0 ? static_cast<float>(1 / (1 + others)) : 0;
+}
+
+// Camera subpaths use the dimensions of plain paths. Light subpaths use those behind the longest of them.
+int light_subpath_depth(const RenderPlan& plan, int depth) { return plan.max_depth + 1 + depth; }
+
+EmissionRandomSamples emission_samples(const RenderPlan& plan, Sampler& sampler) {
+    sampler.set_dimension(vertex_dimension(light_subpath_depth(plan, 0)));
+    const Sampler::Block u = sampler.get_block();
+    return {u[4], {u[0], u[1]}, {u[2], u[3]}};
+}
+
+// Returns the sums of a light subpath at its first vertex, which the ray from the light has hit.
+MisSums sums_at_first_hit(const RenderPlan& plan, const LightEmission& emission, const EmittedRay& emitted,
+                          const SubpathVertex& at) {
+    const Scene& scene = plan.scene;
+    const LightReceiver receiver = light_receiver(at.vertex);
+    double light_sample_pdf = static_cast<double>(plan.lights->probability(receiver, emitted.light));
+    if (emitted.light == plan.lights->environment_index())
+        light_sample_pdf *= static_cast<double>(pdf(*plan.environment, at.to_previous));
+    else if (const auto* surface = std::get_if<SurfaceLight>(&scene.lights[emitted.light]))
+        light_sample_pdf *= static_cast<double>(light_pdf(*surface, at.vertex.point.p, emitted.position));
+    const auto [density, geometry] =
+        emission.density(emitted.light, emitted.position, -at.to_previous, at.vertex.point.p);
+    const double arrived = density * at.cosine(at.to_previous);
+    return {mis(light_sample_pdf * geometry / arrived), emission.is_delta(emitted.light) ? 0 : mis(geometry / arrived)};
+}
+
+} // namespace
+
+Rgb BidirectionalTracer::trace(const Ray& ray, const Hit& hit, const Pinhole& pinhole, Sampler& sampler,
+                               std::vector<Splat>& splats) {
+    light_subpath_.clear();
+    if (!emission_.empty() && plan_.max_depth > 0) trace_light_subpath(pinhole, ray.time, sampler, splats);
+    return trace_camera_subpath(ray, hit, pinhole, sampler);
+}
+
+void BidirectionalTracer::trace_light_subpath(const Pinhole& pinhole, float time, Sampler& sampler,
+                                              std::vector<Splat>& splats) {
+    const std::optional<EmittedRay> emitted = emission_.sample(emission_samples(plan_, sampler), time);
+    if (!emitted) return;
+    PathThroughputT<float> path;
+    MisSums sums;
+    Ray ray = emitted->ray;
+    for (int depth = 0; depth < plan_.max_depth; ++depth) {
+        ++counts_.indirect;
+        const Hit hit = plan_.prepared.accelerator.closest(ray);
+        if (!hit.valid()) return;
+        SubpathVertex& at = light_subpath_.emplace_back(plan_, ray, hit, nullptr, depth);
+        const double cosine = at.cosine(at.to_previous);
+        if (!(cosine > 0)) return light_subpath_.pop_back();
+        if (depth == 0)
+            sums = sums_at_first_hit(plan_, emission_, *emitted, at);
+        else
+            sums.arrive(sqr(static_cast<double>(hit.t)), cosine);
+        at.throughput = emitted->weight * path.throughput;
+        at.mis = sums;
+        const bool connectable = !is_specular(at.vertex.bsdf);
+        if (connectable) connect_to_camera(at, pinhole, splats);
+        if (depth + 1 == plan_.max_depth) return;
+        const VertexRandomSamples u = vertex_random_samples(sampler, light_subpath_depth(plan_, depth + 1));
+        const ScatteringT<float> next = leave(at, u, TransportMode::kImportance, path, sums);
+        if (!next.continues) return;
+        ray = spawn_ray(plan_, at.vertex, next.wi);
+        if (!connectable) light_subpath_.pop_back();
+    }
+}
+
+// Draws the direction in which the subpath goes on, unless it ends at the vertex.
+ScatteringT<float> BidirectionalTracer::leave(const SubpathVertex& at, const VertexRandomSamples& u, TransportMode mode,
+                                              PathThroughputT<float>& path, MisSums& sums) {
+    ScatteringT<float> next = scatter(at, u, mode, path, sums);
+    if (!next.continues || !plan_.russian_roulette || at.depth == 0) return next;
+    next.continues = russian_roulette(u.roulette, path).survives;
+    counts_.ended += !next.continues;
+    return next;
+}
+
+void BidirectionalTracer::connect_to_camera(const SubpathVertex& at, const Pinhole& pinhole,
+                                            std::vector<Splat>& splats) {
+    const std::optional<SeenPoint> seen = seen_through(pinhole, Vec3d(at.vertex.point.p));
+    if (!seen) return;
+    const auto [x, y] = seen->pixel;
+    if (!(x >= 0 && y >= 0 && x < view_.width && y < view_.height)) return;
+    const Vec3 w(seen->to_camera);
+    const Rgb scattered = at.importance_scattering(w);
+    if (is_black(scattered)) return;
+    const Ray ray = spawn_ray(plan_, at.vertex, w);
+    Hit end;
+    end.t = static_cast<float>(seen->distance) - length(ray.origin - at.vertex.point.p);
+    ++counts_.shadow;
+    if (plan_.prepared.accelerator.occluded(ray, end)) return;
+    const double density = seen->pixel_density / path_count();
+    const double light_side =
+        at.mis.over_connection(density * at.cosine(w), at.pdf(w, at.to_previous, TransportMode::kRadiance));
+    const float factor = static_cast<float>(density) * weight(light_side, 0);
+    const auto pixel =
+        static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(view_.width) + static_cast<std::uint32_t>(x);
+    splats.push_back({pixel, at.throughput * scattered * factor});
+}
+
+Rgb BidirectionalTracer::trace_camera_subpath(Ray ray, Hit hit, const Pinhole& pinhole, Sampler& sampler) {
+    Rgb sum;
+    PathThroughputT<float> path;
+    MisSums sums;
+    LightReceiver previous;
+    PathFootprint footprint(plan_, sampler.sample());
+    for (int depth = 0;; ++depth) {
+        if (!hit.valid()) return sum + path.throughput * environment_light(ray.direction, depth, previous, sums);
+        SubpathVertex at(plan_, ray, hit, footprint.at_hit(ray, hit.t), depth);
+        const double cosine = at.cosine(at.to_previous);
+        if (depth > 0)
+            sums.arrive(sqr(static_cast<double>(hit.t)), cosine);
+        else if (const auto seen = seen_through(pinhole, Vec3d(at.vertex.point.p)))
+            sums.connection = mis(path_count() / (seen->pixel_density * cosine));
+        at.throughput = path.throughput;
+        at.mis = sums;
+        sum += at.throughput * emitted_light(at, depth, hit.t, previous);
+        if (depth == plan_.max_depth || !(cosine > 0)) return sum;
+        const VertexRandomSamples u = vertex_random_samples(sampler, depth);
+        if (plan_.lights != nullptr && !is_specular(at.vertex.bsdf)) {
+            sum += at.throughput * light_sample(at, u);
+            for (const SubpathVertex& light : light_subpath_)
+                if (depth + light.depth + 2 <= plan_.max_depth) sum += connection(at, light);
+        }
+        previous = light_receiver(at.vertex);
+        const ScatteringT<float> next = leave(at, u, TransportMode::kRadiance, path, sums);
+        if (!next.continues) return sum;
+        footprint.scatter(next.sample->pdf, next.sample->specular);
+        ray = spawn_ray(plan_, at.vertex, next.wi);
+        ++counts_.indirect;
+        hit = plan_.prepared.accelerator.closest(ray);
+    }
+}
+
+Rgb BidirectionalTracer::environment_light(Vec3 w, int depth, const LightReceiver& previous,
+                                           const MisSums& sums) const {
+    if (plan_.environment == nullptr) return Rgb();
+    const Rgb light = radiance(*plan_.environment, w);
+    if (depth == 0 || plan_.lights == nullptr || emission_.empty()) return light;
+    const auto sample_pdf = static_cast<double>(pdf_li(*plan_.environment, *plan_.lights, previous, w));
+    const double density = emission_.density(plan_.lights->environment_index(), {}, -w, {}).density;
+    return light * weight(0, mis(sample_pdf) * sums.connection + mis(density) * sums.earlier);
+}
+
+Rgb BidirectionalTracer::emitted_light(const SubpathVertex& at, int depth, float distance,
+                                       const LightReceiver& previous) const {
+    if (!plan_.emission) return Rgb();
+    const SurfacePoint& point = at.vertex.point;
+    const Rgb light = emitted(at.vertex.material, plan_.scene.textures, point, at.to_previous);
+    if (is_black(light) || depth == 0 || plan_.lights == nullptr) return light;
+    const std::int64_t index = surface_light_index(plan_.scene, point.object, point.primitive);
+    if (index < 0) return light; // no other strategy finds it
+    const auto [density, geometry] =
+        emission_.density(static_cast<std::size_t>(index), point.p, at.to_previous, previous.p);
+    const double by_area = static_cast<double>(pdf_li(plan_.scene, *plan_.lights, previous, point)) * geometry /
+                           sqr(static_cast<double>(distance));
+    return light * weight(0, mis(by_area) * at.mis.connection + mis(density) * at.mis.earlier);
+}
+
+Rgb BidirectionalTracer::light_sample(const SubpathVertex& at, const VertexRandomSamples& u) {
+    const Vertex& vertex = at.vertex;
+    const auto s = sample_li(plan_.scene, *plan_.lights, light_receiver(vertex), u.light_choice, u.light);
+    if (!s) return Rgb();
+    const Rgb scattered = scattered_light(vertex, *s);
+    if (is_black(scattered)) return Rgb();
+    ++counts_.shadow;
+    if (!unoccluded(plan_, vertex, *s)) return Rgb();
+    const std::size_t index = s->light < 0 ? plan_.lights->environment_index() : static_cast<std::size_t>(s->light);
+    const Vec3 q = s->distance < kInfinity ? vertex.point.p + s->wi * s->distance : Vec3();
+    const auto [density, geometry] = emission_.density(index, q, -s->wi, vertex.point.p);
+    const auto pdf = static_cast<double>(s->pdf);
+    const double light_side = s->delta ? 0 : mis(at.pdf(at.to_previous, s->wi, TransportMode::kRadiance) / pdf);
+    const double camera_side = at.mis.over_connection(density * at.cosine(s->wi) / (pdf * geometry),
+                                                      at.pdf(s->wi, at.to_previous, TransportMode::kImportance));
+    return scattered * (weight(light_side, camera_side) / s->pdf);
+}
+
+bool BidirectionalTracer::visible(const Vertex& from, const Vertex& to, Vec3 w) {
+    const float time = from.point.time;
+    const Vec3 start = ray_origin(plan_, from.point, w, time), end = ray_origin(plan_, to.point, -w, time);
+    Ray ray{start, normalize(end - start)};
+    ray.time = time;
+    Hit before;
+    before.t = length(end - start) * (1 - gamma_bound(8));
+    ++counts_.shadow;
+    return !plan_.prepared.accelerator.occluded(ray, before);
+}
+
+Rgb BidirectionalTracer::connection(const SubpathVertex& camera, const SubpathVertex& light) {
+    const Vec3d offset = Vec3d(light.vertex.point.p) - Vec3d(camera.vertex.point.p);
+    const double squared_distance = length_squared(offset);
+    if (!(squared_distance > 0)) return Rgb();
+    const Vec3 w(offset / std::sqrt(squared_distance));
+    const Rgb scattered = scattering(camera.vertex, w) * light.importance_scattering(-w);
+    if (is_black(scattered) || !visible(camera.vertex, light.vertex, w)) return Rgb();
+    const double to_light = camera.pdf(camera.to_previous, w, TransportMode::kRadiance);
+    const double to_camera = light.pdf(light.to_previous, -w, TransportMode::kImportance);
+    const double light_side = light.mis.over_connection(to_light * light.cosine(w) / squared_distance,
+                                                        light.pdf(-w, light.to_previous, TransportMode::kRadiance));
+    const double camera_side = camera.mis.over_connection(
+        to_camera * camera.cosine(w) / squared_distance, camera.pdf(w, camera.to_previous, TransportMode::kImportance));
+    return camera.throughput * light.throughput * scattered *
+           (weight(light_side, camera_side) / static_cast<float>(squared_distance));
+}
+
+} // namespace duet::raytrace

@@ -1,0 +1,67 @@
+#include "raytrace/bidirectional/subpath.h"
+
+namespace duet::raytrace {
+
+void MisSums::arrive(double squared_distance, double cosine) {
+    connection *= mis(squared_distance / cosine);
+    earlier *= mis(1 / cosine);
+}
+
+void MisSums::scatter(double pdf, double reverse_pdf, double cosine, bool specular) {
+    if (specular) { // both densities are infinite in the same proportion
+        connection = 0;
+        earlier *= mis(cosine);
+        return;
+    }
+    earlier = mis(cosine / pdf) * (earlier * mis(reverse_pdf) + connection);
+    connection = mis(1 / pdf);
+}
+
+double SubpathVertex::pdf(Vec3 from, Vec3 to, TransportMode mode) const {
+    const Frame& frame = vertex.frame;
+    return static_cast<double>(duet::pdf(vertex.bsdf, frame.to_local(from), frame.to_local(to), mode));
+}
+
+namespace {
+
+// Returns the factor by which light from `to_light` to w differs from importance the other way round, because the
+// shading normal is not the geometric one (Veach 1997, eq. 5.19): the ratio of their cosines.
+float shading_normal_factor(const Vertex& vertex, Vec3 to_light, Vec3 w) {
+    const Vec3 ng = vertex.point.ng, ns = vertex.point.ns;
+    return abs(dot(to_light, ns) * dot(w, ng)) / abs(dot(to_light, ng) * dot(w, ns));
+}
+
+// Returns whether the vertex lets light from `to_light` pass to w: see is_consistent, with w as the viewer.
+bool lets_light_pass(const Vertex& vertex, Vec3 to_light, Vec3 w) {
+    const Vec3 light = vertex.frame.to_local(to_light), viewer = vertex.frame.to_local(w);
+    const Vec3 normal = same_hemisphere(light, viewer) ? vertex.point.terminator_normal : vertex.point.ng;
+    return dot(to_light, normal) * light.z > 0;
+}
+
+} // namespace
+
+// The path tracer calls the BSDF with the viewer's direction first, moved to the visible side. So does this function.
+Rgb SubpathVertex::importance_scattering(Vec3 w) const {
+    const Frame& frame = vertex.frame;
+    if (!lets_light_pass(vertex, to_previous, w)) return Rgb();
+    const Vec3 viewer = direction_to_viewer(frame, vertex.point.ng, -w), light = frame.to_local(to_previous);
+    const auto geometric = static_cast<float>(cosine(w) / cosine(to_previous));
+    return eval(vertex.bsdf, viewer, light) * (abs_cos_theta(light) * geometric);
+}
+
+ScatteringT<float> scatter(const SubpathVertex& at, const VertexRandomSamples& u, TransportMode mode,
+                           PathThroughputT<float>& path, MisSums& sums) {
+    const bool importance = mode == TransportMode::kImportance;
+    ScatteringT<float> next = scatter(at.vertex, u, path, mode);
+    if (next.continues && importance) {
+        next.continues = lets_light_pass(at.vertex, at.to_previous, next.wi);
+        path.throughput *= shading_normal_factor(at.vertex, at.to_previous, next.wi);
+    }
+    if (!next.continues) return next;
+    const TransportMode reverse = importance ? TransportMode::kRadiance : TransportMode::kImportance;
+    const double reverse_pdf = next.sample->specular ? 0 : at.pdf(next.wi, at.to_previous, reverse);
+    sums.scatter(static_cast<double>(next.sample->pdf), reverse_pdf, at.cosine(next.wi), next.sample->specular);
+    return next;
+}
+
+} // namespace duet::raytrace

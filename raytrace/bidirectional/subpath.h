@@ -1,0 +1,63 @@
+// A subpath starts at the camera or at a light. Bidirectional path tracing joins the vertices of two subpaths.
+#pragma once
+
+#include "raytrace/integrator/path.h"
+
+namespace duet::raytrace {
+
+/// Returns what a ratio of densities counts in MIS weights: its square (the power heuristic with β = 2).
+inline double mis(double ratio) { return ratio * ratio; }
+
+/// A path of several segments can be drawn by many strategies: any of its edges may be the connection of a light
+/// subpath with a camera subpath. The weight of the strategy that drew the path is 1 / (1 + sum of the other
+/// strategies' densities over its own). These are the parts of that sum that a subpath knows before it is connected.
+/// They are updated from vertex to vertex (Georgiev 2012, "Implementing Vertex Connection and Merging", §4; merging is
+/// left out).
+struct MisSums {
+    /// This is the strategy that connects this vertex with the one before, in place of a sampled ray: the ratio of
+    /// densities d_VCM, without the factor `pdf` of over_connection().
+    double connection = 0;
+    /// These are all strategies that connect an earlier pair of vertices: d_VC, without `pdf` and `reverse_pdf`.
+    double earlier = 0;
+
+    /// Updates the sums where the subpath hits a surface, at |cos θ| = `cosine` to its geometric normal.
+    void arrive(double squared_distance, double cosine);
+    /// Updates the sums for scattering: `pdf` is the density of the new direction, at |cos θ| = `cosine` to the
+    /// geometric normal, and `reverse_pdf` that of scattering backwards along the path. No connection ends at a
+    /// specular vertex.
+    void scatter(double pdf, double reverse_pdf, double cosine, bool specular);
+    /// Returns the sum over all strategies whose connection is on this side of the current one. `pdf` is the density by
+    /// area with which the other side would draw this vertex, and `reverse_pdf` the density by solid angle with which
+    /// a subpath of the other side would go on from here to the vertex before.
+    double over_connection(double pdf, double reverse_pdf) const {
+        return mis(pdf) * (connection + earlier * mis(reverse_pdf));
+    }
+};
+
+/// Is a vertex of a subpath, with what the subpath carries up to it.
+struct SubpathVertex {
+    /// Makes the vertex at a valid hit of a ray of the subpath, after `depth_` scatterings; see Vertex.
+    SubpathVertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint, int depth_)
+        : vertex(plan, ray, hit, footprint), to_previous(-ray.direction), depth(depth_) {}
+
+    const Vertex vertex;
+    const Vec3 to_previous; ///< unit direction to the vertex before, in world space
+    const int depth;        ///< number of scatterings before this vertex
+    Rgb throughput;
+    MisSums mis;
+
+    /// Returns |cos θ| of a direction to the geometric normal.
+    double cosine(Vec3 w) const { return static_cast<double>(abs(dot(vertex.point.ng, w))); }
+    /// Returns the density by solid angle with which a subpath of the given mode that came from `from` leaves in
+    /// direction `to` (both unit, in world space, away from the vertex).
+    double pdf(Vec3 from, Vec3 to, TransportMode mode) const;
+    /// Returns f·|cos θ| of a vertex of a light subpath in direction w: it scatters light from the vertex before.
+    Rgb importance_scattering(Vec3 w) const;
+};
+
+/// Draws the direction in which a subpath of the given mode leaves the vertex, and updates the path's throughput and
+/// sums.
+ScatteringT<float> scatter(const SubpathVertex& at, const VertexRandomSamples& u, TransportMode mode,
+                           PathThroughputT<float>& path, MisSums& sums);
+
+} // namespace duet::raytrace

@@ -1,0 +1,232 @@
+// These tests compare bidirectional path tracing with the path tracer: both must converge to the same image, whatever
+// emits, scatters and moves. Its parts are checked against closed forms.
+#include "common/image/bitwise_equal.h"
+#include "common/system/error.h"
+#include "raytrace/bidirectional/bidirectional_pass.h"
+#include "raytrace/bidirectional/camera_projection.h"
+#include "raytrace/bidirectional/light_emission.h"
+#include "tests/raytrace/estimates.h"
+#include "tests/raytrace/scene_builder.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <filesystem>
+#include <string>
+#include <utility>
+
+using namespace duet;
+using namespace duet::raytrace;
+
+namespace {
+
+// Returns a room without front and ceiling, of diffuse, rough metallic and coated walls.
+SceneBuilder room() {
+    SceneBuilder builder;
+    builder.add(quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}), builder.material(Diffuse{{Rgb(0.7f, 0.6f, 0.5f)}}));
+    builder.add(quad({-2, 0, -2}, {4, 0, 0}, {0, 3, 0}), builder.material(Metal{{Rgb(0.8f)}, 0.4f}));
+    Principled plastic;
+    plastic.base_color = RgbSlot{Rgb(0.3f, 0.5f, 0.8f)};
+    builder.add(quad({-2, 0, 2}, {0, 0, -4}, {0, 3, 0}), builder.material(plastic));
+    builder.scene.camera.eye = {0.3, 1.4, 6};
+    builder.scene.camera.look_at = {0, 0.9, 0};
+    builder.scene.camera.fov_degrees = 35;
+    return builder;
+}
+
+Scene under_surface_lights() {
+    SceneBuilder builder = room();
+    const std::uint32_t front = builder.material(Emissive{Rgb(6.0f)});
+    const std::uint32_t both = builder.material(Emissive{Rgb(3.0f), true});
+    builder.add(quad({-0.5f, 2.8f, -0.5f}, {1, 0, 0}, {0, 0, 1}), front);
+    builder.add(Sphere{{0.9f, 0.8f, -0.5f}, 0.15f}, front);
+    Mesh triangle;
+    triangle.positions = {{-1.2f, 1.5f, -1}, {-0.6f, 1.6f, -1.1f}, {-0.9f, 2.1f, -0.8f}};
+    triangle.triangles = {{0, 1, 2}};
+    builder.add(std::move(triangle), both);
+    builder.add(Sphere{{-0.4f, 0.5f, 0.5f}, 0.5f}, builder.material(Diffuse{{Rgb(0.6f)}}));
+    return builder.finish();
+}
+
+Scene under_delta_lights() {
+    SceneBuilder builder = room();
+    builder.scene.lights = {PointLight{{0.6f, 2, 0.5f}, Rgb(4.0f)},
+                            SpotLight{{-1, 2.5f, 1.5f}, normalize(Vec3(0.4f, -1, -0.6f)), Rgb(20.0f), 0.9f, 0.7f},
+                            SunLight{normalize(Vec3(0.3f, -1, -0.5f)), Rgb(1.5f, 1.4f, 1.2f)}};
+    builder.add(icosphere(2, 0.6f, {0, 0.7f, 0}, true), builder.material(Metal{{Rgb(0.9f, 0.7f, 0.4f)}, 0.5f}));
+    return builder.finish();
+}
+
+Scene under_an_image() {
+    SceneBuilder builder = room();
+    builder.add(icosphere(2, 0.6f, {0, 0.7f, 0}, true), builder.material(Diffuse{{Rgb(0.8f)}}));
+    ImageRgb sky(32, 16, Rgb(0.2f, 0.3f, 0.5f));
+    for (int x = 5; x < 9; ++x)
+        for (int y = 3; y < 6; ++y) sky(x, y) = Rgb(20.0f);
+    builder.scene.environment = make_image_environment(sky, 1, 0.3f);
+    return builder.finish();
+}
+
+// Returns caustics of smooth and rough glass and of a mirror, through a lens, while a ball moves.
+Scene glass_in_motion() {
+    SceneBuilder builder = room();
+    builder.add(Sphere{{-0.8f, 0.5f, 0.4f}, 0.5f}, builder.material(Dielectric{}));
+    Dielectric frosted;
+    frosted.roughness = ScalarSlot{0.3f};
+    builder.add(Sphere{{0.4f, 0.5f, 0.6f}, 0.5f}, builder.material(frosted));
+    builder.add(quad({0.9f, 0, 0.5f}, {0.5f, 0, -0.8f}, {0, 1, 0}), builder.material(Metal{{Rgb(0.9f)}}));
+    const std::uint32_t ball = builder.shape(Sphere{{0, 0.3f, -0.8f}, 0.3f});
+    builder.place_moving(ball, builder.material(Diffuse{{Rgb(0.5f, 0.8f, 0.4f)}}), Mat4(),
+                         Mat4(translation(Vec3d(0.4, 0.2, 0))));
+    builder.add(quad({-0.3f, 2.5f, 0}, {0.6f, 0, 0}, {0, 0, 0.6f}), builder.material(Emissive{Rgb(20.0f)}));
+    builder.scene.camera.aperture_radius = 0.05;
+    return builder.finish();
+}
+
+Scene seen_in_parallel() {
+    Scene scene = under_surface_lights();
+    scene.camera.projection = Camera::Projection::kOrthographic;
+    scene.camera.height = 3;
+    return scene;
+}
+
+PathTracerSettings bidirectional(int samples) {
+    PathTracerSettings settings;
+    settings.integrator = Integrator::kBidirectional;
+    settings.samples_per_pixel = samples;
+    return settings;
+}
+
+} // namespace
+
+TEST_SUITE("unit") {
+    TEST_CASE("the bits do not depend on threads, and a continued film has those of one run") {
+        const Scene scene = glass_in_motion();
+        PathTracerSettings settings = bidirectional(6);
+        settings.threads = 1;
+        const ImageRgb one = render_scene(scene, 80, settings).radiance;
+        settings.threads = 3;
+        CHECK(bitwise_equal(one, render_scene(scene, 80, settings).radiance));
+
+        settings.film = std::filesystem::temp_directory_path() / "duet_bidirectional_test.exr";
+        std::filesystem::remove(settings.film);
+        for (const int samples : {1, 4, 6}) {
+            settings.samples_per_pixel = samples;
+            const ImageRgb image = render_scene(scene, 80, settings).radiance;
+            CHECK(bitwise_equal(one, image) == (samples == 6));
+        }
+        std::filesystem::remove(settings.film);
+    }
+
+    TEST_CASE("a stopped sample leaves no trace in the film") {
+        const Scene scene = under_delta_lights();
+        const std::atomic<bool> stop = true;
+        Control control;
+        control.stop = &stop;
+        const Rendering stopped =
+            render(prepare(scene, bidirectional(4)), View{scene.camera, 16, 16}, bidirectional(4), control);
+        CHECK(stopped.statistics.interrupted);
+        for (const Rgb& pixel : stopped.radiance) CHECK(is_black(pixel));
+    }
+
+    TEST_CASE("what it does not support is refused") {
+        const Scene plain = under_delta_lights();
+        PathTracerSettings settings = bidirectional(4);
+        settings.adaptive = true;
+        CHECK_THROWS_WITH_AS(check_bidirectional(plain, settings), doctest::Contains("--no-adaptive"), Error);
+        settings = bidirectional(4);
+        settings.filter = FilterKind::kBlackmanHarris;
+        CHECK_THROWS_WITH_AS(check_bidirectional(plain, settings), doctest::Contains("expected box"), Error);
+        SceneBuilder builder = room();
+        Dielectric wine;
+        wine.absorption = Rgb(1.0f);
+        builder.add(Sphere{{0, 1, 0}, 0.5f}, builder.material(wine));
+        CHECK_THROWS_WITH_AS(check_bidirectional(builder.finish(), bidirectional(4)), doctest::Contains("absorbs"),
+                             Error);
+        CHECK_THROWS_WITH_AS(radiance_function(Integrator::kBidirectional), doctest::Contains("whole images"), Error);
+    }
+
+    // The pixel density is the inverse of the area, across the ray, that the rays of a small square of the image cover.
+    TEST_CASE("a point is seen by the pixel whose ray hits it, at the density of those rays") {
+        View view{Camera{}, 80, 60};
+        view.camera.eye = {1, 2, 5};
+        view.camera.look_at = {0, 0.5, 0};
+        view.camera.aperture_radius = 0.2;
+        for (const auto projection : {Camera::Projection::kPerspective, Camera::Projection::kOrthographic}) {
+            view.camera.projection = projection;
+            const Pinhole pinhole = CameraModel(view).pinhole({0.9, 0.3});
+            const auto at = [&](double x, double y, double t) {
+                const Rayd ray = pinhole.ray({x, y});
+                return ray.origin + ray.direction * t;
+            };
+            const double x = 12.3, y = 51.7, step = 1e-4;
+            const Vec3d p = at(x, y, 4), direction = pinhole.ray({x, y}).direction;
+            const auto seen = seen_through(pinhole, p);
+            REQUIRE(seen.has_value());
+            CHECK(seen->pixel.x == doctest::Approx(x));
+            CHECK(seen->pixel.y == doctest::Approx(y));
+            CHECK(length(seen->to_camera + direction) < 1e-9);
+            CHECK(seen->distance == doctest::Approx(4 - pinhole.ray({x, y}).t_min));
+            const Vec3d dx = (at(x + step, y, 4) - p) / step, dy = (at(x, y + step, 4) - p) / step;
+            CHECK(seen->pixel_density == doctest::Approx(1 / std::abs(dot(cross(dx, dy), direction))).epsilon(1e-3));
+            CHECK(!seen_through(pinhole, pinhole.origin + pinhole.forward * (pinhole.near * 0.9)).has_value());
+        }
+    }
+}
+
+TEST_SUITE("statistical") {
+    // The mean weight of emitted rays is the flux of all lights. The bound is six standard errors of 20,000 independent
+    // samples, exceeded by chance once in 5e8 times.
+    TEST_CASE("lights emit their power") {
+        for (const Scene& scene : {under_surface_lights(), under_delta_lights()}) {
+            const PathTracerScene prepared = prepare(scene, PathTracerSettings{});
+            const RenderPlan plan(prepared.data(), View{scene.camera, 8, 8}, PathTracerSettings{});
+            const LightEmission emission(plan);
+            double power = 0;
+            for (const Light& light : scene.lights)
+                power += static_cast<double>(light_power(light, length(scene.bounds.diagonal()) / 2));
+            Sampler sampler(SamplerKind::kIndependent, 7, 1);
+            constexpr int kRays = 20000;
+            double sum = 0, squares = 0;
+            for (std::uint32_t i = 0; i < kRays; ++i) {
+                sampler.start(0, 0, i);
+                const auto u = sampler.get_block();
+                const auto ray = emission.sample({u[4], {u[0], u[1]}, {u[2], u[3]}}, 0);
+                const double weight = ray ? static_cast<double>(average(ray->weight)) : 0;
+                sum += weight;
+                squares += sqr(weight);
+            }
+            const double mean = sum / kRays, error = std::sqrt(std::max(squares / kRays - sqr(mean), 0.0) / kRays);
+            CHECK(std::abs(mean - power) < 6 * error + 1e-5 * power);
+        }
+    }
+
+    // The bound is six standard errors of the difference over ten seeds each, which is exceeded by chance once in
+    // 90,000 times.
+    TEST_CASE("the image converges to the path tracer's") {
+        const std::pair<std::string, Scene> scenes[] = {{"surface lights", under_surface_lights()},
+                                                        {"delta lights", under_delta_lights()},
+                                                        {"image environment", under_an_image()},
+                                                        {"glass in motion", glass_in_motion()},
+                                                        {"orthographic", seen_in_parallel()}};
+        for (const auto& named : scenes)
+            for (const int depth : {1, 2, 5}) {
+                PathTracerSettings settings;
+                settings.max_depth = depth;
+                settings.samples_per_pixel = 512;
+                const Estimate path = estimate(named.second, 16, settings);
+                settings.integrator = Integrator::kBidirectional;
+                settings.samples_per_pixel = 256;
+                const Estimate joined = estimate(named.second, 16, settings);
+                CAPTURE(named.first);
+                CAPTURE(depth);
+                CAPTURE(path.mean);
+                CAPTURE(path.error);
+                CAPTURE(joined.mean);
+                CAPTURE(joined.error);
+                CHECK(deviations(path, joined) < 6);
+                CHECK(joined.error < 0.002 * joined.mean);
+            }
+    }
+}
