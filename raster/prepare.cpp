@@ -165,8 +165,8 @@ RasterScene prepare(const Scene& scene, const RasterSettings& settings) {
     data.memory_bytes =
         static_cast<std::int64_t>(packed + sizeof(RasterSceneData) + data.objects.size() * sizeof(RasterObject) +
                                   scene.objects.size() * sizeof(std::uint32_t));
-    data.geometries = std::make_shared<GeometryPool>();
-    data.deferred_frames = std::make_shared<DeferredFramePool>();
+    data.geometries = std::make_shared<ObjectPool<Geometry>>();
+    data.deferred_frames = std::make_shared<ObjectPool<DeferredFrame>>();
     if (settings.shadow_map_side < 64 || settings.shadow_map_side > 8192)
         throw Error(message("shadow maps of ", settings.shadow_map_side, " texels a side: expected 64 to 8192"));
     if (settings.shadow_cells < 1 || settings.shadow_cells > Shadows::kMaxCells)

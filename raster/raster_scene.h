@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/scene/scene.h"
+#include "common/system/object_pool.h"
 #include "raster/geometry/packed_shape.h"
 #include "raster/lighting/environment_irradiance.h"
 #include "raster/settings.h"
@@ -23,8 +24,8 @@ struct RasterObject {
     bool solid = false; ///< an opaque, closed mesh, oriented outwards: its back faces are invisible from outside
 };
 
-class DeferredFramePool; // raster/shading/deferred.h
-class GeometryPool; // raster/geometry/geometry.h
+struct DeferredFrame; // raster/shading/deferred.h
+struct Geometry; // raster/geometry/geometry.h
 class SoftShadowMaps; // raster/shadows/shadow_map_lookup.h
 class Shadows;        // raster/shadows/shadow_maps.h
 class IrradianceProbes; // raster/probes/irradiance_probes.h
@@ -60,8 +61,8 @@ struct RasterSceneData {
     std::shared_ptr<const ReflectionProbes> reflection_probes{}; ///< likewise
     std::shared_ptr<const GlassShapes> glass_shapes{}; ///< likewise
     bool has_layers() const { return !alpha_polygonal.empty() || !alpha_spheres.empty(); }
-    std::shared_ptr<GeometryPool> geometries{}; ///< memory that is reused from frame to frame
-    std::shared_ptr<DeferredFramePool> deferred_frames{}; ///< likewise
+    std::shared_ptr<ObjectPool<Geometry>> geometries{}; ///< one for each rendering that runs at the same time
+    std::shared_ptr<ObjectPool<DeferredFrame>> deferred_frames{}; ///< likewise
 };
 
 } // namespace duet::raster

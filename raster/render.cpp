@@ -137,7 +137,7 @@ void add_aovs(const FrameContext& frame, const SampleView& sample, Framebuffer& 
 /// Renders one pass of Shading::kLit by deferred shading.
 void render_lit(const FrameContext& frame, const CameraModel& camera, const View& view, const Pass& pass,
                 Framebuffer& framebuffer) {
-    PooledDeferredFrame images(*frame.data.deferred_frames);
+    const auto images = frame.data.deferred_frames->take();
     for_each_lit_sample(frame, camera, view, pass, [&](const SampleView& sample) {
         add_aovs(frame, sample, framebuffer);
         const auto add = [&](const Planes3& radiance, const auto& count) {
@@ -150,7 +150,7 @@ void render_lit(const FrameContext& frame, const CameraModel& camera, const View
             shade_multisampled(sample, *images, add);
         } else {
             shade_deferred(sample, *images);
-            if (!frame.control.stopped()) add((*images).radiance, [](int, int) { return 1; });
+            if (!frame.control.stopped()) add(images->radiance, [](int, int) { return 1; });
         }
         frame.collector.add(*images);
     });
@@ -202,13 +202,13 @@ void render_direct_output(const FrameContext& frame, const CameraModel& camera, 
     }
     if (!depth_only && frame.program == nullptr) {
         const SrgbEncoder& encoder = srgb_encoder();
-        PooledDeferredFrame images(*frame.data.deferred_frames);
+        const auto images = frame.data.deferred_frames->take();
         for_each_lit_sample(frame, camera, view, pass, [&](const SampleView& sample) {
             shade_deferred(sample, *images);
             frame.collector.add(*images);
             if (frame.control.stopped()) return;
             for_each_pixel(view, frame.settings.threads, [&](int x, int y) {
-                const Rgb c = (*images).radiance.color_at(x, y);
+                const Rgb c = images->radiance.color_at(x, y);
                 result.srgb(x, y) = {encoder(c.r), encoder(c.g), encoder(c.b), 255};
             });
         });
@@ -235,8 +235,7 @@ void render_with(const RasterScene& prepared, const View& view, const RasterSett
     const TileGrid grid{{0, 0, view.width, view.height}};
     StatisticsCollector collector;
     Progress progress(control, grid.size() * passes.size());
-    PooledGeometry geometry(*data.geometries);
-    PooledGeometry layers(*data.geometries);
+    const auto geometry = data.geometries->take(), layers = data.geometries->take();
     const FrameContext frame{data,      effective_settings, program,
                              grid,      *geometry,          data.has_layers() ? &*layers : nullptr,
                              collector, progress,           control};

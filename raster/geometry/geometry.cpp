@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <mutex>
 
 namespace duet::raster {
 namespace {
@@ -61,31 +60,9 @@ std::vector<Run> assign_ids(const Scene& scene, const std::vector<std::uint32_t>
     return runs;
 }
 
-/// Provides a pool of assemblers for the threads of a parallel loop.
-class AssemblerPool {
-public:
-    explicit AssemblerPool(std::vector<Assembler>& all) : all_(all) {}
-    Assembler take() {
-        const std::lock_guard lock(mutex_);
-        if (all_.empty()) return {};
-        Assembler one = std::move(all_.back());
-        all_.pop_back();
-        return one;
-    }
-    void give_back(Assembler one) {
-        const std::lock_guard lock(mutex_);
-        all_.push_back(std::move(one));
-    }
-
-private:
-    std::vector<Assembler>& all_;
-    std::mutex mutex_;
-};
-
 void assemble(const RasterSceneData& data, const AssemblyPlan& plan, int threads, Geometry& geometry) {
     const Triangles& triangles = geometry.triangles;
     geometry.batches.resize(triangles.runs.size());
-    AssemblerPool pool(geometry.assemblers);
     parallel_for(triangles.runs.size(), threads, [&](std::size_t i) {
         const Run& run = triangles.runs[i];
         geometry.batches[i].clear();
@@ -93,34 +70,12 @@ void assemble(const RasterSceneData& data, const AssemblyPlan& plan, int threads
         const TransformedObject& object = triangles.objects[run.object];
         const bool cull = plan.front_faces_only ||
                           (plan.skips.back_faces && may_cull_backfaces(object, data.objects[object.object].solid));
-        Assembler assembler = pool.take();
-        assembler.assemble(plan, triangles, run, cull, geometry.batches[i]);
-        pool.give_back(std::move(assembler));
+        geometry.assemblers.take()->assemble(plan, triangles, run, cull, geometry.batches[i]);
     });
     for (const Batch& batch : geometry.batches) geometry.culled += batch.culled;
 }
 
 } // namespace
-
-std::unique_ptr<Geometry> GeometryPool::take() {
-    const std::lock_guard lock(mutex_);
-    if (free_.empty()) return std::make_unique<Geometry>();
-    std::unique_ptr<Geometry> geometry = std::move(free_.back());
-    free_.pop_back();
-    return geometry;
-}
-
-void GeometryPool::give_back(std::unique_ptr<Geometry> geometry) {
-    const std::lock_guard lock(mutex_);
-    free_.push_back(std::move(geometry));
-}
-
-std::size_t GeometryPool::memory_bytes() {
-    const std::lock_guard lock(mutex_);
-    std::size_t sum = 0;
-    for (const auto& geometry : free_) sum += geometry->memory_bytes();
-    return sum;
-}
 
 std::size_t Geometry::memory_bytes() const {
     std::size_t bytes = spheres.size() * sizeof(DrawSphere) + sphere_bins.memory_bytes() +

@@ -6,8 +6,7 @@
 #include "raster/geometry/sample_positions.h"
 #include "raster/raster_scene.h"
 
-#include <memory>
-#include <mutex>
+#include <vector>
 
 namespace duet::raster {
 
@@ -30,7 +29,7 @@ struct Geometry {
     Bins sphere_bins;
     CullCounts culled;
     double transform_seconds = 0, setup_seconds = 0, bin_seconds = 0;
-    std::vector<Assembler> assemblers; ///< assemblers not in use; each thread takes one
+    ObjectPool<Assembler> assemblers; ///< each thread takes one
 
     std::size_t memory_bytes() const;
 };
@@ -48,32 +47,5 @@ void process_only(const RasterSceneData& data, const std::vector<std::uint32_t>&
 /// Processes only the objects with alpha mask or alpha blending (RasterSceneData::alpha_polygonal and alpha_spheres).
 void process_layers(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
                     const RasterSettings& settings, Geometry& result);
-
-/// Provides a pool of geometries whose memory is reused from frame to frame. There is one for each rendering that
-/// runs at the same time.
-class GeometryPool {
-public:
-    std::unique_ptr<Geometry> take();
-    void give_back(std::unique_ptr<Geometry> geometry);
-    std::size_t memory_bytes(); ///< of the geometries that are not in use
-
-private:
-    std::mutex mutex_;
-    std::vector<std::unique_ptr<Geometry>> free_;
-};
-
-/// Holds a geometry taken from a pool and returned to it by the destructor.
-class PooledGeometry {
-public:
-    explicit PooledGeometry(GeometryPool& pool) : pool_(pool), geometry_(pool.take()) {}
-    ~PooledGeometry() { pool_.give_back(std::move(geometry_)); }
-    PooledGeometry(const PooledGeometry&) = delete;
-    PooledGeometry& operator=(const PooledGeometry&) = delete;
-    Geometry& operator*() { return *geometry_; }
-
-private:
-    GeometryPool& pool_;
-    std::unique_ptr<Geometry> geometry_;
-};
 
 } // namespace duet::raster

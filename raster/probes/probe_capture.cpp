@@ -31,7 +31,7 @@ ProbeCapture::Face capture(const RasterSceneData& data, const RasterSettings& se
                         .viewport = viewport_of(view, pinhole),
                         .samples = samples};
     const TileGrid grid{{0, 0, side, side}};
-    PooledGeometry geometry(*data.geometries);
+    const auto geometry = data.geometries->take();
     if (selection.excluded)
         process_without(data, selection.objects, grid, pass, settings, *geometry);
     else

@@ -165,17 +165,4 @@ void shade_multisampled(const SampleView& sample, DeferredFrame& frame,
     }
 }
 
-std::unique_ptr<DeferredFrame> DeferredFramePool::take() {
-    const std::lock_guard lock(mutex_);
-    if (free_.empty()) return std::make_unique<DeferredFrame>();
-    std::unique_ptr<DeferredFrame> frame = std::move(free_.back());
-    free_.pop_back();
-    return frame;
-}
-
-void DeferredFramePool::give_back(std::unique_ptr<DeferredFrame> frame) {
-    const std::lock_guard lock(mutex_);
-    free_.push_back(std::move(frame));
-}
-
 } // namespace duet::raster

@@ -10,7 +10,6 @@
 
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -62,30 +61,5 @@ void shade_deferred(const SampleView& sample, DeferredFrame& frame);
 /// use(radiance, counts) for each layer; counts holds the number of a pixel's samples that see it.
 void shade_multisampled(const SampleView& sample, DeferredFrame& frame,
                         const std::function<void(const Planes3& radiance, const PlaneInt& counts)>& use);
-
-/// Provides frames whose memory is reused, one for each rendering that runs at the same time.
-class DeferredFramePool {
-public:
-    std::unique_ptr<DeferredFrame> take();
-    void give_back(std::unique_ptr<DeferredFrame> frame);
-
-private:
-    std::mutex mutex_;
-    std::vector<std::unique_ptr<DeferredFrame>> free_;
-};
-
-/// Holds a frame taken from a pool and returned to it by the destructor.
-class PooledDeferredFrame {
-public:
-    explicit PooledDeferredFrame(DeferredFramePool& pool) : pool_(pool), frame_(pool.take()) {}
-    ~PooledDeferredFrame() { pool_.give_back(std::move(frame_)); }
-    PooledDeferredFrame(const PooledDeferredFrame&) = delete;
-    PooledDeferredFrame& operator=(const PooledDeferredFrame&) = delete;
-    DeferredFrame& operator*() { return *frame_; }
-
-private:
-    DeferredFramePool& pool_;
-    std::unique_ptr<DeferredFrame> frame_;
-};
 
 } // namespace duet::raster

@@ -88,7 +88,7 @@ ImageFloat render_depth(const RasterSceneData& data, const View& view, int threa
                         .viewport = viewport_of(view, pinhole),
                         .samples = samples};
     const TileGrid grid{{0, 0, view.width, view.height}};
-    PooledGeometry geometry(*data.geometries), layers(*data.geometries);
+    const auto geometry = data.geometries->take(), layers = data.geometries->take();
     process_geometry(data, grid, pass, settings, *geometry);
     if (data.has_layers()) process_layers(data, grid, pass, settings, *layers);
     ImageFloat image(view.width, view.height);

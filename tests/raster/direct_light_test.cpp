@@ -94,7 +94,7 @@ struct Frame1 {
                             .viewport = viewport_of(view, pinhole),
                             .samples = std::vector<SampleOffset>(1)};
         const TileGrid grid{{0, 0, width, height}};
-        PooledGeometry geometry(*prepared->data().geometries);
+        const auto geometry = prepared->data().geometries->take();
         process_geometry(prepared->data(), grid, pass, settings, *geometry);
         gbuffer.emplace(ScreenProjection(pinhole, SampleOffset()), width, height, any_clear_coat(scene));
         Planes3 emission(width, height);

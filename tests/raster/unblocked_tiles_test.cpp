@@ -39,7 +39,7 @@ GBuffer gbuffer_of(const RasterSceneData& data, int width, int height) {
     const std::vector<SampleOffset> samples(1);
     const PassView pass{.pinhole = pinhole, .time = 0, .viewport = viewport_of(view, pinhole), .samples = samples};
     const TileGrid grid{{0, 0, width, height}};
-    PooledGeometry geometry(*data.geometries);
+    const auto geometry = data.geometries->take();
     process_geometry(data, grid, pass, {}, *geometry);
     GBuffer gbuffer(ScreenProjection(pinhole, SampleOffset()), width, height, any_clear_coat(data.scene));
     Planes3 emission(width, height);

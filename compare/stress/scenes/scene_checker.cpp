@@ -22,16 +22,6 @@ Subprocess::Read read_result(Subprocess& process, int seconds, std::string& outp
 
 } // namespace
 
-std::unique_ptr<Subprocess> SceneChecker::take_process() {
-    const std::lock_guard lock(mutex_);
-    if (!idle_.empty()) {
-        std::unique_ptr<Subprocess> process = std::move(idle_.back());
-        idle_.pop_back();
-        return process;
-    }
-    return std::make_unique<Subprocess>(command_);
-}
-
 SceneVerdict SceneChecker::check(const std::filesystem::path& scene) {
     {
         const std::shared_lock beside_others(alone_);
@@ -43,18 +33,16 @@ SceneVerdict SceneChecker::check(const std::filesystem::path& scene) {
 }
 
 SceneVerdict SceneChecker::check_once(const std::filesystem::path& scene) {
-    std::unique_ptr<Subprocess> process = take_process();
+    auto process = processes_.take(command_);
     std::string output;
     process->write_line(scene.string());
     const Subprocess::Read read = read_result(*process, seconds_, output);
-    if (read.status == Subprocess::Status::kTimeout)
+    if (read.status != Subprocess::Status::kLine) {
+        const std::unique_ptr<Subprocess> ended(process.release()); // cannot check another scene
+        if (read.status == Subprocess::Status::kEnd) return {.failure = "crash", .details = output};
         return {.failure = "hang", .details = message("more than ", seconds_, " s")};
-    if (read.status == Subprocess::Status::kEnd) return {.failure = "crash", .details = output};
-    const auto result = nlohmann::json::parse(read.line);
-    {
-        const std::lock_guard lock(mutex_);
-        idle_.push_back(std::move(process));
     }
+    const auto result = nlohmann::json::parse(read.line);
     if (result["verdict"] == "refused") return {.refused = true, .failure = {}, .details = result["details"]};
     return {.failure = result["failure"], .details = result["details"]};
 }

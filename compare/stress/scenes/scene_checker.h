@@ -1,11 +1,10 @@
 // Checks scenes in other processes, which may crash or hang.
 #pragma once
 
+#include "common/system/object_pool.h"
 #include "compare/peers/subprocess.h"
 
 #include <filesystem>
-#include <memory>
-#include <mutex>
 #include <shared_mutex>
 #include <string>
 #include <vector>
@@ -34,13 +33,11 @@ public:
 
 private:
     SceneVerdict check_once(const std::filesystem::path& scene);
-    std::unique_ptr<Subprocess> take_process();
 
     std::vector<std::string> command_;
     int seconds_;
     std::shared_mutex alone_; ///< locked alone by a scene that is checked alone
-    std::mutex mutex_;        ///< of idle_
-    std::vector<std::unique_ptr<Subprocess>> idle_;
+    ObjectPool<Subprocess> processes_;
 };
 
 } // namespace duet::compare
