@@ -61,7 +61,7 @@ template <typename T = float> AnisotropicProbesT<T> anisotropic_probes(Vec2T<T> 
     // (n² − 1)/12.
     const T bilinear2 = max(probe2, T(3)), remaining2 = length2 - bilinear2;
     const auto longer = bounded && remaining2 > zero;
-    if (max_anisotropy == 1 || none_of_lanes(longer)) return probes;
+    if (max_anisotropy == 1 || none_of(longer)) return probes;
     probes.count = select(longer, clamp(ceil(sqrt(length2 / bilinear2)), T(2), max_count), one);
     // The major axis is the larger column of M − width² I.
     const Vec2T<T> a(xx - width2, xy), b(xy, yy - width2);

@@ -35,8 +35,4 @@ template <typename T> T power_of_two(T n) {
     return float_of(bits_of(n + T(kMantissaOffset + kBias)) << 23);
 }
 
-/// Returns whether no lane of the mask is true. A bool counts as a mask of one lane.
-inline bool none_of_lanes(bool lane) { return !lane; }
-inline bool none_of_lanes(const xsimd::batch_bool<float>& lanes) { return !xsimd::any(lanes); }
-
 } // namespace duet
