@@ -1,7 +1,6 @@
 #include "raytrace/render_plan.h"
 
 #include "common/system/error.h"
-#include "common/vec/simd.h"
 
 #include <algorithm>
 
@@ -61,9 +60,9 @@ RenderPlan::RenderPlan(const PathTracerSceneData& prepared_, const View& view, c
                                                      : prepared.finite_lights;
     const bool lights_useful = (prepared.scatters_diffusely && !chooser.empty()) || !skips.light_samples;
     if (samples_lights(settings.integrator) && max_depth > 0 && lights_useful) lights = &chooser;
-    // Paths are scattered in batches only with at least 4 lanes of doubles, and only if they need nothing that
-    // batches do not support: a medium stack, footprints, or the shadow rays and light samples that tests request.
-    if (kDoubleLanes >= 4 && !needs_medium_stack && !pixel_footprint && !black_shadow_rays && !specular_light_samples)
+    // Paths are scattered in batches only if they need nothing that batches do not support: a medium stack, footprints,
+    // or the shadow rays and light samples that tests request.
+    if (!needs_medium_stack && !pixel_footprint && !black_shadow_rays && !specular_light_samples)
         batched = BatchedSurfaces(scene, *bsdfs);
 }
 

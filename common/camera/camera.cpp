@@ -22,11 +22,7 @@ Vec3d round_to_float(Vec3d p) {
 }
 
 Vec3T<DoubleBatch> round_to_float(const Vec3T<DoubleBatch>& p) {
-    const auto one = [](DoubleBatch x) {
-        alignas(64) std::array<float, kDoubleLanes> floats;
-        store_floats(x, floats.data());
-        return load_doubles(floats.data());
-    };
+    const auto one = [](DoubleBatch x) { return to_doubles(to_floats(x)); };
     return {one(p.x), one(p.y), one(p.z)};
 }
 
@@ -166,8 +162,8 @@ Ray CameraModel::ray(Vec2d pixel, Vec2d lens_sample, double time_sample) const {
 }
 
 void CameraModel::rays(std::span<const Sample> samples, std::span<Ray> rays) const {
-    using Floats = FloatBatch<kSimdLanes>;
-    constexpr std::size_t kLanes = std::max(kSimdLanes, kDoubleLanes);
+    constexpr std::size_t kLanes = kSimdLanes;
+    using Floats = FloatBatch<kLanes>;
     using Row = std::array<float, kLanes>;
     std::size_t done = 0;
     for (; samples.size() - done >= kLanes; done += kLanes) {
@@ -180,13 +176,12 @@ void CameraModel::rays(std::span<const Sample> samples, std::span<Ray> rays) con
             x[i] = batch[i].pixel.x;
             y[i] = batch[i].pixel.y;
         }
-        if (has_lens())
-            for (std::size_t i = 0; i < kLanes; i += kSimdLanes) {
-                const Vec2T<Floats> disk = concentric_disk(
-                    Vec2T<Floats>(Floats::load_aligned(&lens_x[i]), Floats::load_aligned(&lens_y[i])));
-                disk.x.store_aligned(&lens_x[i]);
-                disk.y.store_aligned(&lens_y[i]);
-            }
+        if (has_lens()) {
+            const Vec2T<Floats> disk = concentric_disk(
+                Vec2T<Floats>(Floats::load_aligned(lens_x.data()), Floats::load_aligned(lens_y.data())));
+            disk.x.store_aligned(lens_x.data());
+            disk.y.store_aligned(lens_y.data());
+        }
         alignas(64) std::array<Row, 7> components;
         for (std::size_t i = 0; i < kLanes; i += kDoubleLanes) {
             const auto unrounded =

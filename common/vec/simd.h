@@ -19,17 +19,17 @@
 #pragma GCC diagnostic pop
 #endif
 
+#if !XSIMD_WITH_AVX2 || !defined(__FMA__)
+#error "Duet needs a CPU with AVX2 and fused multiply-add: set DUET_ARCH to x86-64-v3 or to an extension of it"
+#endif
+
 namespace duet {
 
-/// A batch holds N floats. N may be 4 on any x86-64 CPU, 8 with AVX, and 16 with AVX-512.
+/// A batch holds N floats. N may be 4 or 8, and 16 with AVX-512.
 template <std::size_t N> using FloatBatch = xsimd::make_sized_batch_t<float, N>;
 
 /// The default number of float lanes is at most 8, because wider batches gain little in tests against BVH boxes.
-#if XSIMD_WITH_AVX
 inline constexpr std::size_t kSimdLanes = 8;
-#else
-inline constexpr std::size_t kSimdLanes = 4;
-#endif
 
 /// The largest number of float lanes of the target CPU pays off only for work that fills all lanes.
 #if XSIMD_WITH_AVX512F
@@ -42,42 +42,41 @@ inline constexpr std::size_t kMaxSimdLanes = kSimdLanes;
 using DoubleBatch = xsimd::batch<double>;
 inline constexpr std::size_t kDoubleLanes = sizeof(DoubleBatch) / sizeof(double);
 
-/// Loads kDoubleLanes floats and converts them to doubles. The address needs no alignment.
-inline DoubleBatch load_doubles(const float* from) {
-#if XSIMD_WITH_AVX512F
-    return _mm512_cvtps_pd(_mm256_loadu_ps(from));
-#elif XSIMD_WITH_AVX
-    return _mm256_cvtps_pd(_mm_loadu_ps(from));
-#else
-    return _mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(from))));
-#endif
-}
-/// Rounds the doubles to floats and stores kDoubleLanes of them. The address needs no alignment.
-inline void store_floats(DoubleBatch batch, float* to) {
-#if XSIMD_WITH_AVX512F
-    _mm256_storeu_ps(to, _mm512_cvtpd_ps(batch));
-#elif XSIMD_WITH_AVX
-    _mm_storeu_ps(to, _mm256_cvtpd_ps(batch));
-#else
-    _mm_storel_epi64(reinterpret_cast<__m128i*>(to), _mm_castps_si128(_mm_cvtpd_ps(batch)));
-#endif
-}
+/// A narrow batch has as many float lanes as a DoubleBatch has lanes.
+using NarrowBatch = FloatBatch<kDoubleLanes>;
 
-/// Returns a·b + c, rounded once where the target CPU has fused multiply-add. The intrinsics are needed because
-/// version 8 of xsimd does not use this instruction for 16 or 4 lanes.
+inline DoubleBatch to_doubles(NarrowBatch floats) {
+#if XSIMD_WITH_AVX512F
+    return _mm512_cvtps_pd(floats);
+#else
+    return _mm256_cvtps_pd(floats);
+#endif
+}
+/// Rounds each lane to float.
+inline NarrowBatch to_floats(DoubleBatch doubles) {
+#if XSIMD_WITH_AVX512F
+    return _mm512_cvtpd_ps(doubles);
+#else
+    return _mm256_cvtpd_ps(doubles);
+#endif
+}
+/// Loads kDoubleLanes floats and converts them to doubles. The address needs no alignment.
+inline DoubleBatch load_doubles(const float* from) { return to_doubles(NarrowBatch::load_unaligned(from)); }
+/// Rounds the doubles to floats and stores kDoubleLanes of them. The address needs no alignment.
+inline void store_floats(DoubleBatch batch, float* to) { to_floats(batch).store_unaligned(to); }
+
+/// Returns a·b + c, rounded once. The intrinsics are needed because version 8 of xsimd rounds twice for 16 or 4 lanes.
 template <typename Arch>
 xsimd::batch<float, Arch> multiply_add(xsimd::batch<float, Arch> a, xsimd::batch<float, Arch> b,
                                        xsimd::batch<float, Arch> c) {
 #if XSIMD_WITH_AVX512F
     if constexpr (sizeof(a) == 64) return _mm512_fmadd_ps(a, b, c);
 #endif
-#if defined(__FMA__)
     if constexpr (sizeof(a) == 16) return _mm_fmadd_ps(a, b, c);
-#endif
     return xsimd::fma(a, b, c);
 }
 
-/// Returns c − a·b, rounded once where the target CPU has fused multiply-add.
+/// Returns c − a·b, rounded once.
 template <typename Arch>
 xsimd::batch<float, Arch> negated_multiply_add(xsimd::batch<float, Arch> a, xsimd::batch<float, Arch> b,
                                                xsimd::batch<float, Arch> c) {
@@ -94,33 +93,22 @@ inline DoubleBatch multiply_add(DoubleBatch a, DoubleBatch b, DoubleBatch c) {
     return xsimd::fma(a, b, c);
 #endif
 }
-/// Returns a·b + c for single floats, rounded once where the target CPU has fused multiply-add.
-inline float multiply_add(float a, float b, float c) {
-#if defined(__FMA__)
-    return std::fma(a, b, c);
-#else
-    return a * b + c;
-#endif
-}
+inline float multiply_add(float a, float b, float c) { return std::fma(a, b, c); }
 
 /// Returns a bit mask of the lanes that are true. Bit i belongs to lane i.
 template <typename Arch> unsigned lane_bits(xsimd::batch_bool<float, Arch> lanes) {
 #if XSIMD_WITH_AVX512F
     if constexpr (sizeof(lanes) != 32 && sizeof(lanes) != 16) return static_cast<unsigned>(lanes.data);
 #endif
-#if XSIMD_WITH_AVX
     if constexpr (sizeof(lanes) == 32) return static_cast<unsigned>(_mm256_movemask_ps(lanes));
-#endif
     if constexpr (sizeof(lanes) == 16) return static_cast<unsigned>(_mm_movemask_ps(lanes));
 }
 
 inline unsigned lane_bits(DoubleBatch::batch_bool_type lanes) {
 #if XSIMD_WITH_AVX512F
     return static_cast<unsigned>(lanes.data);
-#elif XSIMD_WITH_AVX
-    return static_cast<unsigned>(_mm256_movemask_pd(lanes));
 #else
-    return static_cast<unsigned>(_mm_movemask_pd(lanes));
+    return static_cast<unsigned>(_mm256_movemask_pd(lanes));
 #endif
 }
 
@@ -178,12 +166,10 @@ inline FloatBatch<4> zip_high(FloatBatch<4> a, FloatBatch<4> b) { return _mm_unp
 /// In each group of four lanes, pair_low returns a0 a1 b0 b1, and pair_high returns a2 a3 b2 b3.
 inline FloatBatch<4> pair_low(FloatBatch<4> a, FloatBatch<4> b) { return _mm_movelh_ps(a, b); }
 inline FloatBatch<4> pair_high(FloatBatch<4> a, FloatBatch<4> b) { return _mm_movehl_ps(b, a); }
-#if XSIMD_WITH_AVX
 inline FloatBatch<8> zip_low(FloatBatch<8> a, FloatBatch<8> b) { return _mm256_unpacklo_ps(a, b); }
 inline FloatBatch<8> zip_high(FloatBatch<8> a, FloatBatch<8> b) { return _mm256_unpackhi_ps(a, b); }
 inline FloatBatch<8> pair_low(FloatBatch<8> a, FloatBatch<8> b) { return _mm256_shuffle_ps(a, b, 0x44); }
 inline FloatBatch<8> pair_high(FloatBatch<8> a, FloatBatch<8> b) { return _mm256_shuffle_ps(a, b, 0xEE); }
-#endif
 #if XSIMD_WITH_AVX512F
 inline FloatBatch<16> zip_low(FloatBatch<16> a, FloatBatch<16> b) { return _mm512_unpacklo_ps(a, b); }
 inline FloatBatch<16> zip_high(FloatBatch<16> a, FloatBatch<16> b) { return _mm512_unpackhi_ps(a, b); }
@@ -200,16 +186,12 @@ template <std::size_t N, typename At> FloatBatch<N> gather_fours(const At& at) {
             _mm512_insertf32x4(_mm512_insertf32x4(_mm512_castps128_ps512(four(0)), four(1), 1), four(2), 2), four(3),
             3);
 #endif
-#if XSIMD_WITH_AVX
     if constexpr (N == 8) return _mm256_insertf128_ps(_mm256_castps128_ps256(four(0)), four(1), 1);
-#endif
     if constexpr (N == 4) return four(0);
 }
 /// Returns the i-th group of four lanes.
 template <int i> FloatBatch<4> four(FloatBatch<4> lanes) { return lanes; }
-#if XSIMD_WITH_AVX
 template <int i> FloatBatch<4> four(FloatBatch<8> lanes) { return _mm256_extractf128_ps(lanes, i); }
-#endif
 #if XSIMD_WITH_AVX512F
 template <int i> FloatBatch<4> four(FloatBatch<16> lanes) { return _mm512_extractf32x4_ps(lanes, i); }
 #endif
@@ -262,10 +244,8 @@ template <typename Arch> float reduce_min(xsimd::batch<float, Arch> lanes) {
 #if XSIMD_WITH_AVX512F
     if constexpr (sizeof(lanes) == 64) return _mm512_reduce_min_ps(lanes);
 #endif
-#if XSIMD_WITH_AVX
     if constexpr (sizeof(lanes) == 32)
         return reduce_min(FloatBatch<4>(_mm_min_ps(_mm256_castps256_ps128(lanes), _mm256_extractf128_ps(lanes, 1))));
-#endif
     if constexpr (sizeof(lanes) == 16) {
         const __m128 two = _mm_min_ps(lanes, _mm_movehl_ps(lanes, lanes));
         return _mm_cvtss_f32(_mm_min_ss(two, _mm_shuffle_ps(two, two, 1)));

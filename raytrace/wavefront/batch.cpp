@@ -24,8 +24,6 @@ UsedDimensions used_dimensions(const RenderPlan& plan, BatchedSurfaces::BsdfKind
             scattering == Scattering::kMetal || scattering == Scattering::kGlass, plan.russian_roulette && depth > 0};
 }
 
-#if XSIMD_WITH_AVX
-
 using namespace lanes;
 
 namespace {
@@ -207,11 +205,5 @@ void advance_batch(const RenderPlan& plan, BatchedSurfaces::Kind kind, std::span
         return advance(dielectric_bsdfs(paths));
     }
 }
-
-#else // without AVX, RenderPlan::batched has no surfaces
-
-void advance_batch(const RenderPlan&, BatchedSurfaces::Kind, std::span<BatchPath>, int, ShadowRays&, RayCounts&) {}
-
-#endif
 
 } // namespace duet::raytrace

@@ -7,8 +7,6 @@
 
 namespace duet::raytrace::lanes {
 
-#if XSIMD_WITH_AVX
-
 /// Draws a light sample for each path of a batch. Choices and samples are copied component by component: if a whole one
 /// were copied right after its components were written, that load would wait for the stores.
 class BatchLightSamples {
@@ -94,7 +92,5 @@ private:
     std::array<float, kLanes> distance_;
     std::array<std::int64_t, kLanes> light_;
 };
-
-#endif
 
 } // namespace duet::raytrace::lanes

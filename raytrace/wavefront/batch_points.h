@@ -8,8 +8,6 @@
 
 namespace duet::raytrace::lanes {
 
-#if XSIMD_WITH_AVX
-
 // `load_four` reads consecutive numbers across these members.
 static_assert(offsetof(Ray, direction) == offsetof(Ray, origin) + 3 * sizeof(float) &&
               offsetof(Ray, t_min) == offsetof(Ray, direction) + 3 * sizeof(float));
@@ -87,7 +85,5 @@ inline SurfaceGeometryT<Floats> surface_points(std::span<const BatchPath> paths,
     default: return round_points(paths);
     }
 }
-
-#endif
 
 } // namespace duet::raytrace::lanes

@@ -11,8 +11,6 @@
 
 namespace duet::raytrace::lanes {
 
-#if XSIMD_WITH_AVX
-
 constexpr std::size_t kLanes = kPathLanes;
 using Floats = FloatBatch<kLanes>;
 using Doubles = DoubleBatch;
@@ -56,7 +54,5 @@ template <typename Set> void for_lanes(std::span<const BatchPath> paths, const S
 template <typename First> std::array<Floats, 4> load_four(std::span<const BatchPath> paths, const First& first) {
     return load_columns<kLanes>([&](std::size_t i) { return &first(paths[i < paths.size() ? i : 0]); });
 }
-
-#endif
 
 } // namespace duet::raytrace::lanes

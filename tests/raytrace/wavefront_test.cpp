@@ -6,7 +6,6 @@
 
 #include "common/image/bitwise_equal.h"
 #include "common/sampling/warp.h"
-#include "common/vec/simd.h"
 #include "tests/raytrace/rooms.h"
 
 #include <doctest/doctest.h>
@@ -82,7 +81,7 @@ Differences check_same(const Scene& scene, const PathTracerSettings& settings) {
     CHECK(found.same_rays);
     // Tests may request these; then no path is batched.
     const bool asked = settings.skips.shadow_rays && settings.skips.textures;
-    if (kDoubleLanes >= 4) CHECK((found.plain > 100) == asked);
+    CHECK((found.plain > 100) == asked);
     return found;
 }
 
@@ -98,7 +97,7 @@ TEST_SUITE("unit") {
                 PathTracerSettings settings;
                 settings.seed = 7;
                 const Differences found = check_same(room(light, count, {}), settings);
-                if (kDoubleLanes >= 4) CHECK((found.smooth > 10) == (count != ObjectCount::kFew));
+                CHECK((found.smooth > 10) == (count != ObjectCount::kFew));
             }
     }
 
@@ -115,8 +114,7 @@ TEST_SUITE("unit") {
                     const Differences found = check_same(room(light, count, {}, Finish::kShiny), settings);
                     for (std::size_t k = 0; k < kinds.size(); ++k) kinds[k] += found.kinds[k];
                 }
-        if (kDoubleLanes >= 4)
-            for (const int count : kinds) CHECK(count > 10); // every kind occurs
+        for (const int count : kinds) CHECK(count > 10); // every kind occurs
         for (const bool roulette : {false, true}) {
             PathTracerSettings settings;
             settings.russian_roulette = roulette;
@@ -143,7 +141,7 @@ TEST_SUITE("unit") {
             CHECK(found.not_numbers == 0);
             CHECK(found.lit > 20);
             CHECK(found.same_rays);
-            if (kDoubleLanes >= 4) CHECK(found.plain > 100);
+            CHECK(found.plain > 100);
         }
     }
 
