@@ -50,12 +50,6 @@ void add_means(GgxAlbedoTables& tables, std::size_t row, float alpha) {
     tables.mean_schlick_weight[row] = static_cast<float>(schlick_weight);
 }
 
-void write(std::ostream& out, const GgxAlbedoTables::Table& table) {
-    out << "{{\n";
-    for (const auto& row : table) write_floats(out, row);
-    out << "}},\n";
-}
-
 std::unique_ptr<GgxAlbedoTables> compute_tables() {
     auto tables = std::make_unique<GgxAlbedoTables>();
     constexpr std::size_t kSize = GgxAlbedoTables::kSize;
@@ -77,14 +71,13 @@ std::unique_ptr<GgxAlbedoTables> compute_tables() {
 } // namespace
 
 int main(int count, char** arguments) {
-    return generate_table(count, arguments, "make_ggx_albedo", [](std::ostream& out) {
+    const TableSource source{"make_ggx_albedo", "common/material/ggx_albedo_table.h", "duet",
+                             "GgxAlbedoTables kGgxAlbedoTables"};
+    return generate_table(count, arguments, source, [](std::ostream& out) {
         const auto tables = compute_tables();
-        out << "#include \"common/material/ggx_albedo_table.h\"\n\nnamespace duet {\n\nextern const GgxAlbedoTables "
-               "kGgxAlbedoTables;\nconst GgxAlbedoTables kGgxAlbedoTables{\n";
-        write(out, tables->energy_loss);
-        write(out, tables->schlick_weight);
-        write_floats(out, tables->mean_energy_loss);
-        write_floats(out, tables->mean_schlick_weight);
-        out << "};\n\n} // namespace duet\n";
+        write_table(out, tables->energy_loss);
+        write_table(out, tables->schlick_weight);
+        write_table(out, tables->mean_energy_loss);
+        write_table(out, tables->mean_schlick_weight);
     });
 }

@@ -95,33 +95,17 @@ std::unique_ptr<Tables> compute_tables() {
     return tables;
 }
 
-void write(std::ostream& out, const Tables::Means& rows) {
-    out << "{{\n";
-    for (const auto& row : rows) write_floats(out, row);
-    out << "}},\n";
-}
-void write(std::ostream& out, const Tables::Surface& surface) {
-    out << "{{\n";
-    for (const auto& rows : surface) {
-        out << "{{\n";
-        for (const Tables::Curve& curve : rows) write_floats(out, curve);
-        out << "}},\n";
-    }
-    out << "}},\n";
-}
-
 } // namespace
 
 int main(int count, char** arguments) {
-    return generate_table(count, arguments, "make_rough_glass", [](std::ostream& out) {
+    const TableSource source{"make_rough_glass", "common/material/rough_glass_table.h", "duet",
+                             "RoughGlassTables kRoughGlassTables"};
+    return generate_table(count, arguments, source, [](std::ostream& out) {
         const auto tables = compute_tables();
-        out << "#include \"common/material/rough_glass_table.h\"\n\nnamespace duet {\n\nextern const RoughGlassTables "
-               "kRoughGlassTables;\nconst RoughGlassTables kRoughGlassTables{\n";
-        write(out, tables->gain);
-        write(out, tables->energy_loss_thin);
-        write(out, tables->energy_loss_dense);
-        write(out, tables->mean_energy_loss_thin);
-        write(out, tables->mean_energy_loss_dense);
-        out << "};\n\n} // namespace duet\n";
+        write_table(out, tables->gain);
+        write_table(out, tables->energy_loss_thin);
+        write_table(out, tables->energy_loss_dense);
+        write_table(out, tables->mean_energy_loss_thin);
+        write_table(out, tables->mean_energy_loss_dense);
     });
 }
