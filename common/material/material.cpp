@@ -65,17 +65,9 @@ const RgbSlot& texture_slot(const Material& material) {
 RgbSlot& texture_slot(Material& material) { return const_cast<RgbSlot&>(texture_slot(std::as_const(material))); }
 
 Rgb base_color(const Material& material, const TextureSet& textures, const SurfacePoint& point) {
-    struct {
-        const TextureSet& textures;
-        const SurfacePoint& point;
-        Rgb operator()(const Diffuse& m) const { return m.at(textures, point).albedo; }
-        Rgb operator()(const Metal& m) const { return m.at(textures, point).reflectance; }
-        Rgb operator()(const Dielectric& m) const { return m.at(textures, point).tint; }
-        Rgb operator()(const Emissive& m) const { return m.at(textures, point).albedo; }
-        Rgb operator()(const Principled& m) const { return evaluate_reflectance(textures, m.base_color, point); }
-        Rgb operator()(const Coated& m) const { return evaluate_reflectance(textures, m.albedo, point); }
-    } const color{textures, point};
-    return std::visit(color, material);
+    const auto* metal = std::get_if<Metal>(&material);
+    if (metal != nullptr && metal->conductor.valid()) return metal->conductor.f0;
+    return evaluate_reflectance(textures, texture_slot(material), point);
 }
 
 } // namespace duet
