@@ -2,6 +2,7 @@
 
 #include "common/image/plot_axis.h"
 #include "common/system/error.h"
+#include "common/system/escape.h"
 #include "common/system/file.h"
 
 #include <algorithm>
@@ -31,21 +32,6 @@ constexpr double kFontSize = 13, kTitleSize = 15, kLineHeight = 17;
 double text_width(const std::string& text, double size = kFontSize) {
     const auto letters = std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }); // in UTF-8
     return 0.58 * size * static_cast<double>(letters);
-}
-
-std::string escaped(const std::string& text) {
-    std::string result;
-    for (const char c : text) {
-        if (c == '&')
-            result += "&amp;";
-        else if (c == '<')
-            result += "&lt;";
-        else if (c == '"')
-            result += "&quot;";
-        else
-            result += c;
-    }
-    return result;
 }
 
 std::string pixels(double value) { return format_significant(std::round(value * 10) / 10, 6); }
@@ -115,7 +101,8 @@ Layout layout_of(const std::string& name, const Plot& plot) {
 }
 
 std::string text_at(double x, double y, const std::string& text, const std::string& attributes) {
-    return message("<text x=\"", pixels(x), "\" y=\"", pixels(y), "\" ", attributes, ">", escaped(text), "</text>\n");
+    return message("<text x=\"", pixels(x), "\" y=\"", pixels(y), "\" ", attributes, ">", markup_escaped(text),
+                   "</text>\n");
 }
 
 std::string line_from(Vec2d a, Vec2d b, const std::string& attributes) {
@@ -165,9 +152,10 @@ std::string lines(const Layout& layout, const Plot& plot) {
             ys += format_significant(point.y, 7) + " ";
             dots += message("<circle cx=\"", x, "\" cy=\"", y, "\" r=\"3\"/>\n");
         }
-        svg += message("<g data-series=\"", escaped(series.name), "\" data-x=\"", xs, "\" data-y=\"", ys, "\" fill=\"",
-                       kSeriesColors[s].line, "\">\n<polyline points=\"", polyline_points, "\" fill=\"none\" stroke=\"",
-                       kSeriesColors[s].line, "\" stroke-width=\"2\" stroke-linejoin=\"round\"/>\n");
+        svg += message("<g data-series=\"", markup_escaped(series.name), "\" data-x=\"", xs, "\" data-y=\"", ys,
+                       "\" fill=\"", kSeriesColors[s].line, "\">\n<polyline points=\"", polyline_points,
+                       "\" fill=\"none\" stroke=\"", kSeriesColors[s].line,
+                       "\" stroke-width=\"2\" stroke-linejoin=\"round\"/>\n");
         svg += (series.points.size() <= 24 ? dots : "") + "</g>\n"; // more dots would hide the line
     }
     return svg;
@@ -219,7 +207,7 @@ std::string plot_svg(const std::string& name, const Plot& plot) {
                    "\" viewBox=\"0 0 ", plot.width, " ", plot.height, "\" role=\"img\" data-timing=\"",
                    plot.timing ? "true" : "false",
                    "\" font-family=\"Helvetica, Arial, 'DejaVu Sans', sans-serif\" font-size=\"", kFontSize,
-                   "\" fill=\"#222\">\n<title>", escaped(plot.title.empty() ? name : plot.title),
+                   "\" fill=\"#222\">\n<title>", markup_escaped(plot.title.empty() ? name : plot.title),
                    "</title>\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n", titles(layout, plot),
                    grid(layout), lines(layout, plot), series_labels(layout, plot), "</svg>\n");
 }

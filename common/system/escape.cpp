@@ -45,6 +45,21 @@ std::string escaped(std::string_view text) {
     return out;
 }
 
+std::string markup_escaped(std::string_view text) {
+    std::string out;
+    for (const char c : text) {
+        if (c == '&')
+            out += "&amp;";
+        else if (c == '<')
+            out += "&lt;";
+        else if (c == '"')
+            out += "&quot;";
+        else
+            out += c;
+    }
+    return out;
+}
+
 std::string shortened(std::string_view text, std::size_t most) {
     const auto starts = [](char c) { return !continues(c); };
     if (static_cast<std::size_t>(std::count_if(text.begin(), text.end(), starts)) <= most) return std::string(text);

@@ -1,4 +1,4 @@
-// These functions prepare text that comes from a file, or is a file's name, for a terminal.
+// These functions prepare text that comes from a file, or is a file's name, for a terminal or a page.
 #pragma once
 
 #include <string>
@@ -9,6 +9,9 @@ namespace duet {
 /// Returns the text with \xNN for each byte of a control character (ASCII and C1, which U+0080 to U+009F encode) and
 /// for each byte that is not part of valid UTF-8. The result is one line.
 std::string escaped(std::string_view text);
+
+/// Returns the text with the entities of HTML and SVG for &, < and ", so that it can be an element's or an attribute's.
+std::string markup_escaped(std::string_view text);
 
 /// Returns the text if it has at most `most` characters, and otherwise its start and its end with an ellipsis between
 /// them, `most` characters in all. The text must be valid UTF-8; `most` must be at least 3.

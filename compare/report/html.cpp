@@ -1,6 +1,7 @@
 #include "compare/report/html.h"
 
 #include "common/system/error.h"
+#include "common/system/escape.h"
 
 #include <map>
 #include <nlohmann/json.hpp>
@@ -25,24 +26,6 @@ std::string fill_in(std::string_view page, const std::map<std::string_view, std:
     }
 }
 
-std::string escape_html(const std::string& text) {
-    std::string escaped;
-    for (const char c : text) switch (c) {
-        case '&':
-            escaped += "&amp;";
-            break;
-        case '<':
-            escaped += "&lt;";
-            break;
-        case '>':
-            escaped += "&gt;";
-            break;
-        default:
-            escaped += c;
-        }
-    return escaped;
-}
-
 /// Returns JSON that is safe within a script element: no text in it can close the element.
 std::string script_json(const json& value) {
     std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
@@ -54,7 +37,7 @@ std::string script_json(const json& value) {
 } // namespace
 
 std::string make_page(const PageSource& source, const std::string& title, const json& data) {
-    const std::string escaped_title = escape_html(title), embedded = script_json(data);
+    const std::string escaped_title = markup_escaped(title), embedded = script_json(data);
     return fill_in(source.html,
                    {{"title", escaped_title}, {"css", source.css}, {"data", embedded}, {"js", source.js}});
 }
