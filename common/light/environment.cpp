@@ -9,20 +9,12 @@ namespace duet {
 
 namespace {
 
-// Constant -----------------------------------------------------------------------------------------------------------
-
-Rgb look_up(const ConstantEnvironment& e, Vec3 w) { return radiance(e, w); }
 bool black(const ConstantEnvironment& e) { return is_black(e.radiance); }
-
-// Sky ----------------------------------------------------------------------------------------------------------------
-
-Rgb look_up(const SkyEnvironment& e, Vec3 w) { return radiance(e, w); }
 bool black(const SkyEnvironment& e) { return is_black(e.down) && is_black(e.up); }
 
-// Image --------------------------------------------------------------------------------------------------------------
-// `rotation` turns the mapping about +y by shifting u. Within a row of the distribution the height y of a direction
-// is uniform, not its latitude. The density by solid angle is therefore constant in each cell, also at the poles,
-// where sin θ vanishes.
+// In an image, `rotation` turns the mapping about +y by shifting u. Within a row of the distribution the height y of a
+// direction is uniform, not its latitude. The density by solid angle is therefore constant in each cell, also at the
+// poles, where sin θ vanishes.
 
 float wrap(double u) { return std::min(static_cast<float>(u - std::floor(u)), kOneMinusEpsilon); }
 
@@ -48,7 +40,7 @@ std::size_t band_index(float v, int rows) {
 
 /// Looks up the image bilinearly between pixel centers. The lookup wraps around in longitude and clamps beyond the
 /// centers of the top and bottom rows.
-Rgb look_up(const ImageEnvironment& e, Vec3 w) {
+Rgb radiance(const ImageEnvironment& e, Vec3 w) {
     if (e.image.empty()) return {};
     const int width = e.image.width(), rows = e.image.height();
     const Vec2 uv = image_uv(e, w);
@@ -85,7 +77,7 @@ std::optional<EnvironmentSample> draw(const ImageEnvironment& e, Vec2 u) {
     const Vec3 wi(Vec3d(ring_radius * std::sin(longitude), y, -ring_radius * std::cos(longitude)));
     const float pdf = cell_density(e, s.pdf, s.uv.y);
     if (!(pdf > 0) || !std::isfinite(pdf)) return std::nullopt;
-    return EnvironmentSample{wi, look_up(e, wi), pdf};
+    return EnvironmentSample{wi, radiance(e, wi), pdf};
 }
 
 /// Returns the luminance of each pixel's cell, integrated over solid angle up to a constant factor. Rows are counted
@@ -156,7 +148,7 @@ ImageEnvironment make_image_environment(ImageRgb image, float scale, float rotat
 }
 
 Rgb radiance(const Environment& environment, Vec3 w) {
-    return std::visit([&](const auto& e) { return look_up(e, w); }, environment);
+    return std::visit([&](const auto& e) { return radiance(e, w); }, environment);
 }
 std::optional<EnvironmentSample> sample(const Environment& environment, Vec2 u) {
     const auto* map = std::get_if<ImageEnvironment>(&environment);

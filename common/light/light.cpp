@@ -113,6 +113,4 @@ bool is_black(const Light& light) {
     return std::visit([](const auto& l) { return is_black(flux(l, 1.0).quantity); }, light);
 }
 
-bool is_delta(const Light& light) { return !std::holds_alternative<SurfaceLight>(light); }
-
 } // namespace duet

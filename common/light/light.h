@@ -63,7 +63,6 @@ double area(const SurfaceLight& light);
 /// Returns the emitted flux in W, averaged over channels. For a sun it is the flux through a disk of the scene's
 /// radius.
 float light_power(const Light& light, float scene_radius);
-bool is_delta(const Light& light);
 /// Returns whether the light emits nothing.
 bool is_black(const Light& light);
 

@@ -2,7 +2,9 @@
 
 #include "common/system/error.h"
 
+#include <array>
 #include <cmath>
+#include <span>
 
 namespace duet {
 
@@ -25,7 +27,7 @@ LightBounds omnidirectional_bounds(Vec3 position, float intensity) {
     return bounds;
 }
 
-LightBounds flat_light_bounds(std::initializer_list<Vec3> corners, Vec3 area, const SurfaceLight& light) {
+LightBounds flat_light_bounds(std::span<const Vec3> corners, Vec3 area, const SurfaceLight& light) {
     LightBounds bounds;
     const float size = length(area);
     const float intensity = size * average(light.radiance);
@@ -50,11 +52,9 @@ struct {
     }
     LightBounds operator()(const SurfaceLight& light) const {
         if (const auto* quad = std::get_if<Quad>(&light.shape))
-            return flat_light_bounds(
-                {quad->corner, quad->corner + quad->u, quad->corner + quad->v, quad->corner + quad->u + quad->v},
-                cross(quad->u, quad->v), light);
+            return flat_light_bounds(corners(*quad), cross(quad->u, quad->v), light);
         if (const auto* t = std::get_if<SurfaceLight::Triangle>(&light.shape))
-            return flat_light_bounds({t->a, t->b, t->c}, cross(t->b - t->a, t->c - t->a) * 0.5f, light);
+            return flat_light_bounds(std::array{t->a, t->b, t->c}, cross(t->b - t->a, t->c - t->a) * 0.5f, light);
         const auto& sphere = std::get<Sphere>(light.shape);
         LightBounds bounds = omnidirectional_bounds(sphere.center, kPi * sqr(sphere.radius) * average(light.radiance));
         const Vec3 extent(sphere.radius, sphere.radius, sphere.radius);

@@ -14,16 +14,10 @@ namespace duet {
 /// Returns a·b − c·d with an error below 1.5 ulp of the result, however close the products are (Kahan's algorithm;
 /// proof: Jeannerod, Louvet and Muller 2013). Exchanging the two products does not always give exactly the negated
 /// result.
-inline float difference_of_products(float a, float b, float c, float d) {
-    const float cd = c * d;
-    const float difference = std::fma(a, b, -cd);
-    const float error = std::fma(-c, d, cd);
-    return difference + error;
-}
-inline double difference_of_products(double a, double b, double c, double d) {
-    const double cd = c * d;
-    const double difference = std::fma(a, b, -cd);
-    const double error = std::fma(-c, d, cd);
+template <Arithmetic T> T difference_of_products(T a, T b, T c, T d) {
+    const T cd = c * d;
+    const T difference = std::fma(a, b, -cd);
+    const T error = std::fma(-c, d, cd);
     return difference + error;
 }
 

@@ -98,7 +98,6 @@ TEST_SUITE("unit") {
         CHECK(s->delta);
         CHECK(s->pdf == 1);
         CHECK_FALSE(sample_light(point, {1, 2, 3}, {0, 0}).has_value());
-        CHECK(is_delta(point));
 
         const float inner = std::cos(0.3f), outer = std::cos(0.5f);
         const Light spot = SpotLight{{0, 5, 0}, {0, -1, 0}, Rgb(25.0f), inner, outer};
