@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace duet {
@@ -66,21 +67,26 @@ QuadList box_quads(Vec3 low, Vec3 high) {
     }};
 }
 
+std::vector<std::uint32_t> weld(const std::vector<Vec3>& positions) {
+    std::vector<std::uint32_t> order(positions.size()), welded(positions.size());
+    std::iota(order.begin(), order.end(), 0u);
+    const auto less = [&](std::uint32_t a, std::uint32_t b) {
+        const Vec3 &p = positions[a], &q = positions[b];
+        return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z < q.z;
+    };
+    std::sort(order.begin(), order.end(), less);
+    for (std::size_t i = 0; i < order.size(); ++i)
+        welded[order[i]] = i > 0 && positions[order[i]] == positions[order[i - 1]] ? welded[order[i - 1]] : order[i];
+    return welded;
+}
+
 bool is_closed_outwards(const Mesh& mesh) {
     if (mesh.triangles.empty()) return false;
-    // Merge vertices at the same position, because a seam in the uvs or normals does not open a mesh.
-    std::vector<std::uint32_t> order(mesh.positions.size()), merged(mesh.positions.size());
-    for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-    const auto key = [&](std::uint32_t i) {
-        return std::array{mesh.positions[i].x, mesh.positions[i].y, mesh.positions[i].z};
-    };
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
-    for (std::size_t i = 0; i < order.size(); ++i)
-        merged[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? merged[order[i - 1]] : order[i];
-
+    // A seam in the uvs or normals does not open a mesh.
+    const std::vector<std::uint32_t> welded = weld(mesh.positions);
     // Each connected component must enclose a positive volume. A component with reversed orientation would show its
     // back faces to the outside. The components are found by union-find over the edges.
-    std::vector<std::uint32_t> parent = merged;
+    std::vector<std::uint32_t> parent = welded;
     const auto component = [&](std::uint32_t i) {
         while (parent[i] != i) i = parent[i] = parent[parent[i]];
         return i;
@@ -89,7 +95,7 @@ bool is_closed_outwards(const Mesh& mesh) {
     edges.reserve(mesh.triangles.size() * 3);
     for (const auto& t : mesh.triangles)
         for (std::size_t i = 0; i < 3; ++i) {
-            const std::uint32_t from = merged[t[i]], to = merged[t[(i + 1) % 3]];
+            const std::uint32_t from = welded[t[i]], to = welded[t[(i + 1) % 3]];
             if (from == to) continue;
             edges.emplace_back(from, to);
             parent[component(from)] = component(to);
@@ -97,7 +103,7 @@ bool is_closed_outwards(const Mesh& mesh) {
     // The divergence theorem gives six times the volume of each component.
     std::vector<double> volume(mesh.positions.size(), 0.0);
     for (const auto& t : mesh.triangles) {
-        const std::uint32_t root = component(merged[t[0]]);
+        const std::uint32_t root = component(welded[t[0]]);
         // Coordinates relative to a vertex of the component avoid cancellation far from the world's origin.
         const Vec3d origin(mesh.positions[root]);
         const auto corner = [&](std::size_t i) { return Vec3d(mesh.positions[t[i]]) - origin; };

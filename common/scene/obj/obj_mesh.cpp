@@ -1,5 +1,6 @@
 #include "common/scene/obj/obj_mesh.h"
 
+#include "common/sampling/hash.h"
 #include "common/scene/obj/triangulate.h"
 #include "common/system/error.h"
 
@@ -8,14 +9,6 @@
 namespace duet {
 
 namespace {
-
-/// Returns a hash of which every bit depends on every bit of the three indices (the finalizer is MurmurHash3's).
-std::uint64_t hash(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    std::uint64_t h = ((static_cast<std::uint64_t>(a) << 32) | b) * 0x9e3779b97f4a7c15u + c;
-    h = (h ^ (h >> 33)) * 0xff51afd7ed558ccdu;
-    h = (h ^ (h >> 33)) * 0xc4ceb9fe1a85ec53u;
-    return h ^ (h >> 33);
-}
 
 /// Returns v normalized, for any length that float represents, and (0, 0, 0) for the zero vector.
 Vec3 unit(Vec3d v) { return v == Vec3d() ? Vec3() : Vec3(normalize_scaled(v)); }
@@ -120,7 +113,8 @@ void ObjMeshBuilder::use_face_normal(std::vector<Corner>& face) {
 }
 
 std::size_t ObjMeshBuilder::find(const Corner& corner) const {
-    std::size_t at = hash(corner.position, corner.uv, corner.normal) & (table_.size() - 1);
+    const std::uint64_t position_and_uv = static_cast<std::uint64_t>(corner.position) << 32 | corner.uv;
+    std::size_t at = hash_combine(position_and_uv, corner.normal) & (table_.size() - 1);
     while (table_[at] != kNone && vertices_[table_[at]] != corner) at = (at + 1) & (table_.size() - 1);
     return at;
 }

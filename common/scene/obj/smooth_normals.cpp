@@ -11,20 +11,6 @@ namespace {
 
 using Index = std::uint32_t;
 
-/// Returns an index for each vertex such that equal positions have equal indices.
-std::vector<Index> weld(const std::vector<Vec3>& positions) {
-    std::vector<Index> order(positions.size()), welded(positions.size());
-    std::iota(order.begin(), order.end(), 0u);
-    const auto less = [&](Index a, Index b) {
-        const Vec3 &p = positions[a], &q = positions[b];
-        return p.x != q.x ? p.x < q.x : p.y != q.y ? p.y < q.y : p.z < q.z;
-    };
-    std::sort(order.begin(), order.end(), less);
-    for (std::size_t i = 0; i < order.size(); ++i)
-        welded[order[i]] = i > 0 && positions[order[i]] == positions[order[i - 1]] ? welded[order[i - 1]] : order[i];
-    return welded;
-}
-
 /// CornerSets is a union-find structure over triangle corners (3·triangle + k). Corners of one set share a normal.
 class CornerSets {
 public:
