@@ -97,11 +97,9 @@ void JsonValue::expected(const std::string& what) const {
 double JsonValue::number(JsonRange range) const {
     if (!is(Kind::kNumber)) expected("a number");
     const double x = node_->number;
-    if (!(x >= range.low && x <= range.high) || (range.open_low && x == range.low))
-        expected("a number " + describe(range));
     // A positive number must also be positive when it is stored as float.
-    if (range.open_low && static_cast<float>(x) == static_cast<float>(range.low))
-        expected("a number " + describe(range));
+    const bool at_open_end = range.open_low && static_cast<float>(x) == static_cast<float>(range.low);
+    if (!(x >= range.low && x <= range.high) || at_open_end) expected("a number " + describe(range));
     return x;
 }
 
@@ -177,15 +175,14 @@ void JsonValue::check_keys(const JsonKeys& keys) const {
     for (const std::string& key : node_->keys)
         if (std::find(known.begin(), known.end(), key) == known.end())
             fail(message("unknown key ", quoted_text(key), suggestion(key, known)));
-    for (const std::string_view key : keys.required)
-        if (!has(key)) fail(message("the key ", quoted_text(key), " is missing"));
+    for (const std::string_view key : keys.required) at(key);
 }
 
 JsonValue JsonValue::at(std::string_view key) const {
     if (!is(Kind::kObject)) expected("an object");
-    const auto found = std::find(node_->keys.begin(), node_->keys.end(), key);
-    if (found == node_->keys.end()) fail(message("the key ", quoted_text(key), " is missing"));
-    return member(static_cast<std::size_t>(found - node_->keys.begin()));
+    const JsonNode* found = find(key);
+    if (found == nullptr) fail(message("the key ", quoted_text(key), " is missing"));
+    return member(static_cast<std::size_t>(found - node_->items.data()));
 }
 
 double JsonValue::number_or(std::string_view key, double fallback, JsonRange range) const {

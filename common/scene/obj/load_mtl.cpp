@@ -28,11 +28,6 @@ bool is_glass(const tinyobj::material_t& m) {
     return m.illum == 4 || m.illum == 6 || m.illum == 7 || m.illum == 9 || (m.dissolve < 1 && m.ior > 1);
 }
 
-std::string trimmed(const std::string& text) {
-    const std::size_t first = text.find_first_not_of(" \t\r");
-    return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
 /// TextureList collects the images that a material's lines name, in the order in which they are added.
 class TextureList {
 public:

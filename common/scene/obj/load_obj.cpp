@@ -27,10 +27,7 @@ public:
     }
 
     void use(const char* name) {
-        std::string text = name;
-        text.erase(std::min(text.find_last_not_of(" \t") + 1, text.size()));
-        text.erase(0, std::min(text.find_first_not_of(" \t"), text.size()));
-        current_ = wanted_ ? text : "";
+        current_ = wanted_ ? trimmed(name) : "";
         slot_ = kUnknown;
     }
 
@@ -57,9 +54,8 @@ private:
             std::error_code error;
             return std::filesystem::is_regular_file(resolve_path(*path_, name), error);
         };
-        const std::size_t first = line.find_first_not_of(" \t");
-        if (first == std::string::npos) return;
-        const std::string whole = line.substr(first, line.find_last_not_of(" \t") - first + 1);
+        const std::string whole = trimmed(line);
+        if (whole.empty()) return;
         if (file_exists(whole)) return load(resolve_path(*path_, whole));
         for (std::size_t at = 0; at < whole.size();) {
             const std::size_t end = std::min(whole.find_first_of(" \t", at), whole.size());

@@ -70,4 +70,9 @@ void ObjText::join_lines(const char* bytes, std::size_t count) {
     }
 }
 
+std::string trimmed(std::string_view text) {
+    const std::size_t first = text.find_first_not_of(" \t");
+    return first == text.npos ? "" : std::string(text.substr(first, text.find_last_not_of(" \t") - first + 1));
+}
+
 } // namespace duet

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <streambuf>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace duet {
@@ -35,5 +36,8 @@ private:
     bool carriage_ = false;   ///< whether the last byte was \r, which \n may follow
     std::size_t continued_ = 0; ///< number of lines joined into the current one
 };
+
+/// Returns the text without blanks and tabs at its ends.
+std::string trimmed(std::string_view text);
 
 } // namespace duet
