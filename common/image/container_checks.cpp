@@ -6,7 +6,6 @@ namespace duet {
 
 namespace {
 
-std::uint32_t byte_at(std::string_view bytes, std::size_t i) { return static_cast<unsigned char>(bytes[i]); }
 std::uint32_t big_endian_16(std::string_view bytes, std::size_t i) {
     return byte_at(bytes, i) << 8 | byte_at(bytes, i + 1);
 }

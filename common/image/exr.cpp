@@ -49,15 +49,18 @@ private:
     std::size_t at_ = 0;
 };
 
-// Calls read() and converts the exceptions of OpenEXR to Errors.
-template <typename Read> auto convert_errors(const ImageBytes& file, Read read) {
+// Calls action() and converts the exceptions of OpenEXR to Errors, which begin with `problem`.
+template <typename Action> auto convert_errors(const std::string& problem, int exit_code, const Action& action) {
     try {
-        return read();
+        return action();
     } catch (const Error&) {
         throw;
     } catch (const std::exception& error) {
-        throw Error(message(file.name, ": not a readable EXR image: ", error.what()));
+        throw Error(message(problem, ": ", error.what()), exit_code);
     }
+}
+template <typename Read> auto convert_read_errors(const ImageBytes& file, const Read& read) {
+    return convert_errors(file.name + ": not a readable EXR image", 2, read);
 }
 
 // Returns the number of threads with which OpenEXR processes an image of that many values. OpenEXR has its own thread
@@ -178,7 +181,7 @@ std::vector<const char*> image_channels(const ImageBytes& file, const Imf::Chann
 } // namespace
 
 StoredImage decode_exr(const ImageBytes& file) {
-    return convert_errors(file, [&] {
+    return convert_read_errors(file, [&] {
         const Imf::Header header = read_header(file);
         const Window window = data_window(header);
         const std::vector<const char*> names = image_channels(file, header.channels());
@@ -199,7 +202,7 @@ StoredImage decode_exr(const ImageBytes& file) {
 }
 
 ExrFile decode_exr_channels(const ImageBytes& file) {
-    return convert_errors(file, [&] {
+    return convert_read_errors(file, [&] {
         const Imf::Header header = read_header(file);
         const Window window = data_window(header);
         ExrFile result{static_cast<int>(window.width), static_cast<int>(window.height), {}, {}};
@@ -264,13 +267,7 @@ void write_exr(const fs::path& path, int width, int height, const std::vector<Ex
         check_written(out, path);
     };
     write_atomically(path, [&](const fs::path& temporary) {
-        try {
-            write(temporary);
-        } catch (const Error&) {
-            throw;
-        } catch (const std::exception& error) {
-            throw Error(message(path.string(), ": cannot be written: ", error.what()), 1);
-        }
+        convert_errors(path.string() + ": cannot be written", 1, [&] { write(temporary); });
     });
 }
 

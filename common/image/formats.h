@@ -6,6 +6,9 @@
 
 namespace duet {
 
+/// Returns byte i, which must exist.
+inline std::uint32_t byte_at(std::string_view bytes, std::size_t i) { return static_cast<unsigned char>(bytes[i]); }
+
 // The stb library implements these formats.
 StoredImage decode_png(const ImageBytes& file);
 StoredImage decode_jpeg(const ImageBytes& file);

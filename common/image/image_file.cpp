@@ -31,17 +31,14 @@ constexpr std::array kReaders{
     Reader{"\x76\x2f\x31\x01"sv, decode_exr},
 };
 
-std::string encode_unsupported(const ImageRgb&, const WriteOptions&) { return {}; }
-
 struct Writer {
     std::string_view extension;
     std::string (*encode)(const ImageRgb&, const WriteOptions&);
 };
 // EXR has no encoder here, because OpenEXR writes files directly.
 constexpr std::array kWriters{
-    Writer{".png", encode_png}, Writer{".jpg", encode_jpeg},        Writer{".jpeg", encode_jpeg},
-    Writer{".tga", encode_tga}, Writer{".ppm", encode_ppm},         Writer{".pfm", encode_pfm},
-    Writer{".hdr", encode_hdr}, Writer{".exr", encode_unsupported},
+    Writer{".png", encode_png}, Writer{".jpg", encode_jpeg}, Writer{".jpeg", encode_jpeg}, Writer{".tga", encode_tga},
+    Writer{".ppm", encode_ppm}, Writer{".pfm", encode_pfm},  Writer{".hdr", encode_hdr},   Writer{".exr", nullptr},
 };
 
 const Writer& find_writer(const fs::path& path) {
@@ -97,7 +94,7 @@ ImageRgb to_linear(const StoredImage& file) {
     const SrgbDecoder decode;
     ImageRgb image(file.width, file.height);
     const auto channels = static_cast<std::size_t>(file.channels), width = static_cast<std::size_t>(file.width);
-    DUET_CHECK_EQ(file.values.size(), image.size() * channels);
+    DUET_CHECK_EQ(file.values.size(), file.value_count());
     const bool gray = channels < 3, encoded = file.encoding == StoredImage::Encoding::kEncoded;
     parallel_for(static_cast<std::size_t>(file.height), 0, [&](std::size_t y) {
         for (std::size_t i = y * width; i < (y + 1) * width; ++i) {
@@ -114,7 +111,7 @@ ImageRgb read_image(const fs::path& path) { return to_linear(read_stored_image(p
 void write_image(const fs::path& path, const ImageRgb& image, const WriteOptions& options) {
     const Writer& writer = find_writer(path);
     check_image_size(path.string(), image.width(), image.height(), 1);
-    if (writer.encode == encode_unsupported)
+    if (writer.encode == nullptr)
         write_exr(path, image.width(), image.height(), rgb_channels("", image));
     else
         write_file(path, writer.encode(image, options));

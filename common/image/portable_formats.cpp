@@ -69,8 +69,6 @@ private:
     std::size_t at_ = 2; // offset of the next byte to read; starts after the signature
 };
 
-unsigned byte_at(const ImageBytes& file, std::size_t i) { return static_cast<unsigned char>(file.bytes[i]); }
-
 [[noreturn]] void value_too_large(const ImageBytes& file, long long value, long long largest) {
     throw Error(message(file.name, ": a value of ", value, ", expected 0 to ", largest));
 }
@@ -87,16 +85,12 @@ void read_ascii_values(const ImageBytes& file, TokenReader& tokens, long long la
 void read_binary_values(const ImageBytes& file, std::size_t at, long long largest, std::vector<float>& values) {
     const std::size_t size = largest > 255 ? 2 : 1;
     for (float& value : values) {
-        const unsigned stored = size == 1 ? byte_at(file, at) : byte_at(file, at) << 8 | byte_at(file, at + 1);
+        const unsigned stored =
+            size == 1 ? byte_at(file.bytes, at) : byte_at(file.bytes, at) << 8 | byte_at(file.bytes, at + 1);
         if (stored > largest) value_too_large(file, stored, largest);
         value = static_cast<float>(stored) / static_cast<float>(largest);
         at += size;
     }
-}
-
-std::size_t value_count(const StoredImage& image) {
-    return static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) *
-           static_cast<std::size_t>(image.channels);
 }
 
 StoredImage read_size(const ImageBytes& file, TokenReader& tokens, int channels, StoredImage::Encoding encoding) {
@@ -113,7 +107,7 @@ StoredImage decode_ppm(const ImageBytes& file) {
     const long long largest = tokens.integer("the largest value");
     if (largest < 1 || largest > 65535)
         throw Error(message(file.name, ": a largest value of ", largest, ", expected 1 to 65535"));
-    const std::size_t first = tokens.end_of_header(), count = value_count(image);
+    const std::size_t first = tokens.end_of_header(), count = image.value_count();
     const bool ascii = file.bytes[1] == '3';
     // Each number of a P3 file takes at least one digit and one blank, but the last number needs no blank.
     const std::size_t bytes = ascii ? 2 * count - 1 : largest > 255 ? 2 * count : count;
@@ -134,7 +128,7 @@ StoredImage decode_pfm(const ImageBytes& file) {
     const double scale = tokens.real("the scale");
     if (!std::isfinite(scale) || scale == 0)
         throw Error(message(file.name, ": a scale of ", scale, ", expected a number but 0"));
-    const std::size_t first = tokens.end_of_header(), count = value_count(image);
+    const std::size_t first = tokens.end_of_header(), count = image.value_count();
     check_pixel_data_size(file, image.width, image.height, 4.0 * static_cast<double>(count),
                           static_cast<double>(file.bytes.size() - first));
     image.values.resize(count);
@@ -144,7 +138,7 @@ StoredImage decode_pfm(const ImageBytes& file) {
     for (std::size_t i = 0; i < count; ++i) {
         std::uint32_t bits = 0;
         for (std::size_t k = 0; k < 4; ++k)
-            bits = bits << 8 | byte_at(file, first + 4 * i + (little_endian ? 3 - k : k));
+            bits = bits << 8 | byte_at(file.bytes, first + 4 * i + (little_endian ? 3 - k : k));
         const float value = std::bit_cast<float>(bits);
         // PFM stores rows from the bottom.
         image.values[count - (i / row + 1) * row + i % row] = unit == 1 ? value : unit * value;

@@ -41,8 +41,6 @@ namespace {
 
 static_assert(STBI_MAX_DIMENSIONS == kMaxImageSide);
 
-std::uint32_t byte_at(std::string_view bytes, std::size_t i) { return static_cast<unsigned char>(bytes[i]); }
-
 // Decoding -----------------------------------------------------------------------------------------------------------
 
 // Provides the bytes of a file to stb and detects reads beyond its end. stb reads in two ways. It fills a buffer of 128
@@ -116,8 +114,7 @@ StoredImage decode_with(Load load, const ImageBytes& file, const char* format) {
     const std::unique_ptr<Sample, decltype(&stbi_image_free)> samples(
         load(&callbacks, &source, &image.width, &image.height, &image.channels, 0), stbi_image_free);
     if (!samples || source.ended_early()) stb_failed(file, format, source);
-    const std::size_t count = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) *
-                              static_cast<std::size_t>(image.channels);
+    const std::size_t count = image.value_count();
     image.values.reserve(count);
     for (std::size_t i = 0; i < count; ++i)
         image.values.push_back(static_cast<float>(samples.get()[i]) /

@@ -20,6 +20,11 @@ struct StoredImage {
     int width = 0, height = 0, channels = 0;
     Encoding encoding = Encoding::kLinear;
     std::vector<float> values;
+
+    /// Returns how many values an image of this size has.
+    std::size_t value_count() const {
+        return static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * static_cast<std::size_t>(channels);
+    }
 };
 
 /// These limits apply to the width, the height and the number of pixels (about 1 GiB as RGB floats) of image files. A
