@@ -106,6 +106,10 @@ struct alignas(32) BvhNode {
     std::array<Lanes, 6> planes; ///< low x, y, z, high x, y, z
     std::array<BvhRef, kWidth> children;
 
+    /// Returns the plane's values for all children. `offset` is the plane's in bytes from the node.
+    const float* plane(std::size_t offset) const {
+        return reinterpret_cast<const float*>(reinterpret_cast<const char*>(this) + offset);
+    }
     Box3 box(std::size_t child) const {
         return {{planes[0][child], planes[1][child], planes[2][child]},
                 {planes[3][child], planes[4][child], planes[5][child]}};

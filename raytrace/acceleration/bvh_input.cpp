@@ -4,7 +4,6 @@
 #include "common/scene/motion_bounds.h"
 #include "common/system/parallel.h"
 #include "common/vec/robust.h"
-#include "raytrace/acceleration/bvh_hierarchy.h"
 
 #include <algorithm>
 #include <array>
@@ -87,18 +86,19 @@ void BvhInput::add_instance(const Object& object, std::uint32_t index, const Sha
 
 Bvh BvhInput::build() {
     const auto unique = [this](std::span<BuildItem> items) { return remove_duplicates(items); };
-    auto [items, collapsed] = build_hierarchy(std::move(items_), unique, threads_);
+    BinaryTree tree = build_binary_tree(std::move(items_), threads_, unique);
+    CollapsedBvh collapsed = collapse(tree, threads_);
+    add_list_where_faster(tree, collapsed);
+    tree.nodes = {}; // frees them before the primitives take memory
     Bvh& bvh = collapsed.bvh;
-    const auto elements = [&collapsed = collapsed](PrimitiveKind kind) {
-        return collapsed.elements[static_cast<std::size_t>(kind)];
-    };
+    const auto elements = [&](PrimitiveKind kind) { return collapsed.elements[static_cast<std::size_t>(kind)]; };
     bvh.triangles.resize(elements(PrimitiveKind::kTriangle));
     bvh.quads.resize(elements(PrimitiveKind::kQuad));
     bvh.spheres.resize(elements(PrimitiveKind::kSphere));
     bvh.instances.resize(elements(PrimitiveKind::kInstance));
-    in_chunks(collapsed.leaves.size(), [&, &items = items, &leaves = collapsed.leaves](std::size_t i) {
-        const LeafItems& leaf = leaves[i];
-        fill_leaf(bvh, leaf, std::span<const BuildItem>(items).subspan(leaf.first, leaf.count));
+    in_chunks(collapsed.leaves.size(), [&](std::size_t i) {
+        const LeafItems& leaf = collapsed.leaves[i];
+        fill_leaf(bvh, leaf, std::span<const BuildItem>(tree.items).subspan(leaf.first, leaf.count));
     });
     return std::move(bvh);
 }

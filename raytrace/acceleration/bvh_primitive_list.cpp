@@ -19,11 +19,7 @@ constexpr std::size_t index_of(PrimitiveKind kind) { return static_cast<std::siz
 // Scenes with more items never get a list.
 constexpr std::size_t kMaxItems = 128;
 
-double half_area(const Box3& box) {
-    if (box.empty()) return 0;
-    const Vec3d d = Vec3d(box.high) - Vec3d(box.low);
-    return d.x * d.y + d.y * d.z + d.z * d.x;
-}
+double half_area(const Box3& box) { return Box3d{Vec3d(box.low), Vec3d(box.high)}.half_area(); }
 
 // Returns the expected cost to traverse the subtree below `ref` for a ray that enters its box of half area `area`,
 // by the SAH.

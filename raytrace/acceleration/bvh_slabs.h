@@ -19,35 +19,18 @@ struct SlabError {
     /// fraction is so small that a ray inside a slab, by more than the error that the slab is widened by, leaves it
     /// beyond everything in the box.
     static constexpr float kSmallest = 1e-12f;
-    /// Returns the least divisor for which no product of its reciprocal with a coordinate is infinite. The fused
-    /// form would take an infinite product for the distance of a plane.
-    template <typename B> static B least_divisor(B coordinates) {
-        return max(coordinates * B(0x1p-120f), B(0x1p-125f));
-    }
-};
 
-/// Holds the slabs of one axis as a ray intersects them: it enters a slab through a plane at plane·scale + near or
-/// later, and leaves it through a plane at plane·scale + far or earlier. B has one lane per axis or one per ray.
-template <typename B> struct Slabs {
-    B scale, near, far;
-
-    /// `extent` is the largest distance along this axis from the origin to the hierarchy's bounds, `greatest_extent`
-    /// the largest over all three axes, and `greatest_size` the largest absolute component of the direction.
-    Slabs(B origin, B direction, B extent, B greatest_extent, B greatest_size) {
-        const B sign = xsimd::bitwise_and(direction, B(-0.0f)), size = xsimd::abs(direction),
-                magnitude = xsimd::abs(origin);
-        const B error = (extent + extent + greatest_extent + magnitude) * B(SlabError::kRelative) +
-                        B(std::numeric_limits<float>::min());
-        const B divisor = xsimd::max(xsimd::max(size, greatest_size * B(SlabError::kSmallest)),
-                                     SlabError::least_divisor(extent + magnitude));
-        const B shift = xsimd::bitwise_or(error, sign);
-        scale = xsimd::bitwise_or(B(1.0f) / divisor, sign);
-        near = -(origin + shift) * scale;
-        far = -(origin - shift) * scale;
+    /// Returns by how much the origin is moved along one axis. `extent` is the largest distance along this axis from
+    /// the origin to the hierarchy's bounds, `greatest_extent` the largest over all three axes, and `magnitude` the
+    /// absolute coordinate of the origin.
+    template <typename B> static B shift(B extent, B greatest_extent, B magnitude) {
+        return (extent + extent + greatest_extent + magnitude) * B(kRelative) + B(std::numeric_limits<float>::min());
     }
-    /// Returns the largest distance from an origin to bounds along one axis.
-    static B extent(float low, float high, B origin) {
-        return xsimd::max(xsimd::abs(B(low) - origin), xsimd::abs(B(high) - origin));
+    /// Returns the number whose reciprocal scales distances along one axis. `size` is the absolute component of the
+    /// direction, and `greatest_size` the largest over all three axes. No product of the reciprocal with `coordinates`
+    /// is infinite, because the fused form would take it for the distance of a plane.
+    template <typename B> static B divisor(B size, B greatest_size, B coordinates) {
+        return max(max(size, greatest_size * B(kSmallest)), max(coordinates * B(0x1p-120f), B(0x1p-125f)));
     }
 };
 
@@ -63,11 +46,12 @@ public:
         const Float4 origin = to_float4(ray.origin), direction = to_float4(ray.direction);
         const Float4 extent =
             xsimd::max(xsimd::abs(to_float4(bounds.low) - origin), xsimd::abs(to_float4(bounds.high) - origin));
-        const Slabs<Float4> slabs(origin, direction, extent, greatest(extent), greatest(xsimd::abs(direction)));
-        alignas(16) std::array<float, 4> scales, nears, fars;
-        slabs.scale.store_aligned(scales.data());
-        slabs.near.store_aligned(nears.data());
-        slabs.far.store_aligned(fars.data());
+        const Float4 sign = xsimd::bitwise_and(direction, Float4(-0.0f)), size = xsimd::abs(direction),
+                     magnitude = xsimd::abs(origin);
+        const Float4 shift = xsimd::bitwise_or(SlabError::shift(extent, greatest(extent), magnitude), sign);
+        const Float4 divisor = SlabError::divisor(size, greatest(size), extent + magnitude);
+        const Float4 scale = xsimd::bitwise_or(Float4(1.0f) / divisor, sign);
+        const Lanes scales(scale), nears(-(origin + shift) * scale), fars(-(origin - shift) * scale);
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const std::size_t high = std::bit_cast<std::uint32_t>(ray.direction[axis]) >> 31;
             near_plane_[axis] = kPlane * (axis + 3 * high);
@@ -86,8 +70,7 @@ public:
     };
     Entered enter(const BvhNode& node, Batch t_min, Batch t_max) const {
         const auto slab = [&](std::size_t plane, Batch scale, Batch offset) {
-            const auto* values = reinterpret_cast<const float*>(reinterpret_cast<const char*>(&node) + plane);
-            return multiply_add(Batch::load_aligned(values), scale, offset);
+            return multiply_add(Batch::load_aligned(node.plane(plane)), scale, offset);
         };
         // A NaN (from values out of range) is the first argument of min and max, which then return the second, so
         // that this slab is ignored.
@@ -111,6 +94,8 @@ private:
 
     static constexpr std::size_t kPlane = sizeof(BvhNode::Lanes);
     std::array<std::size_t, 3> near_plane_, far_plane_; // offsets in bytes from the node
+    /// A ray enters a slab through a plane at plane·scale + near_offset or later, and leaves it through a plane at
+    /// plane·scale + far_offset or earlier.
     std::array<Batch, 3> scale_, near_offset_, far_offset_;
 };
 

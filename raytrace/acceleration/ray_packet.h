@@ -34,7 +34,7 @@ public:
     SlabRay::Entered enter_any(const BvhNode& node, float end) const {
         using Boxes = SlabRay::Batch;
         const auto bound = [&](const Interval& interval, std::size_t plane, bool far) {
-            const Boxes offset = Boxes::load_aligned(plane_of(node, plane)) - Boxes(interval.origin);
+            const Boxes offset = Boxes::load_aligned(node.plane(plane)) - Boxes(interval.origin);
             const Boxes a = offset * Boxes(interval.low), b = offset * Boxes(interval.high);
             return far ? xsimd::max(a, b) : xsimd::min(a, b);
         };
@@ -54,7 +54,7 @@ public:
     };
     Entering enter(const BvhNode& node, std::size_t child, Batch ends) const {
         const auto slab = [&](std::size_t plane, std::size_t axis, Batch offset) {
-            return multiply_add(Batch(plane_of(node, plane)[child]), scale_[axis], offset);
+            return multiply_add(Batch(node.plane(plane)[child]), scale_[axis], offset);
         };
         const auto near_slab = [&](std::size_t axis) { return slab(near_plane_[axis], axis, near_offset_[axis]); };
         const auto far_slab = [&](std::size_t axis) { return slab(far_plane_[axis], axis, far_offset_[axis]); };
@@ -153,13 +153,12 @@ private:
                    sizes = max(abs(origins.low), abs(origins.high));
         const float largest = max_component(extents);
         Vec3 ahead, behind;
-        const Batch smallest = Batch(SlabError::kSmallest) * xsimd::abs(direction[shear_.kz]);
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const float error =
-                (2 * extents[axis] + largest + sizes[axis]) * SlabError::kRelative + std::numeric_limits<float>::min();
-            const float sign = negative_[axis] ? -1.0f : 1.0f, shift = error * sign;
-            const Batch least(SlabError::least_divisor(extents[axis] + sizes[axis]));
-            scale_[axis] = Batch(sign) / xsimd::max(xsimd::max(xsimd::abs(direction[axis]), smallest), least);
+            const float sign = negative_[axis] ? -1.0f : 1.0f;
+            const float shift = SlabError::shift(extents[axis], largest, sizes[axis]) * sign;
+            scale_[axis] =
+                Batch(sign) / SlabError::divisor(xsimd::abs(direction[axis]), xsimd::abs(direction[shear_.kz]),
+                                                 Batch(extents[axis] + sizes[axis]));
             near_offset_[axis] = -(origin[axis] + Batch(shift)) * scale_[axis];
             far_offset_[axis] = -(origin[axis] - Batch(shift)) * scale_[axis];
             ahead[axis] = (negative_[axis] ? origins.low[axis] : origins.high[axis]) + shift;
@@ -176,9 +175,6 @@ private:
     static Box3 extent_of(const Vec3T<Batch>& points) {
         return {{reduce_min(points.x), reduce_min(points.y), reduce_min(points.z)},
                 {reduce_max(points.x), reduce_max(points.y), reduce_max(points.z)}};
-    }
-    static const float* plane_of(const BvhNode& node, std::size_t plane) {
-        return reinterpret_cast<const float*>(reinterpret_cast<const char*>(&node) + plane);
     }
 
     static constexpr unsigned kAllRays = (1u << kSize) - 1;

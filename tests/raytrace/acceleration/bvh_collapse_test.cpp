@@ -1,5 +1,5 @@
 // These tests check that the collapse of a binary tree costs what it says.
-#include "raytrace/acceleration/bvh_hierarchy.h"
+#include "raytrace/acceleration/bvh_build.h"
 #include "tests/raytrace/acceleration/soup.h"
 #include "tests/raytrace/acceleration/tree_checks.h"
 
