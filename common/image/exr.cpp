@@ -235,7 +235,7 @@ ExrFile read_exr(const fs::path& path) {
 
 void write_exr(const fs::path& path, int width, int height, const std::vector<ExrChannel>& channels,
                const std::vector<ExrAttribute>& attributes) {
-    check_image_size(path.string(), width, height, 1);
+    check_written_size(path.string(), width, height);
     Imf::Header header(width, height);
     header.compression() = Imf::ZIP_COMPRESSION;
     Imf::FrameBuffer frame;

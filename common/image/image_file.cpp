@@ -110,7 +110,7 @@ ImageRgb read_image(const fs::path& path) { return to_linear(read_stored_image(p
 
 void write_image(const fs::path& path, const ImageRgb& image, const WriteOptions& options) {
     const Writer& writer = find_writer(path);
-    check_image_size(path.string(), image.width(), image.height(), 1);
+    check_written_size(path.string(), image.width(), image.height());
     if (writer.encode == nullptr)
         write_exr(path, image.width(), image.height(), rgb_channels("", image));
     else

@@ -4,12 +4,25 @@
 
 namespace duet {
 
-void check_image_size(const std::string& name, long long width, long long height, int exit_code) {
-    const bool sides_fit = width >= 1 && height >= 1 && width <= kMaxImageSide && height <= kMaxImageSide;
-    if (sides_fit && width * height <= kMaxImagePixels) return;
+namespace {
+
+bool sides_fit(long long width, long long height) {
+    return width >= 1 && height >= 1 && width <= kMaxImageSide && height <= kMaxImageSide;
+}
+
+} // namespace
+
+void check_image_size(const std::string& name, long long width, long long height) {
+    if (sides_fit(width, height) && width * height <= kMaxImagePixels) return;
     throw Error(message(name, ": an image of ", width, " x ", height, " pixels, expected 1 to ", kMaxImageSide,
-                        " a side and at most ", kMaxImagePixels, " in all"),
-                exit_code);
+                        " a side and at most ", kMaxImagePixels, " in all"));
+}
+
+void check_written_size(const std::string& name, int width, int height) {
+    if (!sides_fit(width, height))
+        throw Error(
+            message(name, ": an image of ", width, " x ", height, " pixels, expected 1 to ", kMaxImageSide, " a side"),
+            1);
 }
 
 void check_pixel_data_size(const ImageBytes& file, long long width, long long height, double needed, double available) {

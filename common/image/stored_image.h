@@ -61,9 +61,11 @@ struct ImageBytes {
     std::string_view bytes;
 };
 
-/// Throws an Error with the given exit code unless both sides are in [1, kMaxImageSide] and the image has at most
-/// kMaxImagePixels pixels.
-void check_image_size(const std::string& name, long long width, long long height, int exit_code = 2);
+/// Throws an Error unless both sides are in [1, kMaxImageSide] and the image has at most kMaxImagePixels pixels.
+void check_image_size(const std::string& name, long long width, long long height);
+/// Throws an Error with exit code 1 unless both sides are in [1, kMaxImageSide]. An image of any number of pixels can
+/// be written, because the program has computed it already, but one of more than kMaxImagePixels cannot be read again.
+void check_written_size(const std::string& name, int width, int height);
 /// Throws an Error if needed > available. `needed` is the smallest number of bytes that can store an image of the size
 /// in the header, and `available` is the number of bytes in the file. The check prevents allocations for pixels that
 /// the file does not contain.

@@ -156,12 +156,11 @@ ImageSize parse_image_size(std::string_view text) {
         if (width.ec != std::errc() || width.ptr == end || *width.ptr != 'x') return false;
         const auto height = std::from_chars(width.ptr + 1, end, size.height);
         return height.ec == std::errc() && height.ptr == end && size.width >= 1 && size.width <= kMaxRenderSide &&
-               size.height >= 1 && size.height <= kMaxRenderSide &&
-               static_cast<long long>(size.width) * size.height <= kMaxImagePixels;
+               size.height >= 1 && size.height <= kMaxRenderSide;
     };
     if (!valid())
         throw Error(message("--size: found ", text, ", expected WIDTHxHEIGHT such as 640x480, each from 1 to ",
-                            kMaxRenderSide, ", and at most ", kMaxImagePixels, " pixels"));
+                            kMaxRenderSide));
     return size;
 }
 

@@ -22,8 +22,7 @@ struct ImageSize {
     int width, height;
 };
 
-/// Parses an image size such as "640x480". Throws Error unless each side is in [1, kMaxRenderSide] and the product
-/// is at most kMaxImagePixels.
+/// Parses an image size such as "640x480". Throws Error unless each side is in [1, kMaxRenderSide].
 ImageSize parse_image_size(std::string_view text);
 
 /// An Option is a handle to an option of a CommandLine. Its functions say which values the option accepts.

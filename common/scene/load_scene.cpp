@@ -25,7 +25,9 @@ void read_image_size(const JsonValue& image, Scene& scene) {
     if (image.has("width")) scene.width = image.at("width").integer(1, kMaxRenderSide);
     if (image.has("height")) scene.height = image.at("height").integer(1, kMaxRenderSide);
     const long long pixels = static_cast<long long>(scene.width) * scene.height;
-    if (pixels > kMaxImagePixels) image.fail(message("found ", pixels, " pixels, expected at most ", kMaxImagePixels));
+    if (pixels > kMaxImagePixels)
+        image.fail(
+            message("found ", pixels, " pixels, expected at most ", kMaxImagePixels, "; --size may ask for more"));
 }
 
 Scene read_scene(const std::filesystem::path& path) {

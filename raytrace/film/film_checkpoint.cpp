@@ -1,5 +1,6 @@
 #include "raytrace/film/film_checkpoint.h"
 
+#include "common/image/stored_image.h"
 #include "common/sampling/digest.h"
 #include "common/scene/scene_hash.h"
 #include "common/system/error.h"
@@ -34,6 +35,8 @@ std::string camera_hash(const Camera& camera) {
 
 // Returns the film in the file if the file exists, else an empty film.
 StoredFilm load_or_create(const Scene& scene, const View& view, const PathTracerSettings& settings) {
+    if (!settings.film.empty()) // a larger film could not be read again
+        check_image_size(settings.film.string(), view.width, view.height);
     StoredFilm fresh{Film(view.width, view.height), {}, settings.first_sample};
     if (settings.film.empty()) return fresh;
     remove_interrupted_writes(settings.film); // of killed renders; the film is locked

@@ -205,5 +205,9 @@ TEST_SUITE("unit") {
         CHECK(error_with([](PathTracerSettings&) {}) == Containing("no film: found no channel"));
         write_file(settings.film, "not an EXR");
         CHECK(error_with([](PathTracerSettings&) {}) == Containing("film.exr"));
+        const View large{scene.camera, kMaxRenderSide, kMaxRenderSide};
+        Control control;
+        CHECK(error_of([&] { render(prepare(scene, settings), large, settings, control); }) ==
+              Containing("film.exr: an image of 16384 x 16384 pixels"));
     }
 }

@@ -179,6 +179,8 @@ TEST_SUITE("unit") {
             {with(R"("lihgts": [])"), "$: unknown key \"lihgts\"; did you mean \"lights\"?"},
             {with(R"("image": {"width": 0})"), "$.image.width: found 0, expected a whole number in [1, 16384]"},
             {with(R"("image": {"width": 100000})"), "$.image.width: found 100000"},
+            {with(R"("image": {"width": 16384, "height": 16384})"),
+             "$.image: found 268435456 pixels, expected at most 90000000; --size may ask for more"},
             {with(R"("image": {"width": 2.5})"), "$.image.width: found 2.5"},
             {with(R"("image": [1, 2])"), "$.image: found an array of 2 elements, expected an object"},
             {with(R"("description": 7)"), "$.description: found 7, expected a string"},
