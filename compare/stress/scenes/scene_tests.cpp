@@ -7,6 +7,7 @@
 #include "compare/stress/scenes/scene_files.h"
 #include "compare/stress/scenes/schema_values.h"
 
+#include <algorithm>
 #include <mutex>
 #include <span>
 
@@ -18,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kAttempts = 8;            ///< at a scene that is not refused
+constexpr int kAttempts = 8; ///< at a scene that is not refused, and not empty
 constexpr double kReduceSeconds = 120;
 
 /// Returns the process that checks scenes, with its budget of memory and seconds for each.
@@ -45,6 +46,14 @@ SceneSizes random_sizes(TrialRandom& random) {
     return sizes;
 }
 
+/// Returns whether a scene shows a shape that is not part of an instance. Without any, almost nothing is judged.
+bool shows_shape(const Json& objects) {
+    return std::any_of(objects.begin(), objects.end(), [](const Json& object) {
+        if (object["type"] == "group") return !object.value("hidden", false) && shows_shape(object["objects"]);
+        return object["type"] != "instance";
+    });
+}
+
 /// Holds what all trials share: the files that scenes use, and the processes that check them.
 class SceneTrials {
 public:
@@ -53,14 +62,17 @@ public:
     void run(Trial& trial) {
         const fs::path file = folder_.path() / message("scene-", trial.number(), ".json");
         Json scene;
-        SceneVerdict verdict{.refused = true};
-        for (int i = 0; i < kAttempts && verdict.refused; ++i) {
+        SceneVerdict verdict;
+        bool judged = false;
+        for (int i = 0; i < kAttempts && !judged; ++i) {
             const SceneSizes sizes = random_sizes(trial.random);
             scene = SchemaValues(schema_, files_, sizes, trial.random).scene();
             write_file(file, scene.dump(1));
             verdict = checker_.check(file);
+            judged = verdict.failed() || (!verdict.refused && shows_shape(scene["objects"]));
         }
-        if (verdict.refused) verdict.failure = "refused"; // a tenth of the scenes is, so kAttempts of them never are
+        // A tenth of the scenes is refused and fewer are empty, so kAttempts of them never are.
+        if (!judged) verdict.failure = verdict.refused ? "refused" : "empty";
         trial.record_failure_if(verdict.failed());
         if (verdict.failed())
             keep({trial.number(), std::move(scene), std::move(verdict)});

@@ -14,6 +14,37 @@ constexpr int kMostObjects = 24, kDeepest = 12;
 /// A range of numbers narrower than this is drawn from evenly. Numbers of wider ranges are about 1.
 constexpr double kNarrow = 1000;
 
+/// The keywords that say nothing about a value.
+const std::set<std::string> kAnnotations = {"$schema", "$defs", "title", "description", "default"};
+/// The keywords and types that decide how a value is drawn, with the keywords that are understood beside each.
+const std::map<std::string, std::set<std::string>> kKinds = {
+    {"$ref", {}},
+    {"const", {}},
+    {"enum", {}},
+    {"anyOf", {}},
+    {"object", {"type", "properties", "required", "additionalProperties"}},
+    {"array", {"type", "items", "minItems", "maxItems"}},
+    {"string", {"type", "minLength"}},
+    {"boolean", {"type"}},
+    {"number", {"type", "minimum", "exclusiveMinimum", "maximum"}},
+    {"integer", {"type", "minimum", "exclusiveMinimum", "maximum"}}};
+
+/// Returns the kind in kKinds of a schema. Throws Error if it has none, or a keyword that is not understood beside it.
+std::string kind_of(const Json& schema) {
+    const auto fail = [&](const std::string& expected) {
+        throw Error(message("the scene's schema: found ", schema.dump().substr(0, 80), ", expected ", expected));
+    };
+    for (const auto& [kind, beside] : kKinds) {
+        if (!schema.contains(kind) && schema.value("type", "") != kind) continue;
+        for (const auto& [keyword, rule] : schema.items())
+            if (keyword != kind && !beside.contains(keyword) && !kAnnotations.contains(keyword))
+                fail("no " + keyword + " beside " + kind);
+        return kind;
+    }
+    fail("$ref, const, enum, anyOf or a type");
+    return {};
+}
+
 /// The names that a key's value refers to.
 const std::map<std::string, std::string> kReferences = {{"texture", "textures"},
                                                         {"radiance_texture", "textures"},
@@ -94,21 +125,19 @@ Json SchemaValues::scene() {
 }
 
 std::optional<Json> SchemaValues::value(const Json& schema, Place place) {
-    if (schema.contains("$ref")) {
+    const std::string kind = kind_of(schema);
+    if (kind == "$ref") {
         place.definition = schema["$ref"].get<std::string>().substr(std::string_view("#/$defs/").size());
         return value(schema_["$defs"].at(place.definition), place);
     }
-    if (schema.contains("const")) return schema["const"];
-    if (schema.contains("enum")) return element(schema["enum"]);
-    if (schema.contains("anyOf")) return any_of(schema["anyOf"], place);
-    const std::string type = schema.value("type", "");
-    if (type == "object") return object(schema, place);
-    if (type == "array") return array(schema, place);
-    if (type == "string") return text(place);
-    if (type == "boolean") return Json(random_.coin());
-    if (type == "number" || type == "integer") return number(schema, place);
-    throw Error(message("the scene's schema: found ", schema.dump().substr(0, 80),
-                        ", expected $ref, const, enum, anyOf or a type"));
+    if (kind == "const") return schema["const"];
+    if (kind == "enum") return element(schema["enum"]);
+    if (kind == "anyOf") return any_of(schema["anyOf"], place);
+    if (kind == "object") return object(schema, place);
+    if (kind == "array") return array(schema, place);
+    if (kind == "string") return text(place);
+    if (kind == "boolean") return Json(random_.coin());
+    return number(schema, place);
 }
 
 /// Draws one alternative after the other, in random order, until one is possible.

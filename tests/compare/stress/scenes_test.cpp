@@ -13,6 +13,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -29,12 +30,22 @@ const Json& scene_schema() {
     return schema;
 }
 
-/// Adds all keys of a value, each as the type of its object and the key: "sphere.radius".
+/// Returns whether an object has all keys that a definition requires, and no others than it allows.
+bool fits(const Json& object, const Json& definition) {
+    const Json properties = definition.value("properties", Json::object());
+    for (const auto& [key, item] : object.items())
+        if (!properties.contains(key) || properties[key].value("const", item) != item) return false;
+    const Json required = definition.value("required", Json::array());
+    return std::all_of(required.begin(), required.end(),
+                       [&](const Json& key) { return object.contains(key.get<std::string>()); });
+}
+
+/// Adds all keys of a value, each as the definition that its object fits and the key: "sphere.radius".
 void collect_keys(const Json& value, std::set<std::string>& keys) {
-    if (value.is_object()) {
-        const std::string type = value.value("type", value.contains("eye") ? value.value("projection", "camera") : "");
-        for (const auto& [key, item] : value.items()) keys.insert(type + '.' + key);
-    }
+    if (value.is_object())
+        for (const auto& [name, definition] : scene_schema()["$defs"].items())
+            if (fits(value, definition))
+                for (const auto& [key, item] : value.items()) keys.insert(name + '.' + key);
     for (const auto& item : value)
         if (item.is_structured()) collect_keys(item, keys);
 }
@@ -58,10 +69,12 @@ TEST_SUITE("unit") {
             loaded += error == "no error";
         }
         CHECK(loaded >= kScenes * 9 / 10);
-        for (const auto& [name, definition] : scene_schema()["$defs"].items()) {
-            if (!definition.contains("properties") || !definition["properties"].contains("type")) continue;
-            const std::string type = definition["properties"]["type"]["const"];
-            for (const auto& [key, rule] : definition["properties"].items()) CHECK(keys.contains(type + '.' + key));
+        for (const auto& definition : scene_schema()["$defs"].items()) {
+            const Json properties = definition.value().value("properties", Json::object());
+            for (const auto& property : properties.items()) {
+                const std::string key = definition.key() + '.' + property.key();
+                CHECK_MESSAGE(keys.contains(key), key);
+            }
         }
     }
 
@@ -80,11 +93,19 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("random scenes: a schema with an unknown keyword is refused, not ignored") {
-        const Json schema = Json::parse(R"({"oneOf": [{"const": 1}]})");
-        TrialRandom random(1);
-        const std::string error = error_of([&] { SchemaValues(schema, {}, {}, random).scene(); });
-        CHECK(error.find("oneOf") != std::string::npos);
-        CHECK(error.find("expected") != std::string::npos);
+        const std::pair<const char*, const char*> unknown[] = {
+            {R"({"oneOf": [{"const": 1}]})", "oneOf"},
+            {R"({"type": "number", "multipleOf": 2})", "expected no multipleOf beside number"},
+            {R"({"anyOf": [{"type": "boolean"}], "not": {"const": true}})", "expected no not beside anyOf"},
+            {R"({"type": "object", "properties": {"a": {"type": "string", "pattern": "a"}}, "required": ["a"]})",
+             "expected no pattern beside string"}};
+        for (const auto& refused : unknown) {
+            const Json schema = Json::parse(refused.first);
+            TrialRandom random(1);
+            const std::string error = error_of([&] { SchemaValues(schema, {}, {}, random).scene(); });
+            CHECK_MESSAGE(error.find(refused.second) != std::string::npos, error);
+            CHECK(error.find("expected") != std::string::npos);
+        }
     }
 
     TEST_CASE("reduction: what the failure needs stays, with few digits, and nothing else") {
