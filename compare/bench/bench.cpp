@@ -1,6 +1,7 @@
 #include "compare/bench/bench.h"
 
 #include "common/program/program.h"
+#include "common/program/render_program.h"
 #include "common/program/statistics.h"
 #include "common/scene/scene_hash.h"
 #include "common/system/file.h"
@@ -54,8 +55,8 @@ int threads_of(const BenchOptions& options) {
 class SceneBench {
 public:
     SceneBench(const BenchOptions& options, const fs::path& path, const InterruptFlag& interrupt)
-        : options_(options), interrupt_(interrupt), scene_(load_scene(path)), view_(view_of(scene_, options.size)),
-          counted_(counted_pixels(options.excluded, view_.width, view_.height)) {
+        : options_(options), interrupt_(interrupt), scene_(load_scene(path, options.size)),
+          view_(view_of(scene_, options.size)), counted_(counted_pixels(options.excluded, view_.width, view_.height)) {
         result_.scene = path.string();
         result_.scene_hash = hash_scene_files(scene_);
         result_.width = view_.width;
