@@ -54,8 +54,7 @@ std::optional<LightSample> draw(const SurfaceLight& light, Vec3 p, Vec2 u) {
     return LightSample{Vec3(s->wi), static_cast<float>(s->distance), light.radiance, static_cast<float>(s->pdf), false};
 }
 
-double area_of(const Triangle& t) { return 0.5 * length(cross(Vec3d(t.b) - Vec3d(t.a), Vec3d(t.c) - Vec3d(t.a))); }
-double area_of(const Quad& q) { return length(cross(Vec3d(q.u), Vec3d(q.v))); }
+template <typename Flat> double area_of(const Flat& flat) { return length(area_seen(flat, Vec3d()).area_vector); }
 double area_of(const Sphere& s) { return 4 * kPiDouble * sqr(static_cast<double>(s.radius)); }
 
 /// A light's flux is factor·quantity. The quantity is its radiance, intensity or irradiance.

@@ -21,8 +21,7 @@ template <typename T>
 concept Arithmetic = std::is_arithmetic_v<T>;
 
 /// MaskOf is the type of a condition on numbers of type T: bool, or a batch of one bool per lane. Conditions are
-/// combined
-/// by `&` and `|`, which batches have, too.
+/// combined by `&` and `|`, which batches have, too.
 template <typename T> using MaskOf = decltype(std::declval<T>() < std::declval<T>());
 /// These return whether the condition holds in any lane, in all lanes and in no lane.
 constexpr bool any(bool condition) { return condition; }

@@ -14,11 +14,7 @@ template <typename T> struct Vec2T {
     constexpr Vec2T(T x_, T y_) : x(x_), y(y_) {}
     template <typename U>
     constexpr explicit Vec2T(const Vec2T<U>& v) : x(static_cast<T>(v.x)), y(static_cast<T>(v.y)) {}
-    friend constexpr bool operator==(const Vec2T& a, const Vec2T& b)
-        requires Arithmetic<T>
-    {
-        return a.x == b.x && a.y == b.y;
-    }
+    friend bool operator==(const Vec2T&, const Vec2T&) = default;
 };
 
 /// One type represents points, vectors and normals. The name of a variable says which of them it is.
@@ -32,11 +28,7 @@ template <typename T> struct Vec3T {
         : x(static_cast<T>(v.x)), y(static_cast<T>(v.y)), z(static_cast<T>(v.z)) {}
     constexpr T operator[](std::size_t axis) const { return axis == 0 ? x : axis == 1 ? y : z; }
     constexpr T& operator[](std::size_t axis) { return axis == 0 ? x : axis == 1 ? y : z; }
-    friend constexpr bool operator==(const Vec3T& a, const Vec3T& b)
-        requires Arithmetic<T>
-    {
-        return a.x == b.x && a.y == b.y && a.z == b.z;
-    }
+    friend bool operator==(const Vec3T&, const Vec3T&) = default;
 };
 
 template <typename T> struct Vec4T {
@@ -45,11 +37,7 @@ template <typename T> struct Vec4T {
     constexpr Vec4T() = default;
     constexpr Vec4T(T x_, T y_, T z_, T w_) : x(x_), y(y_), z(z_), w(w_) {}
     constexpr Vec4T(const Vec3T<T>& v, T w_) : x(v.x), y(v.y), z(v.z), w(w_) {}
-    friend constexpr bool operator==(const Vec4T& a, const Vec4T& b)
-        requires Arithmetic<T>
-    {
-        return a.x == b.x && a.y == b.y && a.z == b.z && a.w == b.w;
-    }
+    friend bool operator==(const Vec4T&, const Vec4T&) = default;
 };
 
 using Vec2 = Vec2T<float>;
