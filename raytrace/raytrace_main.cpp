@@ -55,10 +55,11 @@ int main(int argc, char** argv) {
                  "Scattering events at most: 0 = emission only, 1 = direct light (default 64)")
             .range(0, 100000);
         command_line.add("--integrator", integrator_name,
-                         "path (default), naive (no light sampling), bidirectional (paths from the camera and from the "
-                         "lights, joined), direct, unshadowed (direct light without visibility), lights (emission and "
-                         "direct light of lights), environment (its light on diffuse surfaces), reflection (what is "
-                         "seen by way of metal and glass), normal or albedo");
+                         "path (default), naive (no light sampling), bidirectional (paths from the camera and from the"
+                         " lights, connected), vcm (the same, also merged where they nearly meet), direct, unshadowed "
+                         "(direct light without visibility), lights (emission and direct light of lights), environment"
+                         " (its light on diffuse surfaces), reflection (what is seen by way of metal and glass), "
+                         "normal or albedo");
         command_line.add(
             "--sampler", sampler,
             "sobol (default: Owen-scrambled), blue-noise (the same, ordered so that what noise is left at few "
@@ -103,7 +104,7 @@ int main(int argc, char** argv) {
         settings.sampler = sampler_kind(sampler);
         settings.filter = filter_kind(filter);
         settings.adaptive = adaptive.value_or(limited && samples.empty() && !needs_sample_count(settings.sampler) &&
-                                              settings.integrator != raytrace::Integrator::kBidirectional);
+                                              !traces_light_paths(settings.integrator));
         settings.environment = !no_environment;
     };
     program.wants_text_output = [&] { return !pixel.empty(); };

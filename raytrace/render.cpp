@@ -55,7 +55,7 @@ std::int64_t film_bytes(const Film& film) {
 Rendering render(const PathTracerScene& prepared, const View& view, const PathTracerSettings& settings,
                  Control& control) {
     check(view, settings);
-    const bool bidirectional = settings.integrator == Integrator::kBidirectional;
+    const bool bidirectional = traces_light_paths(settings.integrator);
     if (bidirectional) check_bidirectional(prepared.data().scene, settings);
     Stopwatch watch;
     Rendering rendering;

@@ -19,6 +19,7 @@ int depth(const PathTracerSettings& settings) {
     case Integrator::kPath:
     case Integrator::kNaive:
     case Integrator::kBidirectional:
+    case Integrator::kVcm:
     case Integrator::kReflection:
         return requested;
     case Integrator::kDirect:
@@ -126,7 +127,7 @@ std::vector<std::string> approximations(const RenderPlan& plan, const PathTracer
     if (settings.integrator == Integrator::kReflection)
         list.emplace_back("only what is seen by way of metal and glass");
     const bool whole_paths = settings.integrator == Integrator::kPath || settings.integrator == Integrator::kNaive ||
-                             settings.integrator == Integrator::kBidirectional ||
+                             traces_light_paths(settings.integrator) ||
                              settings.integrator == Integrator::kReflection;
     if (whole_paths && plan.max_depth < kUnlimitedDepth)
         list.emplace_back(

@@ -20,6 +20,7 @@ enum class Integrator {
     kPath,          ///< light and BSDF sampling, combined by multiple importance sampling
     kNaive,         ///< BSDF sampling only, as in book 1 of Ray Tracing in One Weekend
     kBidirectional, ///< paths from the camera and from the lights, joined: Veach 1997, §10
+    kVcm,           ///< the same, and paths that nearly meet are merged: Georgiev et al. 2012
     kDirect,        ///< emission and direct light: paths of at most one scattering event
     kUnshadowed,    ///< direct light by light sampling without visibility: the rasterizer's quantity
     kLights,        ///< components of path: LightComponents::emission and direct, Scene::lights and their shadows
@@ -28,10 +29,14 @@ enum class Integrator {
     kNormal,        ///< the shading normal as a color: (n + 1)/2
     kAlbedo,        ///< base colors
 };
-/// Returns the integrator named "path", "naive", "bidirectional", "direct", "unshadowed", "lights", "environment",
-/// "reflection", "normal" or "albedo". Throws Error for any other name.
+/// Returns the integrator named "path", "naive", "bidirectional", "vcm", "direct", "unshadowed", "lights",
+/// "environment", "reflection", "normal" or "albedo". Throws Error for any other name.
 Integrator integrator(std::string_view name);
 std::string_view integrator_name(Integrator integrator);
+/// Returns whether paths start at the lights, too, so that a sample reaches other pixels than its own.
+inline bool traces_light_paths(Integrator i) { return i == Integrator::kBidirectional || i == Integrator::kVcm; }
+/// Returns whether paths from the camera and from the lights merge where they nearly meet.
+inline bool merges(Integrator integrator) { return integrator == Integrator::kVcm; }
 
 struct PathTracerSettings : RenderSettings {
     PathTracerSettings() { samples_per_pixel = 64; }

@@ -26,7 +26,7 @@ EmissionRandomSamples emission_samples(const RenderPlan& plan, Sampler& sampler)
 
 // Returns the sums of a light subpath at its first vertex, which the ray from the light has hit.
 MisSums sums_at_first_hit(const RenderPlan& plan, const LightEmission& emission, const EmittedRay& emitted,
-                          const SubpathVertex& at) {
+                          const SubpathVertex& at, double merging) {
     const Scene& scene = plan.scene;
     const LightReceiver receiver = light_receiver(at.vertex);
     double light_sample_pdf = static_cast<double>(plan.lights->probability(receiver, emitted.light));
@@ -37,20 +37,20 @@ MisSums sums_at_first_hit(const RenderPlan& plan, const LightEmission& emission,
     const auto [density, geometry] =
         emission.density(emitted.light, emitted.position, -at.to_previous, at.vertex.point.p);
     const double arrived = density * at.cosine(at.to_previous);
-    return {mis(light_sample_pdf * geometry / arrived), emission.is_delta(emitted.light) ? 0 : mis(geometry / arrived)};
+    const double earlier = emission.is_delta(emitted.light) ? 0 : mis(geometry / arrived);
+    return {mis(light_sample_pdf * geometry / arrived), earlier, merging > 0 ? earlier / mis(merging) : 0};
 }
 
 } // namespace
 
-Rgb BidirectionalTracer::trace(const Ray& ray, const Hit& hit, const Pinhole& pinhole, Sampler& sampler,
-                               std::vector<Splat>& splats) {
-    light_subpath_.clear();
-    if (!emission_.empty() && plan_.max_depth > 0) trace_light_subpath(pinhole, ray.time, sampler, splats);
-    return trace_camera_subpath(ray, hit, pinhole, sampler);
-}
+BidirectionalTracer::BidirectionalTracer(const RenderPlan& plan, const LightEmission& emission, const View& view,
+                                         float radius, RayCounts& counts)
+    : plan_(plan), emission_(emission), view_(view),
+      merging_(path_count() * kPiDouble * sqr(static_cast<double>(radius))), counts_(counts) {}
 
-void BidirectionalTracer::trace_light_subpath(const Pinhole& pinhole, float time, Sampler& sampler,
-                                              std::vector<Splat>& splats) {
+void BidirectionalTracer::trace_light_subpath(float time, Sampler& sampler) {
+    light_subpath_.clear();
+    if (emission_.empty()) return;
     const std::optional<EmittedRay> emitted = emission_.sample(emission_samples(plan_, sampler), time);
     if (!emitted) return;
     PathThroughputT<float> path;
@@ -64,56 +64,67 @@ void BidirectionalTracer::trace_light_subpath(const Pinhole& pinhole, float time
         const double cosine = at.cosine(at.to_previous);
         if (!(cosine > 0)) return light_subpath_.pop_back();
         if (depth == 0)
-            sums = sums_at_first_hit(plan_, emission_, *emitted, at);
+            sums = sums_at_first_hit(plan_, emission_, *emitted, at, merging_);
         else
             sums.arrive(sqr(static_cast<double>(hit.t)), cosine);
         at.throughput = emitted->weight * path.throughput;
         at.mis = sums;
         const bool connectable = !is_specular(at.vertex.bsdf);
-        if (connectable) connect_to_camera(at, pinhole, splats);
-        if (depth + 1 == plan_.max_depth) return;
-        const VertexRandomSamples u = vertex_random_samples(sampler, light_subpath_depth(plan_, depth + 1));
-        const ScatteringT<float> next = leave(at, u, TransportMode::kImportance, path, sums);
-        if (!next.continues) return;
-        ray = spawn_ray(plan_, at.vertex, next.wi);
+        ScatteringT<float> next;
+        if (depth + 1 < plan_.max_depth) {
+            const VertexRandomSamples u = vertex_random_samples(sampler, light_subpath_depth(plan_, depth + 1));
+            next = leave(at, u, TransportMode::kImportance, path, sums);
+            if (next.continues) ray = spawn_ray(plan_, at.vertex, next.wi);
+        }
         if (!connectable) light_subpath_.pop_back();
+        if (!next.continues) return;
     }
 }
 
 // Draws the direction in which the subpath goes on, unless it ends at the vertex.
 ScatteringT<float> BidirectionalTracer::leave(const SubpathVertex& at, const VertexRandomSamples& u, TransportMode mode,
                                               PathThroughputT<float>& path, MisSums& sums) {
-    ScatteringT<float> next = scatter(at, u, mode, path, sums);
+    ScatteringT<float> next = scatter(at, u, mode, path, sums, merging_);
     if (!next.continues || !plan_.russian_roulette || at.depth == 0) return next;
     next.continues = russian_roulette(u.roulette, path).survives;
     counts_.ended += !next.continues;
     return next;
 }
 
-void BidirectionalTracer::connect_to_camera(const SubpathVertex& at, const Pinhole& pinhole,
-                                            std::vector<Splat>& splats) {
+void BidirectionalTracer::connect_to_camera(const Pinhole& pinhole, std::vector<Splat>& splats) {
+    for (const SubpathVertex& at : light_subpath_)
+        if (const std::optional<Splat> splat = connection_to_camera(at, pinhole)) splats.push_back(*splat);
+}
+
+void BidirectionalTracer::add_photons(std::vector<Photon>& photons) const {
+    for (const SubpathVertex& at : light_subpath_)
+        photons.push_back({at.vertex.point.p, at.to_previous, at.throughput, at.mis, at.depth});
+}
+
+std::optional<Splat> BidirectionalTracer::connection_to_camera(const SubpathVertex& at, const Pinhole& pinhole) {
     const std::optional<SeenPoint> seen = seen_through(pinhole, Vec3d(at.vertex.point.p));
-    if (!seen) return;
+    if (!seen) return std::nullopt;
     const auto [x, y] = seen->pixel;
-    if (!(x >= 0 && y >= 0 && x < view_.width && y < view_.height)) return;
+    if (!(x >= 0 && y >= 0 && x < view_.width && y < view_.height)) return std::nullopt;
     const Vec3 w(seen->to_camera);
     const Rgb scattered = at.importance_scattering(w);
-    if (is_black(scattered)) return;
+    if (is_black(scattered)) return std::nullopt;
     const Ray ray = spawn_ray(plan_, at.vertex, w);
     Hit end;
     end.t = static_cast<float>(seen->distance) - length(ray.origin - at.vertex.point.p);
     ++counts_.shadow;
-    if (plan_.prepared.accelerator.occluded(ray, end)) return;
+    if (plan_.prepared.accelerator.occluded(ray, end)) return std::nullopt;
     const double density = seen->pixel_density / path_count();
     const double light_side =
-        at.mis.over_connection(density * at.cosine(w), at.pdf(w, at.to_previous, TransportMode::kRadiance));
+        at.mis.over_connection(density * at.cosine(w), at.pdf(w, at.to_previous, TransportMode::kRadiance), merging_);
     const float factor = static_cast<float>(density) * weight(light_side, 0);
     const auto pixel =
         static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(view_.width) + static_cast<std::uint32_t>(x);
-    splats.push_back({pixel, at.throughput * scattered * factor});
+    return Splat{pixel, at.throughput * scattered * factor};
 }
 
-Rgb BidirectionalTracer::trace_camera_subpath(Ray ray, Hit hit, const Pinhole& pinhole, Sampler& sampler) {
+Rgb BidirectionalTracer::trace_camera_subpath(Ray ray, Hit hit, const Pinhole& pinhole, Sampler& sampler,
+                                              const PhotonMap* photons) {
     Rgb sum;
     PathThroughputT<float> path;
     MisSums sums;
@@ -136,6 +147,7 @@ Rgb BidirectionalTracer::trace_camera_subpath(Ray ray, Hit hit, const Pinhole& p
             sum += at.throughput * light_sample(at, u);
             for (const SubpathVertex& light : light_subpath_)
                 if (depth + light.depth + 2 <= plan_.max_depth) sum += connection(at, light);
+            if (photons != nullptr) sum += merged_light(at, *photons);
         }
         previous = light_receiver(at.vertex);
         const ScatteringT<float> next = leave(at, u, TransportMode::kRadiance, path, sums);
@@ -185,8 +197,9 @@ Rgb BidirectionalTracer::light_sample(const SubpathVertex& at, const VertexRando
     const auto [density, geometry] = emission_.density(index, q, -s->wi, vertex.point.p);
     const auto pdf = static_cast<double>(s->pdf);
     const double light_side = s->delta ? 0 : mis(at.pdf(at.to_previous, s->wi, TransportMode::kRadiance) / pdf);
-    const double camera_side = at.mis.over_connection(density * at.cosine(s->wi) / (pdf * geometry),
-                                                      at.pdf(s->wi, at.to_previous, TransportMode::kImportance));
+    const double camera_side =
+        at.mis.over_connection(density * at.cosine(s->wi) / (pdf * geometry),
+                               at.pdf(s->wi, at.to_previous, TransportMode::kImportance), merging_);
     return scattered * (weight(light_side, camera_side) / s->pdf);
 }
 
@@ -210,12 +223,34 @@ Rgb BidirectionalTracer::connection(const SubpathVertex& camera, const SubpathVe
     if (is_black(scattered) || !visible(camera.vertex, light.vertex, w)) return Rgb();
     const double to_light = camera.pdf(camera.to_previous, w, TransportMode::kRadiance);
     const double to_camera = light.pdf(light.to_previous, -w, TransportMode::kImportance);
-    const double light_side = light.mis.over_connection(to_light * light.cosine(w) / squared_distance,
-                                                        light.pdf(-w, light.to_previous, TransportMode::kRadiance));
-    const double camera_side = camera.mis.over_connection(
-        to_camera * camera.cosine(w) / squared_distance, camera.pdf(w, camera.to_previous, TransportMode::kImportance));
+    const double light_side =
+        light.mis.over_connection(to_light * light.cosine(w) / squared_distance,
+                                  light.pdf(-w, light.to_previous, TransportMode::kRadiance), merging_);
+    const double camera_side =
+        camera.mis.over_connection(to_camera * camera.cosine(w) / squared_distance,
+                                   camera.pdf(w, camera.to_previous, TransportMode::kImportance), merging_);
     return camera.throughput * light.throughput * scattered *
            (weight(light_side, camera_side) / static_cast<float>(squared_distance));
+}
+
+// A photon takes the place of a vertex of the camera subpath, so that the BSDF is the camera subpath's, and no ray is
+// traced. Its light comes from the area of the disk around that vertex.
+Rgb BidirectionalTracer::merged_light(const SubpathVertex& at, const PhotonMap& photons) const {
+    const Vertex& vertex = at.vertex;
+    Rgb sum;
+    photons.for_each_near(vertex.point.p, [&](const Photon& photon) {
+        if (at.depth + photon.depth + 1 > plan_.max_depth) return;
+        const Vec3 wi = photon.to_previous;
+        const Rgb scattered = scattering(vertex, wi);
+        if (is_black(scattered)) return;
+        const double light_side =
+            photon.mis.over_merging(at.pdf(at.to_previous, wi, TransportMode::kRadiance), merging_);
+        const double camera_side =
+            at.mis.over_merging(at.pdf(wi, at.to_previous, TransportMode::kImportance), merging_);
+        // The photon's throughput includes the cosine to the geometric normal.
+        sum += photon.throughput * scattered * (weight(light_side, camera_side) / static_cast<float>(at.cosine(wi)));
+    });
+    return at.throughput * sum * static_cast<float>(1 / merging_);
 }
 
 } // namespace duet::raytrace

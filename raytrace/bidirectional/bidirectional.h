@@ -1,10 +1,13 @@
-// Bidirectional path tracing joins paths from the camera with paths from the lights. Each light path is one that a
-// plain path tracer would hardly find, as the light of a caustic (Veach 1997, §10; Lafortune and Willems 1993).
+// Bidirectional path tracing connects paths from the camera with paths from the lights, which find what a plain path
+// tracer hardly does, as the light of a caustic (Veach 1997, §10; Lafortune and Willems 1993). Vertex connection and
+// merging also merges those of their vertices that are close (Georgiev et al. 2012; Hachisuka et al. 2012): so it finds
+// caustics in a mirror, where nothing can be connected. Merging blurs light over a radius, which shrinks with every
+// sample.
 #pragma once
 
 #include "raytrace/bidirectional/camera_projection.h"
 #include "raytrace/bidirectional/light_emission.h"
-#include "raytrace/bidirectional/subpath.h"
+#include "raytrace/bidirectional/photon_map.h"
 
 #include <deque>
 #include <vector>
@@ -17,34 +20,40 @@ struct Splat {
     Rgb light;
 };
 
-/// Traces pairs of a camera subpath and a light subpath, one pair after the other.
+/// Traces pairs of a camera subpath and a light subpath, one pair after the other. There is one light subpath per pixel
+/// of the image, and their light is weighted for that.
 class BidirectionalTracer {
 public:
-    /// Refers to all arguments.
-    BidirectionalTracer(const RenderPlan& plan, const LightEmission& emission, const View& view, RayCounts& counts)
-        : plan_(plan), emission_(emission), view_(view), counts_(counts) {}
+    /// Refers to all arguments. `radius` is that of merging; 0: subpaths do not merge.
+    BidirectionalTracer(const RenderPlan& plan, const LightEmission& emission, const View& view, float radius,
+                        RayCounts& counts);
 
-    /// Returns the light that the camera ray brings, whose first hit is given and may be invalid. `pinhole` is the view
-    /// through the ray's lens point. Appends to `splats` what the light subpath sends to pixels: there is one light
-    /// subpath per pixel of the image, and the splats are weighted for that.
-    Rgb trace(const Ray& ray, const Hit& hit, const Pinhole& pinhole, Sampler& sampler, std::vector<Splat>& splats);
+    /// Traces the light subpath of a sample, in place of the one before. `time` is that of its camera ray.
+    void trace_light_subpath(float time, Sampler& sampler);
+    /// Appends the light that the light subpath sends to pixels. `pinhole` is the view through the sample's lens point.
+    void connect_to_camera(const Pinhole& pinhole, std::vector<Splat>& splats);
+    /// Appends the photons of the light subpath.
+    void add_photons(std::vector<Photon>& photons) const;
+    /// Returns the light that the camera ray brings, whose first hit is given and may be invalid: of the light subpath,
+    /// and of all photons that are near, if any are given.
+    Rgb trace_camera_subpath(Ray ray, Hit hit, const Pinhole& pinhole, Sampler& sampler, const PhotonMap* photons);
 
 private:
-    void trace_light_subpath(const Pinhole& pinhole, float time, Sampler& sampler, std::vector<Splat>& splats);
-    void connect_to_camera(const SubpathVertex& at, const Pinhole& pinhole, std::vector<Splat>& splats);
-    Rgb trace_camera_subpath(Ray ray, Hit hit, const Pinhole& pinhole, Sampler& sampler);
+    std::optional<Splat> connection_to_camera(const SubpathVertex& at, const Pinhole& pinhole);
     ScatteringT<float> leave(const SubpathVertex& at, const VertexRandomSamples& u, TransportMode mode,
                              PathThroughputT<float>& path, MisSums& sums);
     Rgb environment_light(Vec3 w, int depth, const LightReceiver& previous, const MisSums& sums) const;
     Rgb emitted_light(const SubpathVertex& at, int depth, float distance, const LightReceiver& previous) const;
     Rgb light_sample(const SubpathVertex& at, const VertexRandomSamples& u);
     Rgb connection(const SubpathVertex& camera, const SubpathVertex& light);
+    Rgb merged_light(const SubpathVertex& at, const PhotonMap& photons) const;
     bool visible(const Vertex& from, const Vertex& to, Vec3 w);
     double path_count() const { return static_cast<double>(view_.width) * static_cast<double>(view_.height); }
 
     const RenderPlan& plan_;
     const LightEmission& emission_;
     const View& view_;
+    const double merging_; ///< see MisSums
     RayCounts& counts_;
     std::deque<SubpathVertex> light_subpath_; ///< connections end at all of its vertices that are not specular
 };

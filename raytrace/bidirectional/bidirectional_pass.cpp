@@ -5,46 +5,56 @@
 #include "raytrace/bidirectional/bidirectional.h"
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 
 namespace duet::raytrace {
 
 void check_bidirectional(const Scene& scene, const PathTracerSettings& settings) {
     if (settings.adaptive)
-        throw Error("adaptive sampling gives pixels different numbers of samples, but the light paths of the "
-                    "bidirectional integrator reach all pixels: expected --no-adaptive");
+        throw Error(message("adaptive sampling gives pixels different numbers of samples, but the light paths of the "
+                            "integrator ",
+                            integrator_name(settings.integrator), " reach all pixels: expected --no-adaptive"));
     if (settings.filter != FilterKind::kBox)
-        throw Error(message("the bidirectional integrator weighs no light by a filter: found ",
-                            filter_name(settings.filter), ", expected box"));
+        throw Error(message("the integrator ", integrator_name(settings.integrator),
+                            " weighs no light by a filter: found ", filter_name(settings.filter), ", expected box"));
     if (scene.needs.media)
-        throw Error("a dielectric of the scene absorbs or has a priority, which the bidirectional integrator does not "
-                    "support: expected another integrator");
+        throw Error(message("a dielectric of the scene absorbs or has a priority, which the integrator ",
+                            integrator_name(settings.integrator), " does not support: expected another"));
 }
 
 namespace {
 
-// Rows are rendered in groups. The splats of a group are added row by row, so that the sums do not depend on threads;
-// meanwhile they take memory.
+// Rows are rendered in groups. What the light subpaths of a group leave is added row by row, so that it does not depend
+// on threads; meanwhile it takes memory.
 constexpr int kRowsInGroup = 64;
+
+// The radius of merging is at first this number of pixels, where the camera looks at. Sample i merges over the first
+// radius times (i + 1)^(-1/8): then the variance and the bias both vanish with more samples (Kaplanyan and Dachsbacher
+// 2013, "Adaptive Progressive Photon Mapping", whose α is 3/4 here).
+constexpr double kFirstRadius = 1.5;
+
+float merging_radius(const View& view, std::uint32_t index) {
+    const auto seen = seen_through(CameraModel(view).pinhole(), view.camera.look_at);
+    const double pixel =
+        seen ? 1 / std::sqrt(seen->pixel_density) : length(view.camera.look_at - view.camera.eye) * 1e-3;
+    return static_cast<float>(kFirstRadius * pixel * std::pow(index + 1.0, -0.125));
+}
 
 class SampleOfAllPixels {
 public:
     SampleOfAllPixels(const PassContext& context, const LightEmission& emission, std::uint32_t index)
-        : context_(context), emission_(emission), index_(index), sums_(context.view.width, context.view.height) {}
+        : context_(context), emission_(emission), index_(index),
+          radius_(merges(context.settings.integrator) ? merging_radius(context.view, index) : 0),
+          sums_(context.view.width, context.view.height) {}
 
-    // Returns false if it was stopped.
+    // Returns false if it was stopped. Where subpaths merge, all light subpaths are traced before the camera subpaths.
+    // They are traced once more beside their camera subpaths, because keeping their vertices would take gigabytes.
     bool render() {
-        for (int first = 0; first < context_.view.height; first += kRowsInGroup) {
-            const int rows = std::min(kRowsInGroup, context_.view.height - first);
-            std::vector<std::vector<Splat>> splats(static_cast<std::size_t>(rows));
-            parallel_for(splats.size(), context_.settings.threads, [&](std::size_t i) {
-                if (!context_.control.stopped()) render_row(first + static_cast<int>(i), splats[i]);
-            });
-            if (context_.control.stopped()) return false;
-            for (const std::vector<Splat>& row : splats)
-                for (const Splat& splat : row) sums_[splat.pixel] += Rgbd(splat.light);
-        }
-        return true;
+        if (radius_ == 0) return render_rows(true, true);
+        if (!render_rows(true, false)) return false;
+        photon_map_.emplace(std::move(photons_), radius_, context_.settings.threads);
+        return render_rows(false, true);
     }
 
     void add_to_film() {
@@ -57,19 +67,48 @@ public:
     }
 
 private:
-    void render_row(int y, std::vector<Splat>& splats) {
+    // Holds what the light subpaths of a row leave.
+    struct Row {
+        std::vector<Splat> splats;
+        std::vector<Photon> photons;
+    };
+
+    bool render_rows(bool light, bool camera) {
+        for (int first = 0; first < context_.view.height; first += kRowsInGroup) {
+            std::vector<Row> rows(static_cast<std::size_t>(std::min(kRowsInGroup, context_.view.height - first)));
+            parallel_for(rows.size(), context_.settings.threads, [&](std::size_t i) {
+                if (!context_.control.stopped()) render_row(first + static_cast<int>(i), light, camera, rows[i]);
+            });
+            if (context_.control.stopped()) return false;
+            for (const Row& row : rows) {
+                for (const Splat& splat : row.splats) sums_[splat.pixel] += Rgbd(splat.light);
+                photons_.insert(photons_.end(), row.photons.begin(), row.photons.end());
+            }
+        }
+        return true;
+    }
+
+    void render_row(int y, bool light, bool camera, Row& row) {
         RayCounts counts;
-        BidirectionalTracer tracer(context_.plan, emission_, context_.view, counts);
+        BidirectionalTracer tracer(context_.plan, emission_, context_.view, radius_, counts);
         Sampler sampler = context_.settings.make_sampler();
         for (int x = 0; x < sums_.width(); ++x) {
             sampler.start(x, y, index_);
             const Ray ray = camera_ray(context_.plan, camera_, x, y, sampler);
             const CameraRaySample u = sampler.camera_ray_samples({context_.plan.lens, context_.plan.motion});
+            const Pinhole pinhole = camera_.pinhole(Vec2d(u.lens));
+            tracer.trace_light_subpath(ray.time, sampler);
+            if (light) {
+                tracer.connect_to_camera(pinhole, row.splats);
+                if (radius_ > 0) tracer.add_photons(row.photons);
+            }
+            if (!camera) continue;
+            ++counts.camera;
             const Hit hit = context_.plan.prepared.accelerator.closest(ray);
             if (context_.aovs.any()) context_.aovs.add(x, y, index_, ray, hit);
-            sums_(x, y) += Rgbd(tracer.trace(ray, hit, camera_.pinhole(Vec2d(u.lens)), sampler, splats));
+            const PhotonMap* const photons = photon_map_ ? &*photon_map_ : nullptr;
+            sums_(x, y) += Rgbd(tracer.trace_camera_subpath(ray, hit, pinhole, sampler, photons));
         }
-        counts.camera += sums_.width();
         const std::lock_guard lock(mutex_);
         context_.counts += counts;
     }
@@ -77,8 +116,11 @@ private:
     const PassContext& context_;
     const LightEmission& emission_;
     const std::uint32_t index_; // of the sample, in each pixel
+    const float radius_;        // of merging; 0: none
     const CameraModel camera_{context_.view};
     Image<Rgbd> sums_;
+    std::vector<Photon> photons_;
+    std::optional<PhotonMap> photon_map_;
     std::mutex mutex_; // guards the counts
 };
 

@@ -5,15 +5,20 @@ namespace duet::raytrace {
 void MisSums::arrive(double squared_distance, double cosine) {
     connection *= mis(squared_distance / cosine);
     earlier *= mis(1 / cosine);
+    earlier_than_merging *= mis(1 / cosine);
 }
 
-void MisSums::scatter(double pdf, double reverse_pdf, double cosine, bool specular) {
+void MisSums::scatter(double pdf, double reverse_pdf, double cosine, bool specular, double merging) {
     if (specular) { // both densities are infinite in the same proportion
         connection = 0;
         earlier *= mis(cosine);
+        earlier_than_merging *= mis(cosine);
         return;
     }
-    earlier = mis(cosine / pdf) * (earlier * mis(reverse_pdf) + connection);
+    earlier = mis(cosine / pdf) * (earlier * mis(reverse_pdf) + connection + mis(merging));
+    if (merging > 0)
+        earlier_than_merging =
+            mis(cosine / pdf) * (earlier_than_merging * mis(reverse_pdf) + connection / mis(merging) + 1);
     connection = mis(1 / pdf);
 }
 
@@ -50,7 +55,7 @@ Rgb SubpathVertex::importance_scattering(Vec3 w) const {
 }
 
 ScatteringT<float> scatter(const SubpathVertex& at, const VertexRandomSamples& u, TransportMode mode,
-                           PathThroughputT<float>& path, MisSums& sums) {
+                           PathThroughputT<float>& path, MisSums& sums, double merging) {
     const bool importance = mode == TransportMode::kImportance;
     ScatteringT<float> next = scatter(at.vertex, u, path, mode);
     if (next.continues && importance) {
@@ -60,7 +65,8 @@ ScatteringT<float> scatter(const SubpathVertex& at, const VertexRandomSamples& u
     if (!next.continues) return next;
     const TransportMode reverse = importance ? TransportMode::kRadiance : TransportMode::kImportance;
     const double reverse_pdf = next.sample->specular ? 0 : at.pdf(next.wi, at.to_previous, reverse);
-    sums.scatter(static_cast<double>(next.sample->pdf), reverse_pdf, at.cosine(next.wi), next.sample->specular);
+    sums.scatter(static_cast<double>(next.sample->pdf), reverse_pdf, at.cosine(next.wi), next.sample->specular,
+                 merging);
     return next;
 }
 

@@ -11,26 +11,36 @@ inline double mis(double ratio) { return ratio * ratio; }
 /// A path of several segments can be drawn by many strategies: any of its edges may be the connection of a light
 /// subpath with a camera subpath. The weight of the strategy that drew the path is 1 / (1 + sum of the other
 /// strategies' densities over its own). These are the parts of that sum that a subpath knows before it is connected.
-/// They are updated from vertex to vertex (Georgiev 2012, "Implementing Vertex Connection and Merging", §4; merging is
-/// left out).
+/// They are updated from vertex to vertex (Georgiev 2012, "Implementing Vertex Connection and Merging", §4).
+///
+/// Where subpaths may also merge, at vertices closer than a radius, that is one more strategy per vertex.
+/// `merging` is η, the number of light subpaths times the area of the disk of that radius: the density of merging over
+/// that of connecting. It is 0 where subpaths do not merge.
 struct MisSums {
     /// This is the strategy that connects this vertex with the one before, in place of a sampled ray: the ratio of
     /// densities d_VCM, without the factor `pdf` of over_connection().
     double connection = 0;
     /// These are all strategies that connect an earlier pair of vertices: d_VC, without `pdf` and `reverse_pdf`.
     double earlier = 0;
+    /// These are all strategies that connect or merge earlier vertices, over merging at this one: d_VM. Not used where
+    /// subpaths do not merge.
+    double earlier_than_merging = 0;
 
     /// Updates the sums where the subpath hits a surface, at |cos θ| = `cosine` to its geometric normal.
     void arrive(double squared_distance, double cosine);
     /// Updates the sums for scattering: `pdf` is the density of the new direction, at |cos θ| = `cosine` to the
     /// geometric normal, and `reverse_pdf` that of scattering backwards along the path. No connection ends at a
     /// specular vertex.
-    void scatter(double pdf, double reverse_pdf, double cosine, bool specular);
+    void scatter(double pdf, double reverse_pdf, double cosine, bool specular, double merging);
     /// Returns the sum over all strategies whose connection is on this side of the current one. `pdf` is the density by
     /// area with which the other side would draw this vertex, and `reverse_pdf` the density by solid angle with which
     /// a subpath of the other side would go on from here to the vertex before.
-    double over_connection(double pdf, double reverse_pdf) const {
-        return mis(pdf) * (connection + earlier * mis(reverse_pdf));
+    double over_connection(double pdf, double reverse_pdf, double merging) const {
+        return mis(pdf) * (mis(merging) + connection + earlier * mis(reverse_pdf));
+    }
+    /// Returns the same sum where this vertex merges with one of the other side. `reverse_pdf` is as above.
+    double over_merging(double reverse_pdf, double merging) const {
+        return connection / mis(merging) + earlier_than_merging * mis(reverse_pdf);
     }
 };
 
@@ -58,6 +68,6 @@ struct SubpathVertex {
 /// Draws the direction in which a subpath of the given mode leaves the vertex, and updates the path's throughput and
 /// sums.
 ScatteringT<float> scatter(const SubpathVertex& at, const VertexRandomSamples& u, TransportMode mode,
-                           PathThroughputT<float>& path, MisSums& sums);
+                           PathThroughputT<float>& path, MisSums& sums, double merging);
 
 } // namespace duet::raytrace

@@ -10,9 +10,10 @@ namespace duet::raytrace {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, Integrator>, 10> kNames{{{"path", Integrator::kPath},
+constexpr std::array<std::pair<std::string_view, Integrator>, 11> kNames{{{"path", Integrator::kPath},
                                                                          {"naive", Integrator::kNaive},
                                                                          {"bidirectional", Integrator::kBidirectional},
+                                                                         {"vcm", Integrator::kVcm},
                                                                          {"direct", Integrator::kDirect},
                                                                          {"unshadowed", Integrator::kUnshadowed},
                                                                          {"lights", Integrator::kLights},
@@ -27,7 +28,7 @@ Integrator integrator(std::string_view name) {
     for (const auto& [known, value] : kNames)
         if (known == name) return value;
     throw Error(message("unknown integrator '", name,
-                        "': expected path, naive, bidirectional, direct, unshadowed, lights, environment, "
+                        "': expected path, naive, bidirectional, vcm, direct, unshadowed, lights, environment, "
                         "reflection, normal or albedo"));
 }
 
@@ -55,7 +56,8 @@ RadianceFunction radiance_function(Integrator integrator) {
     case Integrator::kNaive:
     case Integrator::kDirect:
         return path_radiance;
-    case Integrator::kBidirectional: // light paths reach other pixels: render_bidirectional_pass()
+    case Integrator::kBidirectional:
+    case Integrator::kVcm: // light paths reach other pixels: render_bidirectional_pass()
         break;
     }
     throw Error(message("the integrator ", integrator_name(integrator),

@@ -5,6 +5,7 @@
 #include "raytrace/bidirectional/bidirectional_pass.h"
 #include "raytrace/bidirectional/camera_projection.h"
 #include "raytrace/bidirectional/light_emission.h"
+#include "raytrace/bidirectional/photon_map.h"
 #include "tests/raytrace/estimates.h"
 #include "tests/raytrace/scene_builder.h"
 
@@ -15,6 +16,7 @@
 #include <filesystem>
 #include <string>
 #include <utility>
+#include <vector>
 
 using namespace duet;
 using namespace duet::raytrace;
@@ -91,9 +93,9 @@ Scene seen_in_parallel() {
     return scene;
 }
 
-PathTracerSettings bidirectional(int samples) {
+PathTracerSettings bidirectional(int samples, Integrator integrator = Integrator::kBidirectional) {
     PathTracerSettings settings;
-    settings.integrator = Integrator::kBidirectional;
+    settings.integrator = integrator;
     settings.samples_per_pixel = samples;
     return settings;
 }
@@ -102,21 +104,56 @@ PathTracerSettings bidirectional(int samples) {
 
 TEST_SUITE("unit") {
     TEST_CASE("the bits do not depend on threads, and a continued film has those of one run") {
-        const Scene scene = glass_in_motion();
-        PathTracerSettings settings = bidirectional(6);
-        settings.threads = 1;
-        const ImageRgb one = render_scene(scene, 80, settings).radiance;
-        settings.threads = 3;
-        CHECK(bitwise_equal(one, render_scene(scene, 80, settings).radiance));
+        for (const Integrator integrator : {Integrator::kBidirectional, Integrator::kVcm}) {
+            const Scene scene = glass_in_motion();
+            PathTracerSettings settings = bidirectional(6, integrator);
+            settings.threads = 1;
+            const ImageRgb one = render_scene(scene, 80, settings).radiance;
+            settings.threads = 3;
+            CHECK(bitwise_equal(one, render_scene(scene, 80, settings).radiance));
 
-        settings.film = std::filesystem::temp_directory_path() / "duet_bidirectional_test.exr";
-        std::filesystem::remove(settings.film);
-        for (const int samples : {1, 4, 6}) {
-            settings.samples_per_pixel = samples;
-            const ImageRgb image = render_scene(scene, 80, settings).radiance;
-            CHECK(bitwise_equal(one, image) == (samples == 6));
+            settings.film = std::filesystem::temp_directory_path() / "duet_bidirectional_test.exr";
+            std::filesystem::remove(settings.film);
+            for (const int samples : {1, 4, 6}) {
+                settings.samples_per_pixel = samples;
+                const ImageRgb image = render_scene(scene, 80, settings).radiance;
+                CHECK(bitwise_equal(one, image) == (samples == 6));
+            }
+            std::filesystem::remove(settings.film);
         }
-        std::filesystem::remove(settings.film);
+    }
+
+    // Photons lie in clusters, on cell boundaries, at the same place, and far from the origin.
+    TEST_CASE("the photon map finds each photon within the radius once, whatever the number of threads") {
+        for (const float scale : {1e-6f, 1.0f, 1e6f})
+            for (const int count : {0, 1, 5000}) {
+                std::vector<Photon> photons;
+                Sampler sampler(SamplerKind::kIndependent, 5, 1);
+                for (int i = 0; i < count; ++i) {
+                    sampler.start(0, 0, static_cast<std::uint32_t>(i));
+                    const auto u = sampler.get_block();
+                    Vec3 p = Vec3(u[0], u[1], u[2]) * scale;
+                    if (i % 3 == 0) p = Vec3(std::floor(4 * u[0]), std::floor(4 * u[1]), 0) * (0.25f * scale);
+                    if (i % 7 == 0) p = p - Vec3(scale, 0, scale);
+                    photons.push_back({p, {}, Rgb(), {}, i});
+                }
+                const float radius = 0.05f * scale;
+                const PhotonMap one(photons, radius, 1), three(photons, radius, 3);
+                for (int i = 0; i < 200; ++i) {
+                    sampler.start(1, 0, static_cast<std::uint32_t>(i));
+                    const auto u = sampler.get_block();
+                    const Vec3 p = i % 2 == 0 && count > 0 ? photons[static_cast<std::size_t>(i % count)].p
+                                                           : (Vec3(u[0], u[1], u[2]) * 2.0f - Vec3(1, 1, 1)) * scale;
+                    std::vector<int> found, found_by_three, expected;
+                    one.for_each_near(p, [&](const Photon& photon) { found.push_back(photon.depth); });
+                    three.for_each_near(p, [&](const Photon& photon) { found_by_three.push_back(photon.depth); });
+                    for (const Photon& photon : photons)
+                        if (length_squared(photon.p - p) <= sqr(radius)) expected.push_back(photon.depth);
+                    CHECK(found == found_by_three);
+                    std::sort(found.begin(), found.end());
+                    CHECK(found == expected);
+                }
+            }
     }
 
     TEST_CASE("a stopped sample leaves no trace in the film") {
@@ -144,7 +181,8 @@ TEST_SUITE("unit") {
         builder.add(Sphere{{0, 1, 0}, 0.5f}, builder.material(wine));
         CHECK_THROWS_WITH_AS(check_bidirectional(builder.finish(), bidirectional(4)), doctest::Contains("absorbs"),
                              Error);
-        CHECK_THROWS_WITH_AS(radiance_function(Integrator::kBidirectional), doctest::Contains("whole images"), Error);
+        for (const Integrator integrator : {Integrator::kBidirectional, Integrator::kVcm})
+            CHECK_THROWS_WITH_AS(radiance_function(integrator), doctest::Contains("whole images"), Error);
     }
 
     // The pixel density is the inverse of the area, across the ray, that the rays of a small square of the image cover.
@@ -227,6 +265,27 @@ TEST_SUITE("statistical") {
                 CAPTURE(joined.error);
                 CHECK(deviations(path, joined) < 6);
                 CHECK(joined.error < 0.002 * joined.mean);
+            }
+    }
+
+    // Merging blurs light over a radius, so that walls near edges and contacts are a little off: 0.5 % is allowed for
+    // that, and six standard errors.
+    TEST_CASE("merging converges to the path tracer's image, also where it alone finds the light") {
+        for (const Scene& scene : {under_surface_lights(), under_delta_lights(), glass_in_motion()})
+            for (const int depth : {2, 5}) {
+                PathTracerSettings settings;
+                settings.max_depth = depth;
+                settings.samples_per_pixel = 512;
+                const Estimate path = estimate(scene, 16, settings);
+                settings.integrator = Integrator::kVcm;
+                settings.samples_per_pixel = 128;
+                const Estimate merged = estimate(scene, 16, settings);
+                CAPTURE(depth);
+                CAPTURE(path.mean);
+                CAPTURE(merged.mean);
+                CAPTURE(merged.error);
+                CHECK(std::abs(path.mean - merged.mean) < 6 * std::hypot(path.error, merged.error) + 0.005 * path.mean);
+                CHECK(merged.error < 0.004 * merged.mean);
             }
     }
 }

@@ -1,0 +1,52 @@
+// A photon map finds the photons near a point: the vertices of light subpaths that vertices of camera subpaths merge
+// with (Jensen 1996; Hachisuka and Jensen 2009).
+#pragma once
+
+#include "raytrace/bidirectional/subpath.h"
+
+#include <array>
+#include <vector>
+
+namespace duet::raytrace {
+
+/// Holds what a vertex of a light subpath leaves behind for merging.
+struct Photon {
+    Vec3 p;
+    Vec3 to_previous; ///< unit direction to where the light came from
+    Rgb throughput;   ///< of the subpath, in W
+    MisSums mis;
+    int depth; ///< number of scatterings before this vertex
+};
+
+/// Is a grid of cells of twice the radius. Cells are found by a hash, so that their number does not depend on the
+/// scene's extent (Teschner et al. 2003). The order of photons, and so of all sums, does not depend on threads.
+class PhotonMap {
+public:
+    /// The radius must be positive. `threads` is the number of threads that build the grid (0 = all).
+    PhotonMap(std::vector<Photon> photons, float radius, int threads);
+
+    /// Calls visit(photon) for each photon within the radius of p.
+    template <typename Visit> void for_each_near(Vec3 p, const Visit& visit) const {
+        const Cell corner = cell(p - Vec3(radius_, radius_, radius_));
+        for (int i = 0; i < 8; ++i) {
+            const Cell at{corner[0] + (i & 1), corner[1] + (i >> 1 & 1), corner[2] + (i >> 2)};
+            const std::size_t slot = slot_of(at);
+            for (std::uint32_t k = starts_[slot]; k < starts_[slot + 1]; ++k)
+                if (length_squared(photons_[k].p - p) <= sqr(radius_) && cell(photons_[k].p) == at) visit(photons_[k]);
+        }
+    }
+    float radius() const { return radius_; }
+
+private:
+    using Cell = std::array<std::int64_t, 3>;
+    Cell cell(Vec3 p) const;
+    std::size_t slot_of(const Cell& cell) const;
+
+    std::vector<Photon> photons_; ///< by slot
+    std::vector<std::uint32_t> starts_;
+    float radius_;
+    double cells_per_meter_;
+    int slot_bits_ = 0;
+};
+
+} // namespace duet::raytrace
