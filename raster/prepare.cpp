@@ -41,13 +41,6 @@ std::optional<Rgb> uniform_color(const Scene& scene, const Object& object) {
     return base_color(material, scene.textures, SurfacePoint{});
 }
 
-std::optional<MetalBsdf> uniform_metal(const Scene& scene, const Object& object) {
-    if (!uniform_color(scene, object)) return std::nullopt;
-    const auto* metal = std::get_if<Metal>(&scene.materials[object.materials.front()]);
-    if (metal == nullptr || !metal->roughness.constant()) return std::nullopt;
-    return metal->at(scene.textures, SurfacePoint{});
-}
-
 /// Returns the slot of the image texture that colors all of an object, if the texture is filtered.
 std::optional<RgbSlot> uniform_texture(const Scene& scene, const Object& object) {
     if (object.materials.size() != 1) return std::nullopt;
@@ -90,7 +83,6 @@ RasterObject prepare_object(const Scene& scene, const Object& object) {
     result.bounds = motion_bounds(object, shape);
     result.uniform_color = uniform_color(scene, object);
     result.uniform_texture = uniform_texture(scene, object);
-    result.metal = uniform_metal(scene, object);
     const Mesh* mesh = std::get_if<Mesh>(&shape);
     const auto* quads = std::get_if<QuadList>(&shape);
     result.closed = mesh != nullptr ? mesh->closed : quads == nullptr || encloses(*quads);

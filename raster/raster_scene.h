@@ -19,7 +19,6 @@ struct RasterObject {
     Box3 bounds;        ///< in world space, over all of the object's motion
     std::optional<Rgb> uniform_color;       ///< base color, if it is the same all over the object
     std::optional<RgbSlot> uniform_texture; ///< texture slot, if one filtered texture determines the base color
-    std::optional<MetalBsdf> metal; ///< BSDF, if the object is metal of one color and roughness
     bool closed = false; ///< a sphere, box or mesh that is closed and oriented outwards
     bool solid = false; ///< an opaque, closed mesh, oriented outwards: its back faces are invisible from outside
 };

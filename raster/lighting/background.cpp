@@ -13,17 +13,11 @@ bool is_dark(const RasterSceneData& data, const RasterSettings& settings) {
     return data.scene.lights.empty() && !shows_environment(data, settings) && !data.any_emits;
 }
 
-std::optional<Rgb> constant_background(const RasterSceneData& data, const RasterSettings& settings) {
-    if (settings.shading != Shading::kLit || !settings.components.emission || !shows_environment(data, settings))
-        return Rgb();
-    const auto* constant = std::get_if<ConstantEnvironment>(&data.scene.environment);
-    return constant != nullptr ? std::optional(constant->radiance) : std::nullopt;
-}
-
 void draw_background(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
                      Planes3& radiance) {
-    const std::optional<Rgb> constant = constant_background(data, settings);
-    if (constant && is_black(*constant)) return;
+    if (settings.shading != Shading::kLit || !settings.components.emission || !shows_environment(data, settings))
+        return;
+    const auto* constant = std::get_if<ConstantEnvironment>(&data.scene.environment);
     for_each_batch(gbuffer.width(), gbuffer.height(), settings.threads, [&](int x, int y) {
         std::uint32_t open = ~lane_bits(gbuffer.visible(x, y)) & ((1u << Floats::size) - 1);
         for (; open != 0; open &= open - 1) {
@@ -34,7 +28,9 @@ void draw_background(const RasterSceneData& data, const RasterSettings& settings
                 return -gbuffer.projection.to_viewer(gbuffer.projection.point(
                     static_cast<float>(column), static_cast<float>(y), gbuffer.projection.near()));
             };
-            radiance.set_at(column, y, constant ? *constant : duet::radiance(data.scene.environment, direction()));
+            radiance.set_at(column, y,
+                            constant != nullptr ? constant->radiance
+                                                : duet::radiance(data.scene.environment, direction()));
         }
     });
 }

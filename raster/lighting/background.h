@@ -4,16 +4,12 @@
 #include "raster/gbuffer/gbuffer.h"
 #include "raster/raster_scene.h"
 
-#include <optional>
-
 namespace duet::raster {
 
 /// Returns whether the settings show the scene's environment.
 bool shows_environment(const RasterSceneData& data, const RasterSettings& settings);
 /// Returns whether nothing emits light, so that the image is black.
 bool is_dark(const RasterSceneData& data, const RasterSettings& settings);
-/// Returns the radiance of pixels without geometry if it is the same in every direction.
-std::optional<Rgb> constant_background(const RasterSceneData& data, const RasterSettings& settings);
 
 /// Sets the radiance of the pixels without a visible surface.
 void draw_background(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,

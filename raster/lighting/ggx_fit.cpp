@@ -202,11 +202,6 @@ GgxTable<5, kLobeSide> compute_lobe_table() {
     return table;
 }
 
-LobeMatrix fit_lobe(float alpha, float cosine, const LobeMatrix& start) {
-    Parameters p{static_cast<double>(start.m11), static_cast<double>(start.m22), 0};
-    return fit(alpha, cosine, p);
-}
-
 double lobe_distance(float alpha, float cosine, const LobeMatrix& lobe) {
     const Lobe exact{static_cast<double>(alpha), viewer(static_cast<double>(cosine))};
     return difference(exact, moments(exact).energy, lobe, 1, 4096);

@@ -28,8 +28,6 @@ inline constexpr float kSmoothest = 0.05f, kRoughest = 1; // roughness is √alp
 /// (raster/lighting/ggx_table_main.cpp).
 GgxTable<5, kLobeSide> compute_lobe_table();
 
-/// Fits the lobe of one entry, starting the search from `start`.
-LobeMatrix fit_lobe(float alpha, float cosine, const LobeMatrix& start);
 /// Returns ∫ |f − t| dw over the hemisphere, for the normalized lobe f and the transformed cosine t. It is 0 where
 /// they are equal and 2 where they do not overlap.
 double lobe_distance(float alpha, float cosine, const LobeMatrix& lobe);

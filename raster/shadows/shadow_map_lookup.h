@@ -43,7 +43,6 @@ private:
     struct Source {
         std::vector<SharpShadowMap> views;          ///< tried in order
         std::vector<std::vector<SharpShadowMap>> cubes; ///< six faces each; a missing face shadows nothing
-        std::vector<const CubeMap*> cube_maps;
     };
     Floats mean_visibility(std::span<const SoftShadowMap> cells, const Vec3T<Floats>& p, const Vec3T<Floats>& n) const;
     struct Receivers {

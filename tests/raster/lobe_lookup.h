@@ -1,6 +1,7 @@
 // This header looks up the table of lobes one by one, as a reference for the lookup in lanes.
 #pragma once
 
+#include "common/vec/scalar.h"
 #include "raster/lighting/ggx_fit.h"
 
 #include <algorithm>
