@@ -5,7 +5,6 @@
 #include "common/system/stopwatch.h"
 
 #include <algorithm>
-#include <iterator>
 
 namespace duet::raster {
 namespace {
@@ -13,19 +12,6 @@ namespace {
 /// The first two constants bound the number of triangles per run; the third is the target number of runs. There must
 /// be enough runs to balance the load between threads, and enough triangles per run to make its overhead negligible.
 constexpr std::uint32_t kMaxRun = 8192, kMinRun = 512, kTargetRuns = 16;
-
-/// Returns the objects whose bounds overlap the frustum, and counts the primitives of the others as culled.
-std::vector<std::uint32_t> in_frustum(const RasterSceneData& data, const std::vector<std::uint32_t>& objects,
-                                      const PassView& view, CullCounts& culled) {
-    std::vector<std::uint32_t> result;
-    for (const std::uint32_t object : objects) {
-        if (outside_frustum(data.objects[object].bounds, view.pinhole, view.viewport))
-            culled.outside += primitive_count(data.scene.shapes[data.scene.objects[object].shape]);
-        else
-            result.push_back(object);
-    }
-    return result;
-}
 
 /// Returns the runs of the objects' triangles and of the spheres, in the order of objects, and assigns the spheres'
 /// ids.
@@ -89,15 +75,25 @@ std::size_t Geometry::memory_bytes() const {
 
 namespace {
 
-void process(const RasterSceneData& data, const std::vector<std::uint32_t>& all_polygonal,
-             const std::vector<std::uint32_t>& all_spheres, const TileGrid& grid, const PassView& view,
-             const RasterSettings& settings, bool coverage_masks, Geometry& result) {
+using Objects = std::vector<std::uint32_t>;
+
+void process(const RasterSceneData& data, const Objects& all_polygonal, const Objects& all_spheres,
+             const TileGrid& grid, const PassView& view, const RasterSettings& settings, bool coverage_masks,
+             const ObjectFilter& includes, Geometry& result) {
     Stopwatch watch;
     result.culled = {};
-    const auto visible = [&](const std::vector<std::uint32_t>& objects) {
-        return settings.skips.frustum ? in_frustum(data, objects, view, result.culled) : objects;
+    const auto visible = [&](const Objects& objects) {
+        Objects found;
+        for (const std::uint32_t object : objects) {
+            if (includes && !includes(object)) continue;
+            if (settings.skips.frustum && outside_frustum(data.objects[object].bounds, view.pinhole, view.viewport))
+                result.culled.outside += primitive_count(data.scene.shapes[data.scene.objects[object].shape]);
+            else
+                found.push_back(object);
+        }
+        return found;
     };
-    const std::vector<std::uint32_t> polygonal = visible(all_polygonal);
+    const Objects polygonal = visible(all_polygonal);
     result.triangles.prepared = &data;
     result.triangles.scene = &data.scene;
     transform(data.scene, polygonal, view.pinhole, view.time, view.viewport, settings.threads,
@@ -121,42 +117,13 @@ void process(const RasterSceneData& data, const std::vector<std::uint32_t>& all_
 } // namespace
 
 void process_geometry(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
-                      const RasterSettings& settings, Geometry& result) {
-    process(data, data.polygonal, data.spheres, grid, view, settings, true, result);
-}
-
-namespace {
-
-using Objects = std::vector<std::uint32_t>;
-
-Objects without(const Objects& objects, const Objects& taken) {
-    Objects selected;
-    std::set_difference(objects.begin(), objects.end(), taken.begin(), taken.end(), std::back_inserter(selected));
-    return selected;
-}
-Objects common_to(const Objects& objects, const Objects& others) {
-    Objects selected;
-    std::set_intersection(objects.begin(), objects.end(), others.begin(), others.end(), std::back_inserter(selected));
-    return selected;
-}
-
-} // namespace
-
-void process_without(const RasterSceneData& data, const std::vector<std::uint32_t>& excluded, const TileGrid& grid,
-                     const PassView& view, const RasterSettings& settings, Geometry& result) {
-    process(data, without(data.polygonal, excluded), without(data.spheres, excluded), grid, view, settings, true,
-            result);
-}
-
-void process_only(const RasterSceneData& data, const std::vector<std::uint32_t>& objects, const TileGrid& grid,
-                  const PassView& view, const RasterSettings& settings, Geometry& result) {
-    process(data, common_to(data.polygonal, objects), common_to(data.spheres, objects), grid, view, settings, true,
-            result);
+                      const RasterSettings& settings, Geometry& result, const ObjectFilter& includes) {
+    process(data, data.polygonal, data.spheres, grid, view, settings, true, includes, result);
 }
 
 void process_layers(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
                     const RasterSettings& settings, Geometry& result) {
-    process(data, data.alpha_polygonal, data.alpha_spheres, grid, view, settings, false, result);
+    process(data, data.alpha_polygonal, data.alpha_spheres, grid, view, settings, false, {}, result);
 }
 
 } // namespace duet::raster

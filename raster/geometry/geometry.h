@@ -8,6 +8,8 @@
 
 #include <vector>
 
+#include <functional>
+
 namespace duet::raster {
 
 /// Represents one view of the scene: a point on the lens, a time, and the sample positions in the pixel.
@@ -34,16 +36,12 @@ struct Geometry {
     std::size_t memory_bytes() const;
 };
 
-/// Processes all objects without alpha mask or alpha blending. The result is the same for any number of threads.
+/// Returns whether an object, given by its index, is drawn; empty if all are.
+using ObjectFilter = std::function<bool(std::uint32_t)>;
+/// Processes the objects without alpha mask or alpha blending. The result is the same for any number of threads.
 /// Throws Error if there are more triangles in view than ids (2^31).
 void process_geometry(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
-                      const RasterSettings& settings, Geometry& result);
-/// Processes the objects of process_geometry() except those listed, in order.
-void process_without(const RasterSceneData& data, const std::vector<std::uint32_t>& excluded, const TileGrid& grid,
-                     const PassView& view, const RasterSettings& settings, Geometry& result);
-/// Processes those objects of process_geometry() that are listed, in order.
-void process_only(const RasterSceneData& data, const std::vector<std::uint32_t>& objects, const TileGrid& grid,
-                  const PassView& view, const RasterSettings& settings, Geometry& result);
+                      const RasterSettings& settings, Geometry& result, const ObjectFilter& includes = {});
 /// Processes only the objects with alpha mask or alpha blending (RasterSceneData::alpha_polygonal and alpha_spheres).
 void process_layers(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
                     const RasterSettings& settings, Geometry& result);

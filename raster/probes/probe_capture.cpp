@@ -9,6 +9,7 @@
 
 #include "common/system/control.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace duet::raster {
@@ -32,10 +33,9 @@ ProbeCapture::Face capture(const RasterSceneData& data, const RasterSettings& se
                         .samples = samples};
     const TileGrid grid{{0, 0, side, side}};
     const auto geometry = data.geometries->take();
-    if (selection.excluded)
-        process_without(data, selection.objects, grid, pass, settings, *geometry);
-    else
-        process_only(data, selection.objects, grid, pass, settings, *geometry);
+    process_geometry(data, grid, pass, settings, *geometry, [&](std::uint32_t object) {
+        return std::binary_search(selection.objects.begin(), selection.objects.end(), object) != selection.excluded;
+    });
     ProbeCapture::Face face{GBuffer(ScreenProjection(pinhole, samples.front()), side, side, any_clear_coat(data.scene)),
                             Planes3(side, side), Planes3(side, side)};
     fill_gbuffer(data, settings, *geometry, pass, grid, samples.front(), Control{}, face.gbuffer, face.emission);
