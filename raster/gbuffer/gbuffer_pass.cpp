@@ -50,6 +50,13 @@ template <typename T> void store_packet(const PacketOf<T>& packet, int x, int y,
     if (y + 1 < plane.height()) std::copy_n(packet.at(kPacketWidth), kPacketWidth, plane.row(y + 1) + x);
 }
 
+void store_lobes(const SurfaceLobes& lobes, int x, int y, GBuffer& gbuffer) {
+    gbuffer.diffuse.set_at(x, y, lobes.diffuse);
+    gbuffer.specular.set_at(x, y, lobes.specular);
+    gbuffer.alpha(x, y) = lobes.alpha;
+    if (!gbuffer.coat.empty()) gbuffer.coat(x, y) = lobes.coat, gbuffer.coat_alpha(x, y) = lobes.coat_alpha;
+}
+
 /// Holds what all tiles share.
 struct Frame {
     const RasterSceneData& data;
@@ -137,7 +144,7 @@ private:
         std::int32_t first = -1;
         for (std::uint32_t left = samples_.visible; left != 0; left &= left - 1) {
             const auto i = static_cast<std::size_t>(std::countr_zero(left));
-            const auto [object, primitive] = object_and_primitive(samples_.id(i));
+            const auto [object, primitive] = geometry_.primitive(reader_.run_of(samples_.id(i)), samples_.id(i));
             object_[i] = static_cast<std::int32_t>(object);
             material_[i] = static_cast<std::int32_t>(material_index(scene_, object, primitive));
             if (first < 0) first = material_[i];
@@ -221,28 +228,10 @@ private:
         const Vec2d pixel = packet.position(i);
         const Ray ray = rounded(view_.pinhole.ray(pixel), view_.time);
         const Hit hit = find_hit(geometry_, view_, samples_.id(i), pixel);
-        const RayFootprint footprint =
-            scene_.needs.footprints ? PixelFootprint(view_.pinhole, samples_per_pixel(packet, view_)).at(ray, hit.t)
-                                    : RayFootprint{};
-        const SurfacePoint point = surface_point(scene_, ray, hit, &footprint);
+        const SurfacePoint point = filtered_point(scene_, view_, ray, hit, samples_per_pixel(packet, view_));
         const float cosine = clamp(-dot(gbuffer_.normal.vector_at(x, y), ray.direction), 1e-4f, 1.0f);
-        const SurfaceLobes lobes =
-            surface_lobes(bsdf_at(scene_.materials[point.material], scene_.textures, point), cosine);
-        gbuffer_.diffuse.set_at(x, y, lobes.diffuse);
-        gbuffer_.specular.set_at(x, y, lobes.specular);
-        gbuffer_.alpha(x, y) = lobes.alpha;
-        if (!gbuffer_.coat.empty()) gbuffer_.coat(x, y) = lobes.coat, gbuffer_.coat_alpha(x, y) = lobes.coat_alpha;
-    }
-
-    struct Primitive {
-        std::uint32_t object, primitive;
-    };
-    Primitive object_and_primitive(std::uint32_t id) {
-        const Run& run = reader_.run_of(id);
-        if (run.sphere) return {geometry_.spheres[run.object].object, 0};
-        const Triangles& triangles = geometry_.triangles;
-        return {triangles.objects[run.object].object,
-                static_cast<std::uint32_t>(triangles.packed(run).primitive(Triangles::index(run, id)))};
+        store_lobes(surface_lobes(bsdf_at(scene_.materials[point.material], scene_.textures, point), cosine), x, y,
+                    gbuffer_);
     }
 
     const Scene& scene_;
@@ -276,14 +265,10 @@ void store_surface(const Scene& scene, const VisibleSurface& surface, bool emits
     const SurfacePoint& point = surface.point;
     const Vec3 n = dot(point.ng, surface.to_viewer) < 0 ? -point.ns : point.ns;
     const float cosine = clamp(dot(n, surface.to_viewer), 1e-4f, 1.0f);
-    const SurfaceLobes lobes = surface_lobes(surface.bsdf, cosine);
     gbuffer.reversed_depth(x, y) = surface.reversed_depth;
     gbuffer.normal.set_at(x, y, n);
     gbuffer.bulge(x, y) = max(dot(point.terminator_offset, n), 0.0f);
-    gbuffer.diffuse.set_at(x, y, lobes.diffuse);
-    gbuffer.specular.set_at(x, y, lobes.specular);
-    gbuffer.alpha(x, y) = lobes.alpha;
-    if (!gbuffer.coat.empty()) gbuffer.coat(x, y) = lobes.coat, gbuffer.coat_alpha(x, y) = lobes.coat_alpha;
+    store_lobes(surface_lobes(surface.bsdf, cosine), x, y, gbuffer);
     gbuffer.object(x, y) = static_cast<std::int32_t>(point.object);
     gbuffer.material(x, y) = static_cast<std::int32_t>(point.material);
     emission.set_at(x, y, emits ? emitted(scene.materials[point.material], scene.textures, point, surface.to_viewer)

@@ -63,6 +63,13 @@ void assemble(const RasterSceneData& data, const AssemblyPlan& plan, int threads
 
 } // namespace
 
+Geometry::Primitive Geometry::primitive(const Run& run, std::uint32_t id) const {
+    if (run.sphere) return {spheres[run.object].object, 0};
+    const std::uint32_t index = Triangles::index(run, id);
+    const bool quads = std::holds_alternative<QuadList>(triangles.shape(run));
+    return {triangles.objects[run.object].object, quads ? index / 2 : index};
+}
+
 std::size_t Geometry::memory_bytes() const {
     std::size_t bytes = spheres.size() * sizeof(DrawSphere) + sphere_bins.memory_bytes() +
                         triangle_lists.memory_bytes() + mask_lists.memory_bytes() + fragment_lists.memory_bytes() +

@@ -33,6 +33,11 @@ struct Geometry {
     double transform_seconds = 0, setup_seconds = 0, bin_seconds = 0;
     ObjectPool<Assembler> assemblers; ///< each thread takes one
 
+    /// Returns which primitive an id of a run stands for.
+    struct Primitive {
+        std::uint32_t object, primitive; ///< as in a Hit
+    };
+    Primitive primitive(const Run& run, std::uint32_t id) const;
     std::size_t memory_bytes() const;
 };
 

@@ -7,16 +7,6 @@
 #include <cmath>
 
 namespace duet::raster {
-namespace {
-
-/// Returns the object of a primitive id.
-std::uint32_t object_of(const Geometry& geometry, std::uint32_t id) {
-    const Run& run = geometry.triangles.run_of(id);
-    return run.sphere ? geometry.spheres[run.object].object : geometry.triangles.objects[run.object].object;
-}
-
-} // namespace
-
 void EdgeBuffer::add(const DepthTile& tile, const Geometry& geometry, PacketShader& normals) {
     const PixelRect& r = tile.rect();
     ColorPacket colors;
@@ -31,7 +21,7 @@ void EdgeBuffer::add(const DepthTile& tile, const Geometry& geometry, PacketShad
                 const bool any = id != kNoTriangle;
                 reversed_depth(x, y) = any ? packet.reversed_depth[i] : 0;
                 normal(x, y) = any ? Vec3(colors.r[i], colors.g[i], colors.b[i]) : Vec3();
-                object(x, y) = any ? object_of(geometry, id) : kNoObject;
+                object(x, y) = any ? geometry.primitive(geometry.triangles.run_of(id), id).object : kNoObject;
             }
         }
 }

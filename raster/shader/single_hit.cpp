@@ -43,38 +43,23 @@ void set_weights(HitCorners& at, double b1, double b2) {
     at.weights = {static_cast<float>(1 - b1 - b2), static_cast<float>(b1), static_cast<float>(b2)};
 }
 
-/// Sets the corners of the hit half of a quad, split as the rasterizer does: (corner, +u, +u+v) or (corner, +u+v,
-/// +v).
-void set_quad(HitCorners& at, const Shape& shape, const Hit& hit) {
-    const PrimitiveVertices corners = primitive_vertices(shape, hit.primitive);
+/// Sets the corners of the hit triangle, or of the hit half of a quad, split as the rasterizer does.
+void set_corners(HitCorners& at, const PackedShape& shape, const Hit& hit) {
     const double u = static_cast<double>(hit.u), v = static_cast<double>(hit.v);
-    const std::size_t half = u >= v ? 0 : 1;
-    constexpr std::array<Vec2, 4> kCorners{Vec2(0, 0), Vec2(1, 0), Vec2(1, 1), Vec2(0, 1)};
-    const std::array<std::size_t, 3> used{0, 1 + half, 2 + half};
-    const std::size_t diagonal = half == 0 ? 1 : 2; // the corner opposite to the diagonal
+    const std::size_t triangle = shape.quads() ? 2 * std::size_t{hit.primitive} + (u < v) : hit.primitive;
     for (std::size_t k = 0; k < 3; ++k) {
-        at.p[k] = corners.p[used[k]];
-        at.uv[k] = kCorners[used[k]];
-        at.edges[k] = {};
-        at.edges[k][k] = at.edges[k][diagonal] = 1;
-    }
-    at.middle = (corners.p[0] + corners.p[2]) * 0.5f; // centroid of the whole quad
-    if (half == 0)
-        set_weights(at, u - v, v);
-    else
-        set_weights(at, u, v - u);
-}
-
-void set_triangle(HitCorners& at, const Mesh& mesh, const Hit& hit) {
-    const auto& corners = mesh.triangles[hit.primitive];
-    for (std::size_t k = 0; k < 3; ++k) {
-        at.p[k] = mesh.positions[corners[k]];
-        if (!mesh.normals.empty()) at.n[k] = mesh.normals[corners[k]];
-        if (!mesh.uvs.empty()) at.uv[k] = mesh.uvs[corners[k]];
+        const PackedVertex& corner = shape.vertices[shape.triangles[triangle][k]];
+        at.p[k] = corner.p, at.n[k] = corner.n, at.uv[k] = {corner.u, corner.v};
         at.edges[k][k] = 1;
     }
-    at.middle = (at.p[0] + at.p[1] + at.p[2]) * (1.0f / 3);
-    set_weights(at, static_cast<double>(hit.u), static_cast<double>(hit.v));
+    if (!shape.quads()) {
+        at.middle = (at.p[0] + at.p[1] + at.p[2]) * (1.0f / 3);
+        return set_weights(at, u, v);
+    }
+    const std::size_t diagonal = u < v ? 2 : 1; // the corner opposite to the diagonal
+    for (Vec3& edges : at.edges) edges[diagonal] = 1;
+    at.middle = (at.p[0] + at.p[3 - diagonal]) * 0.5f; // centroid of the whole quad
+    set_weights(at, u < v ? u : u - v, u < v ? v - u : v);
 }
 
 void set_sphere(HitCorners& at, const Scene& scene, const PassView& view, const Hit& hit, Vec2d pixel,
@@ -102,16 +87,12 @@ void set_sphere(HitCorners& at, const Scene& scene, const PassView& view, const 
 
 } // namespace
 
-namespace {
-
 SurfacePoint filtered_point(const Scene& scene, const PassView& view, const Ray& ray, const Hit& hit,
                             int samples_per_pixel) {
     const RayFootprint footprint =
         scene.needs.footprints ? PixelFootprint(view.pinhole, samples_per_pixel).at(ray, hit.t) : RayFootprint{};
     return surface_point(scene, ray, hit, &footprint);
 }
-
-} // namespace
 
 Rgb hit_color(const Scene& scene, const PassView& view, const Ray& ray, const Hit& hit, int samples_per_pixel) {
     const SurfacePoint surface = filtered_point(scene, view, ray, hit, samples_per_pixel);
@@ -141,16 +122,13 @@ HitCorners hit_corners(const PassView& view, const Hit& hit, Vec2d pixel, const 
     const bool back = dot(at.surface.ng, ray.direction) > 0;
     at.ng = to_object_normal(object, back ? -at.surface.ng : at.surface.ng);
     at.ns = back ? -at.surface.ns : at.surface.ns;
-    const Shape& shape = scene.shapes[scene.objects[hit.object].shape];
-    if (std::holds_alternative<Sphere>(shape)) {
+    const std::size_t shape = scene.objects[hit.object].shape;
+    if (std::holds_alternative<Sphere>(scene.shapes[shape])) {
         set_sphere(at, scene, view, hit, pixel, object);
-        return at;
+    } else {
+        set_corners(at, object.data.shapes[shape], hit);
+        set_steps(at, view, pixel, object);
     }
-    if (const Mesh* mesh = std::get_if<Mesh>(&shape))
-        set_triangle(at, *mesh, hit);
-    else
-        set_quad(at, shape, hit);
-    set_steps(at, view, pixel, object);
     return at;
 }
 

@@ -22,8 +22,7 @@ Layers::Layers(const RasterSceneData& data, const RasterSettings& settings, cons
     : data_(data), settings_(settings), program_(program), view_(view), offset_(offset), tile_(tile) {
     HitLists lists(geometry, view, offset, tile_index, tile);
     if (lists.empty()) return;
-    const PixelRect& r = tile.rect();
-    pixels_.resize(static_cast<std::size_t>(r.width()) * static_cast<std::size_t>(r.height()));
+    pixels_ = Image<Pixel>(tile.rect().width(), tile.rect().height());
     lists.for_each([&](int x, int y, const Hit& hit) { return add(x, y, hit); });
 }
 

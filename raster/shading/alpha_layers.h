@@ -4,7 +4,7 @@
 
 #include "raster/shading/sample_attributes.h"
 
-#include <vector>
+#include "common/image/image.h"
 
 namespace duet::raster {
 
@@ -33,11 +33,7 @@ private:
     };
 
     bool add(int x, int y, const Hit& hit);
-    Pixel& pixel(int x, int y) {
-        const PixelRect& r = tile_.rect();
-        return pixels_[static_cast<std::size_t>(y - r.y0) * static_cast<std::size_t>(r.width()) +
-                       static_cast<std::size_t>(x - r.x0)];
-    }
+    Pixel& pixel(int x, int y) { return pixels_(x - tile_.rect().x0, y - tile_.rect().y0); }
 
     const RasterSceneData& data_;
     const RasterSettings& settings_;
@@ -45,7 +41,7 @@ private:
     const PassView& view_;
     SampleOffset offset_;
     HitTile& tile_;
-    std::vector<Pixel> pixels_; ///< empty if no layer overlaps the tile
+    Image<Pixel> pixels_; ///< empty if no layer overlaps the tile
 };
 
 } // namespace duet::raster

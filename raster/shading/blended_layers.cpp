@@ -1,6 +1,7 @@
 #include "raster/shading/blended_layers.h"
 
 #include "raster/gbuffer/gbuffer_pass.h"
+#include "raster/shader/single_hit.h"
 #include "raster/visibility/hit_lists.h"
 
 #include "common/scene/alpha_mask.h"
@@ -14,11 +15,7 @@ void store_hit(const SampleView& sample, int x, int y, const Hit& hit, float rev
                Planes3& emission) {
     const Scene& scene = sample.data.scene;
     const Ray ray = rounded(sample.view.pinhole.ray(sample.offset.position(x, y)), sample.view.time);
-    const int samples_per_pixel = sample.view.samples_per_pixel;
-    const RayFootprint footprint = scene.needs.footprints
-        ? PixelFootprint(sample.view.pinhole, samples_per_pixel).at(ray, hit.t)
-        : RayFootprint{};
-    const SurfacePoint point = surface_point(scene, ray, hit, &footprint);
+    const SurfacePoint point = filtered_point(scene, sample.view, ray, hit, sample.view.samples_per_pixel);
     const Bsdf bsdf = bsdf_at(scene.materials[point.material], scene.textures, point);
     store_surface(scene, {point, bsdf, -ray.direction, reversed_depth}, sample.settings.components.emission, x, y,
                   gbuffer, emission);

@@ -21,9 +21,7 @@ bool overlaps_tile(const Geometry& geometry, std::size_t tile) {
 HitLists::HitLists(const Geometry& geometry, const PassView& view, SampleOffset offset, std::size_t tile_index,
                    const HitTile& tile)
     : geometry_(geometry), view_(view), offset_(offset), tile_index_(tile_index), tile_(tile) {
-    const PixelRect& r = tile.rect();
-    if (overlaps_tile(geometry, tile_index))
-        pixels_.resize(static_cast<std::size_t>(r.width()) * static_cast<std::size_t>(r.height()));
+    if (overlaps_tile(geometry, tile_index)) pixels_ = Image<Pixel>(tile.rect().width(), tile.rect().height());
 }
 
 void HitLists::draw() {
@@ -37,7 +35,7 @@ void HitLists::draw() {
         for (std::uint32_t k = 0; k < item.count; ++k) {
             const Fragment& fragment = batch.fragments[item.first + k];
             const int x = r.x0 + tile_sample_x(fragment.sample_index), y = r.y0 + tile_sample_y(fragment.sample_index);
-            if (!pixel(x, y).done) add(x, y, ListedTriangle(geometry_.triangles, fragment.id));
+            if (!pixel(x, y).done) add(x, y, listed(fragment.id));
         }
     }
     if (geometry_.spheres.empty()) return;
@@ -56,7 +54,7 @@ void HitLists::draw_triangle(const DrawTriangle& triangle) {
             const std::int64_t sx = std::int64_t{x} * kSubpixels + offset_.x,
                                sy = std::int64_t{y} * kSubpixels + offset_.y;
             if (!std::ranges::all_of(edges, [&](const EdgeFunction& e) { return e.at(sx, sy) >= 0; })) continue;
-            if (!whole) whole.emplace(geometry_.triangles, triangle.id);
+            if (!whole) whole = listed(triangle.id);
             add(x, y, *whole);
         }
 }
@@ -76,17 +74,14 @@ void HitLists::draw_sphere(const DrawSphere& sphere) {
         }
 }
 
-HitLists::ListedTriangle::ListedTriangle(const Triangles& triangles, std::uint32_t id) {
-    const Run& run = triangles.run_of(id);
-    const std::uint32_t index = Triangles::index(run, id);
-    whole = triangles.unclipped(run, index);
-    object = triangles.objects[run.object].object;
-    primitive = whole.triangle_kind == TriangleKind::kTriangle ? index : index / 2;
+HitLists::ListedTriangle HitLists::listed(std::uint32_t id) const {
+    const Run& run = geometry_.triangles.run_of(id);
+    return {geometry_.triangles.unclipped(run, Triangles::index(run, id)), geometry_.primitive(run, id)};
 }
 
 void HitLists::add(int x, int y, const ListedTriangle& triangle) {
     add(x, y,
-        hit_triangle(triangle.whole, triangle.object, triangle.primitive, offset_.position(x, y),
+        hit_triangle(triangle.whole, triangle.primitive, offset_.position(x, y),
                      tile_.distance_per_depth(x, y), view_.pinhole.near));
 }
 

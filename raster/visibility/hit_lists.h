@@ -7,7 +7,6 @@
 #include "common/scene/scene.h"
 
 #include <array>
-#include <vector>
 
 namespace duet::raster {
 
@@ -73,28 +72,23 @@ private:
     /// Represents a triangle whose hits are to be listed.
     struct ListedTriangle {
         UnclippedTriangle whole;
-        std::uint32_t object, primitive;
-
-        ListedTriangle(const Triangles& triangles, std::uint32_t id);
+        Geometry::Primitive primitive;
     };
 
+    ListedTriangle listed(std::uint32_t id) const;
     void draw();
     void draw_triangle(const DrawTriangle& triangle);
     void draw_sphere(const DrawSphere& sphere);
     void add(int x, int y, const ListedTriangle& triangle);
     void add(int x, int y, const Hit& hit);
-    Pixel& pixel(int x, int y) {
-        const PixelRect& r = tile_.rect();
-        return pixels_[static_cast<std::size_t>(y - r.y0) * static_cast<std::size_t>(r.width()) +
-                       static_cast<std::size_t>(x - r.x0)];
-    }
+    Pixel& pixel(int x, int y) { return pixels_(x - tile_.rect().x0, y - tile_.rect().y0); }
 
     const Geometry& geometry_;
     const PassView& view_;
     SampleOffset offset_;
     std::size_t tile_index_;
     const HitTile& tile_;
-    std::vector<Pixel> pixels_;
+    Image<Pixel> pixels_; ///< of the tile
 };
 
 } // namespace duet::raster

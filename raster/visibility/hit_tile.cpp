@@ -49,9 +49,8 @@ void draw_all(const Geometry& geometry, std::span<const TileLists::Item> lists, 
     }
 }
 
-Hit make_hit(std::uint32_t object, std::uint32_t primitive, TriangleKind triangle_kind, double b1, double b2,
-             double distance) {
-    Hit hit{.object = object, .primitive = primitive, .t = static_cast<float>(distance)};
+Hit make_hit(Geometry::Primitive of, TriangleKind triangle_kind, double b1, double b2, double distance) {
+    Hit hit{.object = of.object, .primitive = of.primitive, .t = static_cast<float>(distance)};
     switch (triangle_kind) {
     case TriangleKind::kTriangle:
         hit.u = static_cast<float>(b1), hit.v = static_cast<float>(b2);
@@ -100,11 +99,11 @@ void rasterize_tile(const Geometry& geometry, const PassView& view, SampleOffset
     tile.clear_undrawn();
 }
 
-Hit hit_triangle(const UnclippedTriangle& whole, std::uint32_t object, std::uint32_t primitive, Vec2d pixel,
-                 double distance_per_depth, double near) {
+Hit hit_triangle(const UnclippedTriangle& whole, Geometry::Primitive primitive, Vec2d pixel, double distance_per_depth,
+                 double near) {
     const Interpolated at = interpolate(whole, pixel);
     const double depth = at.depth_sum > near * at.sum ? at.depth_sum / at.sum : near;
-    return make_hit(object, primitive, whole.triangle_kind, at.b1 / at.sum, at.b2 / at.sum, depth * distance_per_depth);
+    return make_hit(primitive, whole.triangle_kind, at.b1 / at.sum, at.b2 / at.sum, depth * distance_per_depth);
 }
 
 Hit HitTile::exchange(int x, int y, const Hit& hit) {
@@ -119,10 +118,7 @@ Hit find_hit(const Geometry& geometry, const PassView& view, std::uint32_t id, V
     const Run& run = triangles.run_of(id);
     const Rayd exact = view.pinhole.ray(pixel);
     if (run.sphere) return hit_sphere(geometry.spheres[run.object], rounded(exact, view.time));
-    const std::uint32_t index = Triangles::index(run, id);
-    const UnclippedTriangle whole = triangles.unclipped(run, index);
-    return hit_triangle(whole, triangles.objects[run.object].object,
-                        whole.triangle_kind == TriangleKind::kTriangle ? index : index / 2, pixel,
+    return hit_triangle(triangles.unclipped(run, Triangles::index(run, id)), geometry.primitive(run, id), pixel,
                         exact.t_min / view.pinhole.near, view.pinhole.near);
 }
 
@@ -169,18 +165,15 @@ private:
 
     Hit hit(std::size_t i, const SamplePacket& packet, const InterpolatedPacket<NoVaryings, double>& result,
             std::size_t at) const {
-        const Triangles& triangles = geometry_.triangles;
         const std::uint32_t id = result.samples->id(i);
         const Run& run = interpolator_.run_of(id);
         if (run.sphere) return hit_sphere(geometry_.spheres[run.object], tile_.rays_[at]);
         if (!(result.samples->on_mesh & result.inside & 1u << i))
             return find_hit(geometry_, view_, id, packet.position(i));
         const double depth = std::max(result.depth[i], view_.pinhole.near);
-        const std::uint32_t index = Triangles::index(run, id);
-        const PackedShape& shape = *result.samples->shape;
-        return make_hit(triangles.objects[run.object].object, static_cast<std::uint32_t>(shape.primitive(index)),
-                        shape.triangle_kind(index), static_cast<double>(result.b1[i]),
-                        static_cast<double>(result.b2[i]), depth * tile_.distance_per_depth_[at]);
+        return make_hit(geometry_.primitive(run, id), result.samples->shape->triangle_kind(Triangles::index(run, id)),
+                        static_cast<double>(result.b1[i]), static_cast<double>(result.b2[i]),
+                        depth * tile_.distance_per_depth_[at]);
     }
 
     HitTile& tile_;

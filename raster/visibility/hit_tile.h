@@ -26,8 +26,8 @@ void rasterize_tile(const Geometry& geometry, const PassView& view, SampleOffset
 /// Returns the hit of a triangle at one sample. This is the scalar reference that all faster paths must match.
 /// `pixel` is the sample position in pixels, `distance_per_depth` the ray length per meter of depth, `near` the
 /// distance of the near plane in meters.
-Hit hit_triangle(const UnclippedTriangle& whole, std::uint32_t object, std::uint32_t primitive, Vec2d pixel,
-                 double distance_per_depth, double near);
+Hit hit_triangle(const UnclippedTriangle& whole, Geometry::Primitive primitive, Vec2d pixel, double distance_per_depth,
+                 double near);
 
 /// Returns the hit of any primitive by its id, at one sample. If the ray misses a sphere, the hit is the point of
 /// closest approach.

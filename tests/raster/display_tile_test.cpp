@@ -233,7 +233,7 @@ TEST_SUITE("unit") {
                         if (run.sphere) continue;
                         const Vec2d pixel = samples[0].position(x, y);
                         const Hit naive =
-                            hit_triangle(geometry.triangles.unclipped(depths.id(x, y)), hit.object, hit.primitive,
+                            hit_triangle(geometry.triangles.unclipped(depths.id(x, y)), {hit.object, hit.primitive},
                                          pixel, pinhole.ray(pixel).t_min / pinhole.near, pinhole.near);
                         REQUIRE(naive.object == hit.object);
                         const auto apart = [](float a, float b) {
