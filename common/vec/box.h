@@ -15,6 +15,10 @@ template <Arithmetic T> struct Box3T {
     constexpr bool empty() const { return !(low.x <= high.x && low.y <= high.y && low.z <= high.z); }
     constexpr Vec3T<T> diagonal() const { return high - low; }
     constexpr Vec3T<T> center() const { return low * T(0.5) + high * T(0.5); }
+    /// Returns corner i of 0 to 7. Bits 0, 1 and 2 of i select the high end of the x, y and z axis.
+    constexpr Vec3T<T> corner(unsigned i) const {
+        return {(i & 1u ? high : low).x, (i & 2u ? high : low).y, (i & 4u ? high : low).z};
+    }
     /// Returns half the surface area, which is 0 for an empty box.
     constexpr T half_area() const {
         const Vec3T<T> d = diagonal();

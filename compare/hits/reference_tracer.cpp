@@ -95,10 +95,7 @@ std::vector<Box3d> primitive_boxes(const Shape& shape) {
 /// Returns the bounding box of a transformed box, enlarged by far more than the transform's rounding error.
 Box3d transformed(const Box3d& box, const Mat4d& map) {
     Box3d result;
-    for (int corner = 0; corner < 8; ++corner)
-        result.extend(
-            transform_point(map, Vec3d((corner & 1 ? box.high : box.low).x, (corner & 2 ? box.high : box.low).y,
-                                       (corner & 4 ? box.high : box.low).z)));
+    for (unsigned corner = 0; corner < 8; ++corner) result.extend(transform_point(map, box.corner(corner)));
     const double size = max_component(max(abs(result.low), abs(result.high))) * 1e-12;
     result.low = result.low - Vec3d(size, size, size);
     result.high = result.high + Vec3d(size, size, size);

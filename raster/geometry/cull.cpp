@@ -14,9 +14,7 @@ bool outside_frustum(const Box3& box, const Pinhole& pinhole, const Viewport& vi
     if (box.empty()) return true;
     unsigned shared = kFrustum;
     for (unsigned corner = 0; corner < 8 && shared != 0; ++corner) {
-        const Vec3d p(corner & 1u ? box.high.x : box.low.x, corner & 2u ? box.high.y : box.low.y,
-                      corner & 4u ? box.high.z : box.low.z);
-        const Vec4d h = pinhole.world_to_pixel * Vec4d(p, 1.0);
+        const Vec4d h = pinhole.world_to_pixel * Vec4d(Vec3d(box.corner(corner)), 1.0);
         shared &= outcode({.xw = h.x, .yw = h.y, .w = h.w, .depth = h.z}, viewport);
     }
     return shared != 0;

@@ -69,13 +69,12 @@ std::array<SunRect, kRanges> range_rects(std::span<const VisiblePoint> visible, 
 
 std::vector<Camera> sun_views(const SunLight& sun, const Box3& casters, const Camera& camera,
                               std::span<const VisiblePoint> visible, int side, double guard) {
-    const Vec3d direction = normalize(Vec3d(sun.direction)), low(casters.low), high(casters.high);
+    const Vec3d direction = normalize(Vec3d(sun.direction));
     const FrameT<double> frame = frame_from_normal(direction);
     SunRect whole;
     double first = 1e300, last = -1e300;
     for (unsigned corner = 0; corner < 8; ++corner) {
-        const Vec3d p = frame.to_local({corner & 1u ? high.x : low.x, corner & 2u ? high.y : low.y, corner & 4u
-                                        ? high.z : low.z});
+        const Vec3d p = frame.to_local(Vec3d(casters.corner(corner)));
         whole.extend({p.x, p.y}, 0);
         first = min(first, p.z), last = max(last, p.z);
     }

@@ -58,18 +58,14 @@ bool is_floor(const Scene& scene, std::uint32_t object, Vec3 sun_direction) {
     if (dot(n, Vec3d(sun_direction)) > 0) n = -n;
     const Box3& box = scene.bounds;
     double lowest = 0;
-    for (unsigned corner = 0; corner < 8; ++corner) {
-        const Vec3 q(corner & 1u ? box.high.x : box.low.x, corner & 2u ? box.high.y : box.low.y,
-                     corner & 4u ? box.high.z : box.low.z);
-        lowest = min(lowest, dot(n, Vec3d(q) - p));
-    }
+    for (unsigned corner = 0; corner < 8; ++corner) lowest = min(lowest, dot(n, Vec3d(box.corner(corner)) - p));
     return lowest > -kFloor * length(Vec3d(box.diagonal()));
 }
 
 bool only_emits(const Scene& scene, std::uint32_t object) {
-    const Object& o = scene.objects[object];
-    return std::all_of(o.materials.begin(), o.materials.end(),
-                       [&](std::uint32_t material) { return emitter(scene.materials[material]) != nullptr; });
+    return std::ranges::all_of(scene.objects[object].materials, [&](std::uint32_t material) {
+        return emitter(scene.materials[material]) != nullptr;
+    });
 }
 
 /// Returns the points that the scene's camera sees, from a low-resolution depth image.
