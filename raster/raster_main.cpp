@@ -7,12 +7,8 @@
 int main(int argc, char** argv) {
     using namespace duet;
     std::string shading_name = "lit";
-    double occlusion_radius = 0;
-    bool no_environment = false, no_culling = false, sample_shading = false, edges = false, shadows = true;
-    bool occlusion = true, indirect = true;
-    int multisamples = 0;
-    int shadow_map_side = raster::RasterSettings{}.shadow_map_side,
-        shadow_cells = raster::RasterSettings{}.shadow_cells;
+    bool no_environment = false, no_culling = false;
+    raster::RasterSettings options;
     RenderProgram program;
     program.name = "raster";
     program.description = "Renders a scene with the software rasterizer.";
@@ -22,28 +18,30 @@ int main(int argc, char** argv) {
         command_line.add("--shading", shading_name,
                          raster::shading_names() + " (default: lit, by materials and lights)");
         command_line.add(
-            "--msaa", multisamples,
+            "--msaa", options.multisamples,
             "Multisampling: coverage and depth at 2, 4, 8 or 16 samples a pixel, shading once a primitive (in place "
             "of --spp)");
-        command_line.add_flag("--edges", edges, "Draw lines over the image where depth, normals or objects change");
-        command_line.add_flag("--sample-shading", sample_shading, "With --msaa: shade each sample").needs("--msaa");
+        command_line.add_flag("--edges", options.edges,
+                              "Draw lines over the image where depth, normals or objects change");
+        command_line.add_flag("--sample-shading", options.sample_shading, "With --msaa: shade each sample")
+            .needs("--msaa");
         command_line.add_flag("--no-environment", no_environment, "Leave out the environment's light and background");
         command_line.add_flag(
-            "--shadows,!--no-shadows", shadows,
+            "--shadows,!--no-shadows", options.shadows,
             "Shadow maps: sharp ones for point, spot and sun lights, soft ones for area lights (default: on)");
-        command_line.add("--shadow-map", shadow_map_side,
+        command_line.add("--shadow-map", options.shadow_map_side,
                          "Texels along a shadow map's side, 64 to 8192; a face of a cube map has half as many, of an "
                          "area light's a quarter (default 2048); fewer where there would be too many for memory, and "
                          "for an image of less than 256 x 256 pixels, which cannot show them");
         command_line.add(
-            "--shadow-cells", shadow_cells,
+            "--shadow-cells", options.shadow_cells,
             "Pieces along each side of a rectangular light, 1 to 8, each with a map of its own (default 2)");
-        command_line.add_flag("--ambient-occlusion,!--no-ambient-occlusion", occlusion,
+        command_line.add_flag("--ambient-occlusion,!--no-ambient-occlusion", options.ambient_occlusion,
                               "GTAO: near surfaces hide diffuse light, by the image's depths (default: on)");
-        command_line.add_flag("--indirect,!--no-indirect", indirect,
+        command_line.add_flag("--indirect,!--no-indirect", options.indirect_light,
                               "Diffuse light between surfaces, from irradiance probes (default: on)");
         command_line
-            .add("--occlusion-radius", occlusion_radius,
+            .add("--occlusion-radius", options.occlusion_radius,
                  "With --no-indirect: meters up to which surfaces hide the environment (default 0: half of the "
                  "scene's size or of the camera's distance)")
             .nonnegative();
@@ -51,21 +49,12 @@ int main(int argc, char** argv) {
                               "Draw back faces of closed meshes and what is outside the frustum, too (same image)");
     };
     program.prepare = [&](const Scene& scene, const RenderSettings& common, std::optional<int> spp) -> RenderFunction {
-        raster::RasterSettings settings;
+        raster::RasterSettings settings = options;
         static_cast<RenderSettings&>(settings) = common;
         settings.samples_per_pixel = spp.value_or(1);
         settings.shading = raster::parse_shading(shading_name);
-        if (multisamples != 0) raster::multisample_pattern(multisamples); // throws for an unsupported number
-        settings.multisamples = multisamples;
-        settings.edges = edges;
-        settings.sample_shading = sample_shading;
+        if (settings.multisamples != 0) raster::multisample_pattern(settings.multisamples); // throws if unsupported
         settings.environment = !no_environment;
-        settings.ambient_occlusion = occlusion;
-        settings.occlusion_radius = occlusion_radius;
-        settings.shadows = shadows;
-        settings.indirect_light = indirect;
-        settings.shadow_map_side = shadow_map_side;
-        settings.shadow_cells = shadow_cells;
         settings.skips.frustum = settings.skips.back_faces = !no_culling;
         return [prepared = raster::prepare(scene, settings), settings](const View& view, Control& control) {
             return raster::render(prepared, view, settings, control);
