@@ -24,6 +24,13 @@ struct SampleOffset {
     }
 };
 
+/// Returns a pixel's rank, 0 to 15, in a dither matrix of 4 × 4 pixels (Bayer 1973, "An Optimum Method for Two-Level
+/// Rendition of Continuous-Tone Images"), so that the ranks of neighbors differ most.
+inline std::uint32_t dither_rank(int x, int y) {
+    const auto column = static_cast<std::uint32_t>(x), row = static_cast<std::uint32_t>(y), odd = column ^ row;
+    return (odd & 1) << 3 | (row & 1) << 2 | (odd & 2) | (row & 2) >> 1;
+}
+
 /// Represents one view of the scene through one point of the lens at one time, with any number of samples per pixel.
 struct Pass {
     Vec2d lens{0.5, 0.5}; ///< in [0, 1)²; (0.5, 0.5) is the lens center

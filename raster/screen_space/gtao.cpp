@@ -114,18 +114,19 @@ private:
 };
 
 /// The direction and the step jitter of each pixel of a block, in [0, 1). The sixteen directions are all multiples of
-/// 1/16, ordered so that neighbors differ (Bayer 1973), and jitters are spread likewise.
+/// 1/16, ordered so that neighbors differ, and jitters are spread likewise.
 struct Pattern {
     Floats turn, jitter;
 };
 Pattern pattern_of(int x, int y) {
-    static constexpr std::array<float, 16> kTurn{0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
     PacketOf<float> turn, jitter;
-    for (std::size_t i = 0; i < Floats::size; ++i) {
-        const auto column = static_cast<std::size_t>(x + static_cast<int>(i)) % kBlock;
-        const std::size_t cell = static_cast<std::size_t>(y % kBlock) * kBlock + column;
-        turn[i] = (kTurn[cell] + 0.5f) / 16;
-        jitter[i] = (kTurn[(cell * 5 + 3) % 16] + 0.5f) / 16;
+    for (int i = 0; i < static_cast<int>(Floats::size); ++i) {
+        const auto fraction = [](int column, int row) {
+            return (static_cast<float>(dither_rank(column, row)) + 0.5f) / 16;
+        };
+        const int other = (y % kBlock * kBlock + (x + i) % kBlock) * 5 + 3;
+        turn[static_cast<std::size_t>(i)] = fraction(x + i, y);
+        jitter[static_cast<std::size_t>(i)] = fraction(other, other / kBlock);
     }
     return {load(turn, 0), load(jitter, 0)};
 }

@@ -5,13 +5,12 @@ namespace {
 
 using Mask = Floats::batch_bool_type;
 
-/// A dither matrix (Bayer 1973), so that neighbors' patterns differ most.
-constexpr std::array<std::int32_t, 16> kDither{0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
+constexpr int kPatterns = 16;
 
 Ints patterns(int x, int y) {
     alignas(64) std::array<std::int32_t, Ints::size> result;
     for (std::size_t i = 0; i < result.size(); ++i)
-        result[i] = kDither[static_cast<std::size_t>(y % 4 * 4 + (x + static_cast<int>(i)) % 4)];
+        result[i] = static_cast<std::int32_t>(dither_rank(x + static_cast<int>(i), y));
     return Ints::load_aligned(result.data());
 }
 
@@ -64,7 +63,6 @@ Floats MapShadows::sharp_visibility(const Source& source, const Vec3T<Floats>& p
 
 Floats MapShadows::mean_visibility(std::span<const SoftShadowMap> cells, const Vec3T<Floats>& p,
                                    const Vec3T<Floats>& n) const {
-    constexpr int kPatterns = static_cast<int>(kDither.size());
     Floats sum(0.0f);
     for (const SoftShadowMap& cell : cells)
         for (int pattern = 0; pattern < kPatterns; ++pattern) sum += cell.visibility(eye_, p, n, Ints(pattern));

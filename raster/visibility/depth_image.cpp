@@ -10,13 +10,11 @@
 namespace duet::raster {
 namespace {
 
-/// Returns the dither threshold of a texel, in [0, 1): a rank of Bayer's matrix (1973, "An Optimum Method for
-/// Two-Level Rendition of Continuous-Tone Images") plus a hash within its step of 1/16, so that the mean is exact
-/// for every opacity.
+/// Returns the dither threshold of a texel, in [0, 1): its rank plus a hash within the rank's step of 1/16, so that the
+/// mean is exact for every opacity.
 float dither(int x, int y) {
-    const auto column = static_cast<std::uint32_t>(x), row = static_cast<std::uint32_t>(y), odd = column ^ row;
-    const std::uint32_t rank = (odd & 1) << 3 | (row & 1) << 2 | (odd & 2) | (row & 2) >> 1;
-    return unit_float(rank << 28 | high_bits(hash_combine(column, row)) >> 4);
+    const std::uint64_t hash = hash_combine(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
+    return unit_float(dither_rank(x, y) << 28 | high_bits(hash) >> 4);
 }
 
 /// Returns a tile whose hits lie at the given reversed depths. Only their distances are set, because no object is
