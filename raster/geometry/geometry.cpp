@@ -117,7 +117,10 @@ void process(const RasterSceneData& data, const Objects& all_polygonal, const Ob
     result.triangle_lists.gather(result.batches, &Batch::triangle_segments, grid.size());
     result.mask_lists.gather(result.batches, &Batch::mask_segments, grid.size());
     result.fragment_lists.gather(result.batches, &Batch::fragment_segments, grid.size());
-    result.sphere_bins = bin(grid, result.spheres);
+    result.sphere_bins.assign(grid.size(), [&](const auto& put) {
+        for (std::uint32_t i = 0; i < result.spheres.size(); ++i)
+            grid.for_each(result.spheres[i].bounds, [&](std::size_t tile) { put(tile, i); });
+    });
     result.bin_seconds = watch.lap();
 }
 

@@ -4,6 +4,7 @@
 #include "raster/geometry/assemble.h"
 #include "raster/geometry/bin.h"
 #include "raster/geometry/sample_positions.h"
+#include "raster/geometry/sphere.h"
 #include "raster/raster_scene.h"
 
 #include <vector>
@@ -28,7 +29,7 @@ struct Geometry {
     std::vector<Batch> batches; ///< one per run
     TileLists triangle_lists, mask_lists, fragment_lists;
     std::vector<DrawSphere> spheres;
-    Bins sphere_bins;
+    ItemsByTile<std::uint32_t> sphere_bins; ///< indices of `spheres`
     CullCounts culled;
     double transform_seconds = 0, setup_seconds = 0, bin_seconds = 0;
     ObjectPool<Assembler> assemblers; ///< each thread takes one
