@@ -8,6 +8,7 @@
 #include "raster/settings.h"
 #include "raster/shader/texture_sampler.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -59,7 +60,11 @@ struct RasterSceneData {
     std::shared_ptr<const RadianceMap> environment_map{}; ///< likewise, of the environment alone
     std::shared_ptr<const ReflectionProbes> reflection_probes{}; ///< likewise
     std::shared_ptr<const GlassShapes> glass_shapes{}; ///< likewise
-    bool has_layers() const { return !alpha_polygonal.empty() || !alpha_spheres.empty(); }
+    /// Returns whether any object but `excluded` has an alpha mask or alpha blending.
+    bool has_layers(std::uint32_t excluded = kNoObject) const {
+        const auto counts = [&](std::uint32_t object) { return object != excluded; };
+        return std::ranges::any_of(alpha_polygonal, counts) || std::ranges::any_of(alpha_spheres, counts);
+    }
     std::shared_ptr<ObjectPool<Geometry>> geometries{}; ///< one for each rendering that runs at the same time
     std::shared_ptr<ObjectPool<DeferredFrame>> deferred_frames{}; ///< likewise
 };

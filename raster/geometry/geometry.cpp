@@ -63,6 +63,15 @@ void assemble(const RasterSceneData& data, const AssemblyPlan& plan, int threads
 
 } // namespace
 
+PassView center_view(const View& view) {
+    static const std::vector<SampleOffset> samples{SampleOffset{}};
+    const Pinhole pinhole = CameraModel(view).pinhole();
+    return {.pinhole = pinhole,
+            .time = static_cast<float>(view.camera.shutter_open),
+            .viewport = viewport_of(view, pinhole),
+            .samples = samples};
+}
+
 Geometry::Primitive Geometry::primitive(const Run& run, std::uint32_t id) const {
     if (run.sphere) return {spheres[run.object].object, 0};
     const std::uint32_t index = Triangles::index(run, id);
@@ -132,8 +141,8 @@ void process_geometry(const RasterSceneData& data, const TileGrid& grid, const P
 }
 
 void process_layers(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
-                    const RasterSettings& settings, Geometry& result) {
-    process(data, data.alpha_polygonal, data.alpha_spheres, grid, view, settings, false, {}, result);
+                    const RasterSettings& settings, Geometry& result, const ObjectFilter& includes) {
+    process(data, data.alpha_polygonal, data.alpha_spheres, grid, view, settings, false, includes, result);
 }
 
 } // namespace duet::raster

@@ -22,6 +22,9 @@ struct PassView {
     int samples_per_pixel = 1; ///< shaded samples of all passes together, which determine a sample's footprint
 };
 
+/// Returns the view through the center of the lens when the shutter opens, with one sample at each pixel's center.
+PassView center_view(const View& view);
+
 /// Stores the primitives of a pass, ready to be rasterized tile by tile. They are rebuilt for each pass in the same
 /// memory.
 struct Geometry {
@@ -48,8 +51,8 @@ using ObjectFilter = std::function<bool(std::uint32_t)>;
 /// Throws Error if there are more triangles in view than ids (2^31).
 void process_geometry(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
                       const RasterSettings& settings, Geometry& result, const ObjectFilter& includes = {});
-/// Processes only the objects with alpha mask or alpha blending (RasterSceneData::alpha_polygonal and alpha_spheres).
+/// Processes only objects with alpha mask or alpha blending (RasterSceneData::alpha_polygonal and alpha_spheres).
 void process_layers(const RasterSceneData& data, const TileGrid& grid, const PassView& view,
-                    const RasterSettings& settings, Geometry& result);
+                    const RasterSettings& settings, Geometry& result, const ObjectFilter& includes = {});
 
 } // namespace duet::raster

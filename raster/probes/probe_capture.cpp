@@ -24,21 +24,16 @@ struct Selection {
 
 ProbeCapture::Face capture(const RasterSceneData& data, const RasterSettings& settings, const Camera& camera, int side,
                            const Selection& selection, std::size_t face_index) {
-    const View view{camera, side, side};
-    const Pinhole pinhole = CameraModel(view).pinhole();
-    const std::vector<SampleOffset> samples{SampleOffset{}};
-    const PassView pass{.pinhole = pinhole,
-                        .time = static_cast<float>(camera.shutter_open),
-                        .viewport = viewport_of(view, pinhole),
-                        .samples = samples};
+    const PassView pass = center_view({camera, side, side});
+    const SampleOffset offset = pass.samples.front();
     const TileGrid grid{{0, 0, side, side}};
     const auto geometry = data.geometries->take();
     process_geometry(data, grid, pass, settings, *geometry, [&](std::uint32_t object) {
         return std::binary_search(selection.objects.begin(), selection.objects.end(), object) != selection.excluded;
     });
-    ProbeCapture::Face face{GBuffer(ScreenProjection(pinhole, samples.front()), side, side, any_clear_coat(data.scene)),
+    ProbeCapture::Face face{GBuffer(ScreenProjection(pass.pinhole, offset), side, side, any_clear_coat(data.scene)),
                             Planes3(side, side), Planes3(side, side)};
-    fill_gbuffer(data, settings, *geometry, pass, grid, samples.front(), Control{}, face.gbuffer, face.emission);
+    fill_gbuffer(data, settings, *geometry, pass, grid, offset, Control{}, face.gbuffer, face.emission);
     if (!selection.excluded) return face;
     draw_background(data, settings, face.gbuffer, face.direct);
     if (data.scene.lights.empty()) return face;

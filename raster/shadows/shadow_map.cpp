@@ -4,9 +4,9 @@
 
 namespace duet::raster {
 
-ShadowMap::ShadowMap(const RasterSceneData& casters, const Camera& camera, int side, int threads)
+ShadowMap::ShadowMap(const RasterSceneData& data, const Camera& camera, int side, int threads, std::uint32_t excluded)
     : view_(CameraModel({camera, side, side}).pinhole()),
-      orthographic_(camera.projection == Camera::Projection::kOrthographic), dithered_(casters.has_layers()),
-      reversed_depth_(render_depth(casters, {camera, side, side}, threads)) {}
+      orthographic_(camera.projection == Camera::Projection::kOrthographic), dithered_(data.has_layers(excluded)),
+      reversed_depth_(render_depth(data, {camera, side, side}, threads, excluded)) {}
 
 } // namespace duet::raster

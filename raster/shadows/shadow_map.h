@@ -10,8 +10,8 @@ namespace duet::raster {
 /// exactly as in any rendered image.
 class ShadowMap {
 public:
-    /// Renders the depths of `casters` into side × side texels.
-    ShadowMap(const RasterSceneData& casters, const Camera& camera, int side, int threads);
+    /// Renders the depths of all objects but `excluded`, or of all if it is kNoObject, into side × side texels.
+    ShadowMap(const RasterSceneData& data, const Camera& camera, int side, int threads, std::uint32_t excluded);
 
     static constexpr double kFilterRadius = 1.5; ///< texels to each side over which a lookup blurs an edge
     static constexpr double kMargin = 2.5;       ///< texels that a lookup needs around its position

@@ -18,32 +18,6 @@ constexpr std::int64_t kViewTexels = 128 * (1 << 20); ///< over all other maps, 
 constexpr int kMinSide = 64;                          ///< texels, of any map
 constexpr double kFloor = 1e-4; ///< relative to the scene's size: how far objects may penetrate a floor
 
-/// Returns a scene's prepared data restricted to some of its objects, as a shadow map needs it.
-RasterSceneData select_objects(const RasterSceneData& data, const std::vector<bool>& selected) {
-    RasterSceneData result{.scene = data.scene,
-                           .objects = data.objects,
-                           .polygonal = {},
-                           .spheres = {},
-                           .sky_irradiance = data.sky_irradiance,
-                           .geometries = data.geometries};
-    const auto select = [&](const std::vector<std::uint32_t>& objects, std::vector<std::uint32_t>& list) {
-        for (const std::uint32_t object : objects)
-            if (selected[object]) list.push_back(object);
-    };
-    select(data.polygonal, result.polygonal);
-    select(data.spheres, result.spheres);
-    select(data.alpha_polygonal, result.alpha_polygonal);
-    select(data.alpha_spheres, result.alpha_spheres);
-    return result;
-}
-
-Box3 bounds_of(const RasterSceneData& data, const std::vector<bool>& selected) {
-    Box3 box;
-    for (std::size_t i = 0; i < selected.size(); ++i)
-        if (selected[i]) box.extend(data.objects[i].bounds);
-    return box;
-}
-
 /// Returns whether the object is a quad with the whole scene and the sun on one side. Such a quad casts no shadow, so
 /// views need not cover it.
 bool is_floor(const Scene& scene, std::uint32_t object, Vec3 sun_direction) {
@@ -148,9 +122,9 @@ std::vector<Camera> Shadows::views_of(const RasterSceneData& data, const std::ve
     if (const auto* spot = std::get_if<SpotLight>(&light)) return spot_views(*spot, scene_size_, side_, kGuardTexels);
     const auto* sun = std::get_if<SunLight>(&light);
     if (sun == nullptr) return {};
-    std::vector<bool> casts(scene_.objects.size());
-    for (std::uint32_t i = 0; i < casts.size(); ++i) casts[i] = !is_floor(scene_, i, sun->direction);
-    const Box3 bounds = bounds_of(data, casts);
+    Box3 bounds;
+    for (std::uint32_t i = 0; i < scene_.objects.size(); ++i)
+        if (!is_floor(scene_, i, sun->direction)) bounds.extend(data.objects[i].bounds);
     if (bounds.empty()) return {};
     return sun_views(*sun, bounds, scene_.camera, visible, side_, kGuardTexels);
 }
@@ -205,13 +179,11 @@ std::vector<Shadows::Source> Shadows::find_sources(const Scene& scene, int cells
 
 void Shadows::draw(const RasterSceneData& data, const RasterSettings& settings, std::span<const Camera> views,
                    Source& source, double moment, Maps& maps) {
-    std::vector<bool> selected(scene_.objects.size(), true);
     const Light& light = scene_.lights[source.lights.front()];
     if (!views.empty()) {
-        const RasterSceneData casters = select_objects(data, selected);
         for (Camera camera : views) {
             camera.shutter_open = camera.shutter_close = moment;
-            maps.views.emplace_back(casters, camera, side_, settings.threads);
+            maps.views.emplace_back(data, camera, side_, settings.threads, kNoObject);
             memory_bytes_ += std::int64_t{4} * side_ * side_;
         }
         return;
@@ -221,25 +193,23 @@ void Shadows::draw(const RasterSceneData& data, const RasterSettings& settings, 
     if (surface_light == nullptr) {
         const auto* spot = std::get_if<SpotLight>(&light);
         const Vec3d center(spot != nullptr ? spot->position : std::get<PointLight>(light).position);
-        maps.cubes.push_back(
-            draw_cube(select_objects(data, selected), center, nullptr, true, moment, cube_side_, settings.threads));
+        maps.cubes.push_back(draw_cube(data, kNoObject, center, nullptr, true, moment, cube_side_, settings.threads));
         return;
     }
 
     const SurfaceLight& surface = *surface_light;
-    if (source.emits_only) selected[surface.object] = false;
-    const RasterSceneData casters = select_objects(data, selected);
+    const std::uint32_t excluded = source.emits_only ? surface.object : kNoObject;
     for (const Emitter& cell : source.cells) {
         const bool flat = cell.kind != Emitter::Kind::kSphere;
         // Other objects may lie in the light's plane, so the camera is slightly in front of it.
         const double before = flat && !surface.two_sided ? 1e-3 * std::sqrt(length(cross(cell.u, cell.v))) : 0;
-        maps.cells.emplace_back(draw_cube(casters, cell.center + cell.normal * before, flat ? &cell : nullptr,
+        maps.cells.emplace_back(draw_cube(data, excluded, cell.center + cell.normal * before, flat ? &cell : nullptr,
                                           surface.two_sided, moment, cube_side_ / 2, settings.threads));
     }
 }
 
-CubeMap Shadows::draw_cube(const RasterSceneData& casters, Vec3d center, const Emitter* plane, bool back, double moment,
-                           int side, int threads) {
+CubeMap Shadows::draw_cube(const RasterSceneData& data, std::uint32_t excluded, Vec3d center, const Emitter* plane,
+                           bool back, double moment, int side, int threads) {
     CubeMap cube;
     cube.center = Vec3d(Vec3(center)); // rounded as the camera rounds it
     if (plane != nullptr) cube.frame = frame_from_normal(plane->normal);
@@ -247,7 +217,7 @@ CubeMap Shadows::draw_cube(const RasterSceneData& casters, Vec3d center, const E
     for (std::size_t i = 0; i < views.size(); ++i) {
         if (i == 5 && plane != nullptr && !back) continue;
         views[i].shutter_open = views[i].shutter_close = moment;
-        cube.faces[i] = std::make_unique<ShadowMap>(casters, views[i], side, threads);
+        cube.faces[i] = std::make_unique<ShadowMap>(data, views[i], side, threads, excluded);
         memory_bytes_ += std::int64_t{4} * side * side;
     }
     cube.near = static_cast<float>(cube.faces[0]->near());

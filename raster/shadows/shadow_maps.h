@@ -64,9 +64,9 @@ private:
     /// `views` is the result of views_of for the source.
     void draw(const RasterSceneData& data, const RasterSettings& settings, std::span<const Camera> views,
               Source& source, double moment, Maps& maps);
-    /// `plane` is a planar emitter, or null; `back` says whether it also emits on its back side.
-    CubeMap draw_cube(const RasterSceneData& casters, Vec3d center, const Emitter* plane, bool back, double moment,
-                      int side, int threads);
+    /// `excluded` casts no shadow. `plane` is a planar emitter, or null; `back` says whether it also emits on its back side.
+    CubeMap draw_cube(const RasterSceneData& data, std::uint32_t excluded, Vec3d center, const Emitter* plane,
+                      bool back, double moment, int side, int threads);
 
     const Scene& scene_;
     double scene_size_;

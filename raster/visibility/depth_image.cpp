@@ -76,19 +76,15 @@ void render_depth_tile(const RasterSceneData& data, const Geometry& geometry, co
         add_layers(data, geometry, *layers, view, rect, index, image);
 }
 
-ImageFloat render_depth(const RasterSceneData& data, const View& view, int threads) {
+ImageFloat render_depth(const RasterSceneData& data, const View& view, int threads, std::uint32_t excluded) {
     RasterSettings settings;
     settings.threads = threads;
-    const Pinhole pinhole = CameraModel(view).pinhole();
-    const std::vector<SampleOffset> samples{SampleOffset{}};
-    const PassView pass{.pinhole = pinhole,
-                        .time = static_cast<float>(view.camera.shutter_open),
-                        .viewport = viewport_of(view, pinhole),
-                        .samples = samples};
+    const PassView pass = center_view(view);
+    const auto includes = [&](std::uint32_t object) { return object != excluded; };
     const TileGrid grid{{0, 0, view.width, view.height}};
     const auto geometry = data.geometries->take(), layers = data.geometries->take();
-    process_geometry(data, grid, pass, settings, *geometry);
-    if (data.has_layers()) process_layers(data, grid, pass, settings, *layers);
+    process_geometry(data, grid, pass, settings, *geometry, includes);
+    if (data.has_layers()) process_layers(data, grid, pass, settings, *layers, includes);
     ImageFloat image(view.width, view.height);
     parallel_for(grid.size(), threads, [&](std::size_t i) {
         render_depth_tile(data, *geometry, data.has_layers() ? &*layers : nullptr, pass, grid.tile(i), i, image);

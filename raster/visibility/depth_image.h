@@ -22,8 +22,9 @@ namespace duet::raster {
 void render_depth_tile(const RasterSceneData& data, const Geometry& geometry, const Geometry* layers,
                        const PassView& view, const PixelRect& rect, std::size_t index, ImageFloat& image);
 
-/// Returns the reversed depth of a view, at the pixels' centers and when the shutter opens. `threads` = 0 stands for
-/// all.
-ImageFloat render_depth(const RasterSceneData& data, const View& view, int threads);
+/// Returns the reversed depth of a view, at the pixels' centers and when the shutter opens, without the object
+/// `excluded`. `threads` = 0 stands for all.
+ImageFloat render_depth(const RasterSceneData& data, const View& view, int threads,
+                        std::uint32_t excluded = kNoObject);
 
 } // namespace duet::raster

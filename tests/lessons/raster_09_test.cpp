@@ -60,7 +60,7 @@ TEST_SUITE("lesson") {
             camera.eye = Vec3d(center + to_sun * kRadius), camera.look_at = Vec3d(center);
             if (to_sun.y > 0.9f) camera.up = {0, 0, 1};
             camera.height = 2 * static_cast<double>(kRadius), camera.near = 1e-3;
-            const raster::ShadowMap library(prepared.data(), camera, kMapSide, 1);
+            const raster::ShadowMap library(prepared.data(), camera, kMapSide, 1, kNoObject);
             // The lesson's depths are those of triangles with snapped corners: off by up to √2/512 texel times the
             // slope. Facets steeper than 20 are as rare as the texels that the two cameras' roundings decide.
             const double texel = 2 * static_cast<double>(kRadius) / kMapSide,
