@@ -36,7 +36,6 @@ struct Assembler::TrianglePacket {
 void Assembler::assemble(const AssemblyPlan& plan, const Triangles& triangles, const Run& run, bool cull_back_faces,
                          Batch& batch) {
     plan_ = &plan;
-    triangles_ = &triangles;
     object_ = &triangles.objects[run.object];
     run_ = run;
     cull_back_faces_ = cull_back_faces;
@@ -50,11 +49,10 @@ void Assembler::assemble(const AssemblyPlan& plan, const Triangles& triangles, c
     pending_.clear();
     overlaps_.clear();
     mask_overlaps_.clear();
-    const Shape& shape = triangles.shape(run);
-    mesh_ = std::get_if<Mesh>(&shape);
+    shape_ = ShapeTriangles(triangles.shape(run));
     TrianglePacket triangle_packet;
     for (std::uint32_t i = 0; i < run.count; i += kPacketSize) {
-        gather(shape, run.first + i, std::min<std::uint32_t>(kPacketSize, run.count - i), triangle_packet);
+        gather(run.first + i, std::min<std::uint32_t>(kPacketSize, run.count - i), triangle_packet);
         classify(triangle_packet);
         dispatch(triangle_packet);
     }
@@ -64,24 +62,13 @@ void Assembler::assemble(const AssemblyPlan& plan, const Triangles& triangles, c
     sorter_.sort(batch, overlaps_, mask_overlaps_, plan.grid.size());
 }
 
-namespace {
-
-/// Returns the vertex indices of a triangle's corners. Without a mesh, the object consists of quads.
-std::array<std::uint32_t, 3> corners_of(const Mesh* mesh, std::uint32_t triangle) {
-    if (mesh != nullptr) return mesh->triangles[triangle];
-    const std::uint32_t quad = triangle / 2 * 4, half = triangle % 2;
-    return {quad, quad + 1 + half, quad + 2 + half};
-}
-
-} // namespace
-
-void Assembler::gather(const Shape& shape, std::uint32_t first, std::uint32_t count, TrianglePacket& out) const {
+void Assembler::gather(std::uint32_t first, std::uint32_t count, TrianglePacket& out) const {
     out.first = first;
     out.count = count;
-    const Mesh* mesh = std::get_if<Mesh>(&shape);
+    const ShapeTriangles shape = shape_;
     const SnappedVertex* vertices = object_->vertices.data();
     for (std::uint32_t i = 0; i < count; ++i) {
-        const std::array<std::uint32_t, 3> corner = corners_of(mesh, first + i);
+        const std::array<std::uint32_t, 3> corner = shape.vertices(first + i);
         unsigned any = 0, common = ~0u;
         for (std::size_t k = 0; k < 3; ++k) {
             const SnappedVertex& vertex = vertices[corner[k]];
@@ -97,7 +84,7 @@ void Assembler::gather(const Shape& shape, std::uint32_t first, std::uint32_t co
     constexpr std::uint32_t kAhead = 2 * kPacketSize;
     const std::uint32_t end = std::min<std::uint32_t>(first + kAhead + kPacketSize, run_.first + run_.count);
     for (std::uint32_t i = first + kAhead; i < end; ++i)
-        for (const std::uint32_t corner : corners_of(mesh, i)) prefetch(&vertices[corner]);
+        for (const std::uint32_t corner : shape.vertices(i)) prefetch(&vertices[corner]);
 }
 
 /// Runs all culling tests for sixteen triangles with SIMD.
@@ -154,11 +141,11 @@ void Assembler::dispatch(const TrianglePacket& out) {
     culled.degenerate += remove(kDegenerate);
     culled.backfaces += remove(kBackface);
     culled.subpixel += remove(kSubpixel);
-    if (mesh_ != nullptr)
+    if (const Mesh* mesh = shape_.mesh())
         for (std::uint32_t left = surviving; left != 0; left &= left - 1)
             for (const std::uint32_t corner :
-                 mesh_->triangles[out.first + static_cast<std::uint32_t>(std::countr_zero(left))])
-                prefetch(&mesh_->positions[corner]);
+                 mesh->triangles[out.first + static_cast<std::uint32_t>(std::countr_zero(left))])
+                prefetch(&mesh->positions[corner]);
     for (std::uint32_t left = surviving; left != 0; left &= left - 1) {
         const auto i = static_cast<std::uint32_t>(std::countr_zero(left)), index = out.first + i;
         if (out.cull_result[i] == kSmall) {
@@ -174,7 +161,7 @@ void Assembler::dispatch(const TrianglePacket& out) {
 }
 
 void Assembler::clip_and_set_up(std::uint32_t index) {
-    const UnclippedTriangle whole = unclipped_triangle(index);
+    const UnclippedTriangle whole = shape_.unclipped(*object_, index);
     const ClippedPolygon polygon = clip(whole.a, whole.b, whole.c, plan_->viewport);
     if (polygon.count == 0) ++batch_->culled.outside;
     std::array<FixedPoint, 8> p;

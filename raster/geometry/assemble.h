@@ -47,10 +47,9 @@ private:
         std::uint64_t covered, well_inside; ///< one bit per sample, row by row
     };
 
-    void gather(const Shape& shape, std::uint32_t first, std::uint32_t count, TrianglePacket& triangle_packet) const;
+    void gather(std::uint32_t first, std::uint32_t count, TrianglePacket& triangle_packet) const;
     void dispatch(const TrianglePacket& triangle_packet);
     void classify(TrianglePacket& triangle_packet) const;
-    UnclippedTriangle unclipped_triangle(std::uint32_t index) const;
     void clip_and_set_up(std::uint32_t index);
     DrawTriangle* add_triangle(std::uint32_t index, std::array<FixedPoint, 3> corners);
     void set_up_pending();
@@ -69,9 +68,8 @@ private:
     void add_fragments(const SmallTriangle& small, std::uint64_t samples, const DepthPlane& plane);
 
     const AssemblyPlan* plan_ = nullptr;
-    const Triangles* triangles_ = nullptr;
     const TransformedObject* object_ = nullptr;
-    const Mesh* mesh_ = nullptr; ///< null for quads
+    ShapeTriangles shape_;
     Run run_;
     bool cull_back_faces_ = false;
     SampleOffset min_offset_, max_offset_; ///< componentwise minimum and maximum of the plan's sample offsets

@@ -6,20 +6,6 @@
 #include <optional>
 
 namespace duet::raster {
-namespace {
-
-std::array<Vec3, 3> triangle_corners(const Shape& shape, const Mesh* mesh, std::uint32_t triangle) {
-    if (mesh != nullptr) {
-        const auto& corner = mesh->triangles[triangle];
-        return {mesh->positions[corner[0]], mesh->positions[corner[1]], mesh->positions[corner[2]]};
-    }
-    const PrimitiveVertices four = primitive_vertices(shape, triangle / 2);
-    const std::size_t half = triangle % 2;
-    return {four.p[0], four.p[1 + half], four.p[2 + half]};
-}
-
-} // namespace
-
 /// Computes the planes of reversed depth for up to sixteen unclipped triangles of the object with SIMD, as set_up
 /// does for one triangle. Each plane has its own pixel origin, which `origin_of` returns.
 template <typename IndexOf, typename OriginOf>
@@ -27,12 +13,11 @@ void Assembler::compute_planes(std::size_t count, const IndexOf& index_of, const
                                PlanePacket& planes) const {
     const Viewport& viewport = plan_->viewport;
     const Mat4d& m = object_->to_pixel;
-    const Shape& shape = triangles_->shape(run_);
-    const Mesh* mesh = std::get_if<Mesh>(&shape);
+    const ShapeTriangles shape = shape_;
     std::array<std::array<PacketOf<double>, 3>, 3> p; // [corner][axis]
     PacketOf<double> from_x, from_y;
     for (std::size_t i = 0; i < count; ++i) {
-        const std::array<Vec3, 3> corners = triangle_corners(shape, mesh, index_of(i));
+        const std::array<Vec3, 3> corners = shape.corners(index_of(i));
         for (std::size_t k = 0; k < 3; ++k) {
             p[k][0][i] = static_cast<double>(corners[k].x);
             p[k][1][i] = static_cast<double>(corners[k].y);
@@ -98,14 +83,6 @@ void Assembler::compute_small_depths() {
     }
 }
 
-/// Returns the same as Triangles::unclipped, but reuses the mesh that is already looked up.
-UnclippedTriangle Assembler::unclipped_triangle(std::uint32_t index) const {
-    if (mesh_ == nullptr) return triangles_->unclipped(run_, index);
-    const auto& corner = mesh_->triangles[index];
-    const auto vertex = [&](std::size_t k) { return pixel_vertex(*object_, mesh_->positions[corner[k]]); };
-    return {vertex(0), vertex(1), vertex(2), TriangleKind::kTriangle};
-}
-
 void Assembler::add_mask(const SmallTriangle& small, const DepthPlane& plane) {
     const auto number = static_cast<std::uint32_t>(batch_->coverage_masks.size());
     const std::uint64_t samples = small.covered & small.well_inside;
@@ -140,7 +117,7 @@ void Assembler::add_fragments(const SmallTriangle& small, std::uint64_t samples,
         if (plan_->viewport.orthographic) reversed_depth = plan_->viewport.near / reversed_depth;
         const bool inside = small.well_inside >> bit & 1;
         if (!inside) {
-            if (!whole) whole = unclipped_triangle(small.index);
+            if (!whole) whole = shape_.unclipped(*object_, small.index);
             reversed_depth = interpolate(*whole, min_offset_.position(small.x + across, small.y + down))
                                  .reversed_depth(plan_->viewport.near);
         }

@@ -23,6 +23,42 @@ struct Run {
     bool sphere = false;
 };
 
+/// Gives access to the corners of a shape's triangles. The halves of a quad are (corner, +u, +u+v) and
+/// (corner, +u+v, +v).
+class ShapeTriangles {
+public:
+    ShapeTriangles() = default;
+    explicit ShapeTriangles(const Shape& shape) : shape_(&shape), mesh_(std::get_if<Mesh>(&shape)) {}
+
+    const Mesh* mesh() const { return mesh_; } ///< null for quads
+    /// Returns the corners as indices into TransformedObject::vertices.
+    std::array<std::uint32_t, 3> vertices(std::uint32_t triangle) const {
+        if (mesh_ != nullptr) return mesh_->triangles[triangle];
+        const std::uint32_t quad = triangle / 2 * 4, half = triangle % 2;
+        return {quad, quad + 1 + half, quad + 2 + half};
+    }
+    /// Returns the corners in object space.
+    std::array<Vec3, 3> corners(std::uint32_t triangle) const {
+        if (mesh_ != nullptr) {
+            const auto& corner = mesh_->triangles[triangle];
+            return {mesh_->positions[corner[0]], mesh_->positions[corner[1]], mesh_->positions[corner[2]]};
+        }
+        const PrimitiveVertices four = primitive_vertices(*shape_, triangle / 2);
+        const std::size_t half = triangle % 2;
+        return {four.p[0], four.p[1 + half], four.p[2 + half]};
+    }
+    UnclippedTriangle unclipped(const TransformedObject& object, std::uint32_t triangle) const {
+        const std::array<Vec3, 3> p = corners(triangle);
+        const TriangleKind half = triangle % 2 == 0 ? TriangleKind::kQuadFirst : TriangleKind::kQuadSecond;
+        return {pixel_vertex(object, p[0]), pixel_vertex(object, p[1]), pixel_vertex(object, p[2]),
+                mesh_ != nullptr ? TriangleKind::kTriangle : half};
+    }
+
+private:
+    const Shape* shape_ = nullptr;
+    const Mesh* mesh_ = nullptr;
+};
+
 /// Gives access to the unclipped, unsnapped triangles by id.
 class UnclippedTriangles {
 public:
@@ -46,10 +82,12 @@ struct Triangles : UnclippedTriangles {
     }
 
     /// `index` counts the triangles of the object, as Run::first does.
-    UnclippedTriangle unclipped(const Run& run, std::uint32_t index) const;
+    UnclippedTriangle unclipped(const Run& run, std::uint32_t index) const {
+        return ShapeTriangles(shape(run)).unclipped(objects[run.object], index);
+    }
     UnclippedTriangle unclipped(std::uint32_t id) const override {
         const Run& run = run_of(id);
-        return unclipped(run, run.first + id - run.first_id);
+        return unclipped(run, index(run, id));
     }
     /// Stores the half-open range of the ids of an object's triangles.
     struct IdRange {

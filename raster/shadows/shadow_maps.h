@@ -64,7 +64,8 @@ private:
     /// `views` is the result of views_of for the source.
     void draw(const RasterSceneData& data, const RasterSettings& settings, std::span<const Camera> views,
               Source& source, double moment, Maps& maps);
-    /// `excluded` casts no shadow. `plane` is a planar emitter, or null; `back` says whether it also emits on its back side.
+    /// `excluded` casts no shadow. `plane` is a planar emitter, or null; `back` says whether it also emits on its back
+    /// side.
     CubeMap draw_cube(const RasterSceneData& data, std::uint32_t excluded, Vec3d center, const Emitter* plane,
                       bool back, double moment, int side, int threads);
 
