@@ -22,7 +22,7 @@ struct FrameContext {
     Control& control;
 
     /// Returns whether alpha-masked or alpha-blended surfaces overlap the tile.
-    bool has_layers_in(std::size_t tile) const { return layers != nullptr && overlaps_tile(*layers, tile); }
+    bool has_layers_in(std::size_t tile) const { return layers != nullptr && layers->overlaps_tile(tile); }
     /// Returns whether each primitive is shaded once per pixel. Transparent layers are sorted per sample, so with them
     /// each sample is shaded.
     bool is_multisampled() const {

@@ -42,6 +42,11 @@ struct Geometry {
         std::uint32_t object, primitive; ///< as in a Hit
     };
     Primitive primitive(const Run& run, std::uint32_t id) const;
+    /// Returns whether any primitive may overlap a tile.
+    bool overlaps_tile(std::size_t tile) const {
+        return !triangle_lists.tile(tile).empty() || !mask_lists.tile(tile).empty() ||
+               !fragment_lists.tile(tile).empty() || !sphere_bins.tile(tile).empty();
+    }
     std::size_t memory_bytes() const;
 };
 

@@ -93,7 +93,7 @@ private:
 
 void display_tile(const RasterSceneData& data, const ShaderProgram& program, const Geometry& geometry,
                   const PassView& view, const PixelRect& rect, std::size_t index, Image<Rgba8>& image) {
-    if (is_empty(geometry, index)) {
+    if (!geometry.overlaps_tile(index)) {
         fill(rect, kBackground, image);
         return;
     }

@@ -30,7 +30,7 @@ BlendedLayers::BlendedLayers(const SampleView& sample, GBuffer& gbuffer, Planes3
     };
     std::vector<TileLayers> tiles(sample.grid.size());
     parallel_for(tiles.size(), sample.settings.threads, [&](std::size_t i) {
-        if (sample.control.stopped() || !overlaps_tile(*sample.layers, i)) return;
+        if (sample.control.stopped() || !sample.layers->overlaps_tile(i)) return;
         DepthTile depths;
         rasterize_tile(sample.geometry, sample.view, sample.offset, sample.grid.tile(i), i, depths);
         HitTile tile(depths, sample.geometry, sample.view);

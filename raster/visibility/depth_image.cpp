@@ -65,14 +65,14 @@ void add_layers(const RasterSceneData& data, const Geometry& geometry, const Geo
 
 void render_depth_tile(const RasterSceneData& data, const Geometry& geometry, const Geometry* layers,
                        const PassView& view, const PixelRect& rect, std::size_t index, ImageFloat& image) {
-    if (is_empty(geometry, index)) {
-        fill(rect, 0.0f, image);
-    } else {
+    if (geometry.overlaps_tile(index)) {
         DepthTile depths;
         rasterize_drawn_blocks(geometry, view, view.samples.front(), rect, index, depths);
         copy_depth(depths, image);
+    } else {
+        fill(rect, 0.0f, image);
     }
-    if (layers != nullptr && overlaps_tile(*layers, index))
+    if (layers != nullptr && layers->overlaps_tile(index))
         add_layers(data, geometry, *layers, view, rect, index, image);
 }
 

@@ -13,15 +13,10 @@ bool nearer(const Hit& a, const Hit& b) {
 
 } // namespace
 
-bool overlaps_tile(const Geometry& geometry, std::size_t tile) {
-    return !geometry.triangle_lists.tile(tile).empty() || !geometry.fragment_lists.tile(tile).empty() ||
-           (!geometry.spheres.empty() && !geometry.sphere_bins.tile(tile).empty());
-}
-
 HitLists::HitLists(const Geometry& geometry, const PassView& view, SampleOffset offset, std::size_t tile_index,
                    const HitTile& tile)
     : geometry_(geometry), view_(view), offset_(offset), tile_index_(tile_index), tile_(tile) {
-    if (overlaps_tile(geometry, tile_index)) pixels_ = Image<Pixel>(tile.rect().width(), tile.rect().height());
+    if (geometry.overlaps_tile(tile_index)) pixels_ = Image<Pixel>(tile.rect().width(), tile.rect().height());
 }
 
 void HitLists::draw() {
@@ -38,7 +33,6 @@ void HitLists::draw() {
             if (!pixel(x, y).done) add(x, y, listed(fragment.id));
         }
     }
-    if (geometry_.spheres.empty()) return;
     for (const std::uint32_t i : geometry_.sphere_bins.tile(tile_index_)) draw_sphere(geometry_.spheres[i]);
 }
 

@@ -10,9 +10,6 @@
 
 namespace duet::raster {
 
-/// Returns true if a geometry without coverage masks (CoverageMask) has primitives that may overlap the tile.
-bool overlaps_tile(const Geometry& geometry, std::size_t tile);
-
 /// Holds lists of Hits in front of the visible surface of each pixel, sorted front to back, one sample per pixel
 /// (Carpenter 1984, "The A-buffer, an Antialiased Hidden Surface Method"). A list stores the kStored nearest hits. If
 /// more are needed, the tile is drawn again for those behind them, so memory does not grow with the number of

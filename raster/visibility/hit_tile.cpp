@@ -89,8 +89,7 @@ void rasterize_drawn_blocks(const Geometry& geometry, const PassView& view, Samp
         if (i + 1 < lists.size()) prefetch(fragments(lists[i + 1]).data());
         tile.draw(fragments(lists[i]));
     }
-    if (!geometry.spheres.empty())
-        for (const std::uint32_t i : geometry.sphere_bins.tile(index)) draw(geometry.spheres[i], view, tile);
+    for (const std::uint32_t i : geometry.sphere_bins.tile(index)) draw(geometry.spheres[i], view, tile);
 }
 
 void rasterize_tile(const Geometry& geometry, const PassView& view, SampleOffset offset, const PixelRect& rect,

@@ -2,20 +2,12 @@
 #pragma once
 
 #include "common/image/image.h"
-#include "raster/geometry/geometry.h"
 #include "raster/visibility/depth_tile.h"
 
 #include <algorithm>
 #include <array>
 
 namespace duet::raster {
-
-/// Returns true if no primitive was binned to the tile.
-inline bool is_empty(const Geometry& geometry, std::size_t index) {
-    return geometry.triangle_lists.tile(index).empty() && geometry.mask_lists.tile(index).empty() &&
-           geometry.fragment_lists.tile(index).empty() &&
-           (geometry.spheres.empty() || geometry.sphere_bins.tile(index).empty());
-}
 
 inline constexpr int kBlock = DepthTile::kBlock;
 
