@@ -48,23 +48,18 @@ ProbeCapture::Face capture(const RasterSceneData& data, const RasterSettings& se
     return face;
 }
 
-RasterSettings single_threaded(RasterSettings settings) {
+std::vector<ProbeCapture::Face> capture_all(const RasterSceneData& data, RasterSettings settings, Vec3d center,
+                                            int side, const Selection& selection) {
     settings.threads = 1;
     settings.components = {};
-    return settings;
-}
-/// Back faces are visible from within.
-RasterSettings with_all_faces(const RasterSettings& settings) {
-    RasterSettings result = single_threaded(settings);
-    result.skips.back_faces = false;
-    return result;
-}
-
-template <std::size_t... kFaces>
-std::array<ProbeCapture::Face, 6> capture_all(const RasterSceneData& data, const RasterSettings& settings,
-                                              const std::vector<Camera>& views, int side, const Selection& selection,
-                                              std::index_sequence<kFaces...>) {
-    return {capture(data, settings, views[kFaces], side, selection, kFaces)...};
+    settings.skips.back_faces = settings.skips.back_faces && selection.excluded; // one object is also seen from within
+    const double size = static_cast<double>(length(data.scene.bounds.diagonal())) + 1e-30;
+    std::vector<ProbeCapture::Face> faces;
+    for (Camera view : cube_views(center, {}, size, 1, 0)) {
+        view.shutter_open = view.shutter_close = data.scene.camera.shutter_open;
+        faces.push_back(capture(data, settings, view, side, selection, faces.size()));
+    }
+    return faces;
 }
 
 /// Returns a pixel's center on the face's square at distance 1, in the face's axes.
@@ -73,24 +68,15 @@ Vec3 point_on_face(const ProbeCapture::Pixel& p, int side) {
     return {tangent(p.x), -tangent(p.y), 1};
 }
 
-std::vector<Camera> views_about(const RasterSceneData& data, Vec3d center) {
-    const double size = static_cast<double>(length(data.scene.bounds.diagonal())) + 1e-30;
-    std::vector<Camera> views = cube_views(center, {}, size, 1, 0);
-    for (Camera& view : views) view.shutter_open = view.shutter_close = data.scene.camera.shutter_open;
-    return views;
-}
-
 } // namespace
 
 ProbeCapture::ProbeCapture(const RasterSceneData& data, const RasterSettings& settings, Vec3d center, int side,
                            const std::vector<std::uint32_t>& excluded, const ChosenLights& chosen)
-    : center_(center), side_(side), faces_(capture_all(data, single_threaded(settings), views_about(data, center), side,
-                                                       {excluded, true, chosen}, std::make_index_sequence<6>())) {}
+    : side_(side), faces_(capture_all(data, settings, center, side, {excluded, true, chosen})) {}
 
 ProbeCapture::ProbeCapture(const RasterSceneData& data, const RasterSettings& settings, Vec3d center,
                            std::uint32_t object, int side)
-    : center_(center), side_(side), faces_(capture_all(data, with_all_faces(settings), views_about(data, center), side,
-                                                       {{object}, false}, std::make_index_sequence<6>())) {}
+    : side_(side), faces_(capture_all(data, settings, center, side, {{object}, false})) {}
 
 ProbeCapture::Pixel ProbeCapture::pixel(Vec3 w) const {
     const std::size_t face = cube_face(w);

@@ -6,7 +6,7 @@
 #include "raster/lighting/direct_light.h"
 #include "raster/raster_scene.h"
 
-#include <array>
+#include <vector>
 
 namespace duet::raster {
 
@@ -27,10 +27,8 @@ public:
     ProbeCapture(const RasterSceneData& data, const RasterSettings& settings, Vec3d center, std::uint32_t object,
                  int side);
 
-    Vec3d center() const { return center_; }
-    int side() const { return side_; }
-    std::array<Face, 6>& faces() { return faces_; }
-    const std::array<Face, 6>& faces() const { return faces_; }
+    std::vector<Face>& faces() { return faces_; }
+    const std::vector<Face>& faces() const { return faces_; }
     /// Returns the face, column and row of the pixel in a direction of any length.
     struct Pixel {
         std::size_t face;
@@ -45,9 +43,8 @@ public:
     std::size_t memory_bytes() const;
 
 private:
-    Vec3d center_;
     int side_;
-    std::array<Face, 6> faces_;
+    std::vector<Face> faces_; ///< six
 };
 
 } // namespace duet::raster
