@@ -56,7 +56,6 @@ public:
         return perspective_ ? T(length(direction_dx_)) * depth : T(length(origin_dx_));
     }
     float near() const { return near_; }
-    bool perspective() const { return perspective_; }
 
 private:
     Vec3d eye_;

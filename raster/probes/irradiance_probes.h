@@ -24,7 +24,6 @@ public:
                             const xsimd::batch_bool<float>& mask) const;
     /// Returns the distance between neighboring probes, in meters: the largest of the three axes.
     float spacing() const;
-    std::size_t count() const { return probes_.size(); }
     std::size_t memory_bytes() const;
 
     static constexpr int kSide = 16;    ///< pixels of a face of a probe's cube

@@ -30,7 +30,6 @@ public:
     /// what mirrors show; it may be empty if there are no lights. The result is the same for any number of threads.
     RadianceMap(int side, const Source& without_lights, const Source& with_lights, int threads);
 
-    bool empty() const { return sharp_.empty(); }
     /// Returns the radiance without lights, filtered by lobes of GGX width alpha about directions of any length.
     RgbT<Floats> at(const Vec3T<Floats>& axis, const Floats& alpha) const;
     /// Returns the sharp radiance with lights.
@@ -40,7 +39,6 @@ public:
     Floats distance(const Vec3T<Floats>& w, bool lights) const {
         return (lights && has_lights() ? bright_ : sharp_).nearest(w, 3);
     }
-    const OctahedralMap& sharp() const { return sharp_; }
     std::size_t memory_bytes() const;
 
 private:

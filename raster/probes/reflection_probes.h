@@ -26,7 +26,6 @@ public:
     Vec3T<Floats> trace(std::size_t probe, const Vec3d& eye, const Vec3T<Floats>& p, const Vec3T<Floats>& w,
                         bool lights, const xsimd::batch_bool<float>& lanes) const;
     const RadianceMap& map(std::size_t probe) const { return probes_[probe].map; }
-    Vec3d center(std::size_t probe) const { return probes_[probe].center; }
     std::size_t memory_bytes() const;
 
     /// The largest reflecting objects have probes of their own; all others use the nearest probe.
