@@ -50,6 +50,11 @@ template <typename T> void store_packet(const PacketOf<T>& packet, int x, int y,
     if (y + 1 < plane.height()) std::copy_n(packet.at(kPacketWidth), kPacketWidth, plane.row(y + 1) + x);
 }
 
+void store_packets(const PacketOf<float>& a, const PacketOf<float>& b, const PacketOf<float>& c, int x, int y,
+                   Planes3& planes) {
+    store_packet(a, x, y, planes.x), store_packet(b, x, y, planes.y), store_packet(c, x, y, planes.z);
+}
+
 void store_lobes(const SurfaceLobes& lobes, int x, int y, GBuffer& gbuffer) {
     gbuffer.diffuse.set_at(x, y, lobes.diffuse);
     gbuffer.specular.set_at(x, y, lobes.specular);
@@ -116,7 +121,7 @@ private:
     }
     void clear_emission(int x, int y) {
         static const PacketOf<float> kZero{};
-        for (PlaneFloat* plane : {&emission_.x, &emission_.y, &emission_.z}) store_packet(kZero, x, y, *plane);
+        store_packets(kZero, kZero, kZero, x, y, emission_);
     }
 
     template <typename Visit> void for_each_visible(const SamplePacket& packet, const Visit& visit) const {
@@ -160,9 +165,8 @@ private:
                                 Floats::load_aligned(packet.reversed_depth + i), Floats(0.0f)));
         store_packet(depth, packet.x, packet.y, gbuffer_.reversed_depth);
         replace_zero_normals(packet);
-        store_packet(shaded_.normal.x, packet.x, packet.y, gbuffer_.normal.x);
-        store_packet(shaded_.normal.y, packet.x, packet.y, gbuffer_.normal.y);
-        store_packet(shaded_.normal.z, packet.x, packet.y, gbuffer_.normal.z);
+        const auto& [nx, ny, nz] = shaded_.normal;
+        store_packets(nx, ny, nz, packet.x, packet.y, gbuffer_.normal);
         store_packet(shaded_.bulge, packet.x, packet.y, gbuffer_.bulge);
     }
 
@@ -187,15 +191,10 @@ private:
             const ColorPacket& base = shaded_.color;
             const RgbT<Floats> color{load(base.r, i), load(base.g, i), load(base.b, i)};
             const RgbT<Floats> d = lobes.diffuse(color, cosines(packet, i)), s = lobes.specular(color);
-            store(diffuse.r, i, d.r), store(diffuse.g, i, d.g), store(diffuse.b, i, d.b);
-            store(specular.r, i, s.r), store(specular.g, i, s.g), store(specular.b, i, s.b);
+            store(diffuse, i, d), store(specular, i, s);
         }
-        store_packet(diffuse.r, packet.x, packet.y, gbuffer_.diffuse.x);
-        store_packet(diffuse.g, packet.x, packet.y, gbuffer_.diffuse.y);
-        store_packet(diffuse.b, packet.x, packet.y, gbuffer_.diffuse.z);
-        store_packet(specular.r, packet.x, packet.y, gbuffer_.specular.x);
-        store_packet(specular.g, packet.x, packet.y, gbuffer_.specular.y);
-        store_packet(specular.b, packet.x, packet.y, gbuffer_.specular.z);
+        store_packets(diffuse.r, diffuse.g, diffuse.b, packet.x, packet.y, gbuffer_.diffuse);
+        store_packets(specular.r, specular.g, specular.b, packet.x, packet.y, gbuffer_.specular);
         constant.fill(lobes.alpha), store_packet(constant, packet.x, packet.y, gbuffer_.alpha);
         if (gbuffer_.coat.empty()) return;
         constant.fill(lobes.coat), store_packet(constant, packet.x, packet.y, gbuffer_.coat);

@@ -129,13 +129,9 @@ std::vector<DrawSphere> set_up_spheres(const Scene& scene, const std::vector<std
     std::vector<DrawSphere> result;
     for (const std::uint32_t index : objects) {
         const Object& object = scene.objects[index];
-        DrawSphere draw{.object = index,
-                        .id = 0,
-                        .bounds = {},
-                        .sphere = std::get<Sphere>(scene.shapes[object.shape]),
-                        .identity = object.identity,
-                        .to_world = {},
-                        .to_object = {}};
+        DrawSphere draw;
+        draw.object = index, draw.identity = object.identity;
+        draw.sphere = std::get<Sphere>(scene.shapes[object.shape]);
         if (!object.identity) {
             const ObjectTransform transform = object_transform(object, time);
             draw.to_world = transform.to_world;

@@ -14,11 +14,7 @@ using Lanes = LitBatch::Lanes;
 using Color = RgbT<Floats>;
 const Floats kNone(0.0f), kOne(1.0f);
 
-Color spread_color(const Rgb& c) { return {Floats(c.r), Floats(c.g), Floats(c.b)}; }
-
-Color black_outside(const Lanes& lanes, const Color& c) {
-    return {xsimd::select(lanes, c.r, kNone), xsimd::select(lanes, c.g, kNone), xsimd::select(lanes, c.b, kNone)};
-}
+Color black_outside(const Lanes& lanes, const Color& c) { return blend(lanes, c, Color(kNone)); }
 
 /// Returns ggx_multiple_scattering(…)·lost(wo): the BRDF of the light that leaves after several reflections between
 /// microfacets, over lost(wi). `normal` is the reflectance at normal incidence.
@@ -108,7 +104,7 @@ template <std::size_t N> Color LitBatch::from_polygon(const FrameLight& light, c
             sum += black_outside(glossy, lobe.albedo * form_factor({to_cosine(polygon.corner), to_cosine(polygon.u),
                                                                     to_cosine(polygon.v)}, glossy));
     }
-    return sum * spread_color(light.emitted);
+    return sum * broadcast<Floats>(light.emitted);
 }
 
 Color LitBatch::from_sphere(const FrameLight& light, const Lanes& diffuse_lanes) const {
@@ -125,12 +121,12 @@ Color LitBatch::from_sphere(const FrameLight& light, const Lanes& diffuse_lanes)
     if (const Lanes diffuse = lanes & diffuse_lanes; lane_bits(diffuse) != 0)
         sum += uniform_ *
                xsimd::select(inside, Floats(kPi), sphere_form_factor_times_pi(height * inverse, sine2, diffuse));
-    if (lobe_count_ == 0) return black_outside(lanes, sum) * spread_color(light.emitted);
+    if (lobe_count_ == 0) return black_outside(lanes, sum) * broadcast<Floats>(light.emitted);
     const Vec3T<Floats> d = local(way * inverse);
     for (std::size_t i = 0; i < lobe_count_; ++i)
         if (const Lanes glossy = lanes & lobes_[i].lanes; lane_bits(glossy) != 0)
             sum += black_outside(glossy, lobes_[i].albedo * sphere_in_lobe(lobes_[i].cosine_space, d, sine2, glossy));
-    return black_outside(lanes, sum) * spread_color(light.emitted);
+    return black_outside(lanes, sum) * broadcast<Floats>(light.emitted);
 }
 
 Color LitBatch::from_direction(const Vec3T<Floats>& wi, const Floats& irradiance, const Lanes& diffuse_lanes) const {
@@ -162,7 +158,7 @@ Color LitBatch::from_position(const FrameLight& light, const Lanes& diffuse_lane
         const Floats s = clamp((cosine - Floats(light.cos_outer)) * Floats(light.inverse_range), kNone, kOne);
         fraction = fraction * s * s * (Floats(3.0f) - s - s);
     }
-    return from_direction(wi, fraction, diffuse_lanes) * spread_color(light.emitted);
+    return from_direction(wi, fraction, diffuse_lanes) * broadcast<Floats>(light.emitted);
 }
 
 Color LitBatch::reflected(const FrameLight& light, Lobes lobes) const {
@@ -178,7 +174,7 @@ Color LitBatch::reflected(const FrameLight& light, Lobes lobes) const {
     case FrameLight::Kind::kSpot:
         return from_position(light, diffuse);
     case FrameLight::Kind::kSun:
-        return from_direction(broadcast<Floats>(light.axis), kOne, diffuse) * spread_color(light.emitted);
+        return from_direction(broadcast<Floats>(light.axis), kOne, diffuse) * broadcast<Floats>(light.emitted);
     }
     return Color(kNone);
 }

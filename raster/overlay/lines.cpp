@@ -46,15 +46,12 @@ PixelVertex between(const PixelVertex& a, const PixelVertex& b, double t) {
 void draw_line(FixedPoint a, FixedPoint b, SampleOffset offset, Image<std::uint8_t>& marks) {
     // Coordinates relative to the samples give integer sample positions.
     const std::int64_t ax = a.x - offset.x, ay = a.y - offset.y, bx = b.x - offset.x, by = b.y - offset.y;
-    const auto set = [&](int x, std::int64_t y) {
+    const auto set = [&](std::int64_t x, std::int64_t y) {
         // Threads may mark the same pixel concurrently, with the same value.
-        if (y >= 0 && y < marks.height())
-            std::atomic_ref(marks(x, static_cast<int>(y))).store(1, std::memory_order_relaxed);
+        if (x >= 0 && x < marks.width() && y >= 0 && y < marks.height())
+            std::atomic_ref(marks(static_cast<int>(x), static_cast<int>(y))).store(1, std::memory_order_relaxed);
     };
-    const auto set_steep = [&](int y, std::int64_t x) {
-        if (x >= 0 && x < marks.width())
-            std::atomic_ref(marks(static_cast<int>(x), y)).store(1, std::memory_order_relaxed);
-    };
+    const auto set_steep = [&](std::int64_t y, std::int64_t x) { set(x, y); };
     if (std::abs(bx - ax) >= std::abs(by - ay))
         rasterize_along_axis(ax, ay, bx, by, marks.width(), set);
     else

@@ -67,7 +67,7 @@ std::optional<GlassShapes::Exit> GlassShapes::exit(std::int32_t object, const Ve
     if (index == shapes_.size()) return std::nullopt;
     const Shape& shape = shapes_[index];
     const Vec3 offset(eye - shape.center);
-    const Vec3s start = p + Vec3s{Floats(offset.x), Floats(offset.y), Floats(offset.z)};
+    const Vec3s start = p + broadcast<Floats>(offset);
     const Floats none(0.0f), across = dot(start, w);
     Floats t = max(-across, none) * Floats(2.0f); // of a sphere about the center
     for (int i = 0; shape.map && i < kSteps; ++i) {

@@ -232,9 +232,7 @@ RgbT<Floats> IrradianceProbes::irradiance(const Vec3d& eye, const Vec3s& p, cons
             light += c.irradiance * c.weight;
         }
         const Floats over = Floats(1.0f) / sum;
-        const auto lanes = xsimd::bool_cast(own);
-        result = {xsimd::select(lanes, light.r * over, result.r), xsimd::select(lanes, light.g * over, result.g),
-                  xsimd::select(lanes, light.b * over, result.b)};
+        result = blend(xsimd::bool_cast(own), light * over, result);
     }
     return faded_to_sky(result, basis, beyond);
 }

@@ -107,7 +107,7 @@ private:
 Vec3s ReflectionProbes::trace(std::size_t probe, const Vec3d& eye, const Vec3s& p, const Vec3s& w, bool lights,
                               const Mask& lanes) const {
     const Vec3 offset(eye - probes_[probe].center);
-    const Vec3s start = p + Vec3s{Floats(offset.x), Floats(offset.y), Floats(offset.z)};
+    const Vec3s start = p + broadcast<Floats>(offset);
     return ImpostorTracer(probes_[probe].map, start, w, lights).hit(lanes);
 }
 

@@ -62,8 +62,8 @@ SharpShadowMap::SharpShadowMap(const ShadowMap& map, const Vec3d& eye)
 SharpShadowMap::Plane SharpShadowMap::plane(const Floats& x, const Floats& y, const Floats& depth,
                                             const Vec3T<Floats>& n) const {
     const bool flat = map_.orthographic();
-    const auto all = [](Vec3 w) { return Vec3T<Floats>{Floats(w.x), Floats(w.y), Floats(w.z)}; };
-    const Vec3T<Floats> ray = all(direction_) + all(direction_dx_) * x + all(direction_dy_) * y; // to depth 1
+    const Vec3T<Floats> ray = broadcast<Floats>(direction_) + broadcast<Floats>(direction_dx_) * x +
+                              broadcast<Floats>(direction_dy_) * y; // to depth 1
     const Floats towards = max(-dot(n, ray), Floats(1e-6f));
     const Floats over_ray = inverse_sqrt(dot(ray, ray)), cosine = towards * over_ray, one(1.0f);
     const Floats sine = xsimd::sqrt(max(one - cosine * cosine, Floats(0.0f)));

@@ -144,12 +144,11 @@ SoftShadowMap::SoftShadowMap(const CubeMap& cube, const Emitter& emitter)
 }
 
 SoftShadowMap::Outline SoftShadowMap::outline_from(const Vec3s& p) const {
-    const auto all = [](Vec3 w) { return Vec3s{Floats(w.x), Floats(w.y), Floats(w.z)}; };
     if (kind_ != Emitter::Kind::kSphere) {
         const Floats towards = xsimd::select(p.z < Floats(0.0f), Floats(1.0f), Floats(-1.0f));
-        return {all(corner_), all(u_), all(v_), all(dual_u_), all(dual_v_), Floats(length(dual_u_)),
-                Floats(length(dual_v_)), kind_,
-                {Floats(0.0f), Floats(0.0f), towards}};
+        return {broadcast<Floats>(corner_), broadcast<Floats>(u_), broadcast<Floats>(v_),
+                broadcast<Floats>(dual_u_), broadcast<Floats>(dual_v_), Floats(length(dual_u_)),
+                Floats(length(dual_v_)), kind_, {Floats(0.0f), Floats(0.0f), towards}};
     }
     // A sphere is replaced by the disk through its center that fills the cone tangent to it.
     const Floats distance = xsimd::sqrt(max(dot(p, p), Floats(1e-30f)));
@@ -163,14 +162,11 @@ SoftShadowMap::Outline SoftShadowMap::outline_from(const Vec3s& p) const {
 
 Floats SoftShadowMap::visibility(const Vec3d& eye, const Vec3s& p, const Vec3s& n, const Ints& pattern) const {
     const auto local = [&](const Vec3s& w) {
-        const auto axis = [&](Vec3d a) {
-            return dot(w, Vec3s{Floats(static_cast<float>(a.x)), Floats(static_cast<float>(a.y)),
-                                Floats(static_cast<float>(a.z))});
-        };
+        const auto axis = [&](Vec3d a) { return dot(w, broadcast<Floats>(Vec3(a))); };
         return Vec3s{axis(cube_.frame.s), axis(cube_.frame.t), axis(cube_.frame.n)};
     };
     const Vec3 offset(eye - cube_.center);
-    const Vec3s own = local(p + Vec3s{Floats(offset.x), Floats(offset.y), Floats(offset.z)});
+    const Vec3s own = local(p + broadcast<Floats>(offset));
     const Outline light = outline_from(own);
     const Floats height = max(-dot(own, light.axis), Floats(1e-20f));
     const Receiver receiver{cube_, light, own, local(n), Floats(1.0f) / height, height * Floats(kRounding)};

@@ -78,13 +78,7 @@ void LayeredTile::add(const DepthTile& tile) {
 void LayeredTile::layer_packet(std::size_t i, int x, int y, LayerPacket& layer_packet) const {
     const Layer& layer = *layers_[i];
     const std::uint32_t first = sample_index(x, y);
-    layer_packet.packet = {.x = x,
-                           .y = y,
-                           .ids = nullptr,
-                           .reversed_depth = nullptr,
-                           .offset = {},
-                           .offsets = nullptr,
-                           .whole_pixels = true};
+    layer_packet.packet = {.x = x, .y = y, .offset = {}, .whole_pixels = true};
     if (!layer.used_[first / kPacketSize]) return;
     layer_packet.packet.ids = &layer.ids_[first];
     for (std::size_t k = 0; k < kPacketSize; ++k) {
