@@ -88,23 +88,6 @@ double extent_over_distance(const Polygon& polygon) {
     return nearest2 > 0 ? std::sqrt(extent2 / nearest2) : std::numeric_limits<double>::infinity();
 }
 
-double clamp_to_unit(double x) { return std::clamp(x, -1.0, 1.0); }
-
-/// Returns the form factor times π of a sphere that is partly below the horizon. The sphere subtends a half angle of
-/// the given sine and cosine, and `c` is the cosine between the normal and the direction to its center, |c| < sine.
-double clipped_sphere(double sine, double cosine, double c) {
-    const double s = std::sqrt((1 - c) * (1 + c));
-    // Below this size the sum at the end would cancel. The sphere is then a disk in the tangent plane, and k is the
-    // height of its center in units of its radius.
-    if (sine < 1e-4) {
-        const double k = clamp_to_unit(c / sine), root = std::sqrt((1 - k) * (1 + k));
-        return sine * sine * sine * (k * (std::acos(-k) + k * root) + 2.0 / 3.0 * root * root * root);
-    }
-    const double cot = cosine / sine, y = clamp_to_unit(-cot * c / s);
-    const double half_chord = s * std::sqrt((1 - y) * (1 + y));
-    return max((c * std::acos(y) - cot * half_chord) * sine * sine + std::atan2(half_chord, cot), 0.0);
-}
-
 double polygon_factor(const Polygon& polygon, Vec3d n) {
     if (polygon.count < 3) return 0;
     const Vec3d area = far_field(polygon).area;
@@ -124,32 +107,6 @@ double polygon_factor(const Polygon& polygon, Vec3d n) {
     return min(std::abs(sum) / 2, kPiDouble);
 }
 
-double sphere_factor(Vec3d to_center, double radius, Vec3d n) {
-    const double d2 = length_squared(to_center), r2 = radius * radius;
-    if (!(r2 > 0)) return 0;
-    if (d2 <= r2) return kPiDouble;
-    const double d = std::sqrt(d2), sine = radius / d, cosine = std::sqrt((d2 - r2) / d2);
-    const double c = clamp_to_unit(dot(n, to_center) / d);
-    if (c >= sine) return kPiDouble * sine * sine * c;
-    return c > -sine ? clipped_sphere(sine, cosine, c) : 0.0;
-}
-
-// Each overload returns the irradiance at p per unit of the shape's radiance.
-double form_factor_times_pi(const SurfaceLight::Triangle& t, Vec3d p, Vec3d n) {
-    Polygon polygon;
-    for (const Vec3 vertex : {t.a, t.b, t.c}) polygon.add(Vec3d(vertex) - p);
-    return polygon_factor(polygon, n);
-}
-double form_factor_times_pi(const Quad& q, Vec3d p, Vec3d n) {
-    const Vec3d corner = Vec3d(q.corner) - p, u(q.u), v(q.v);
-    Polygon polygon;
-    for (const Vec3d vertex : {corner, corner + u, corner + u + v, corner + v}) polygon.add(vertex);
-    return polygon_factor(polygon, n);
-}
-double form_factor_times_pi(const Sphere& s, Vec3d p, Vec3d n) {
-    return sphere_factor(Vec3d(s.center) - p, static_cast<double>(s.radius), n);
-}
-
 } // namespace
 
 double polygon_form_factor_times_pi(Vec3 p, Vec3 n, std::span<const Vec3> polygon) {
@@ -159,15 +116,11 @@ double polygon_form_factor_times_pi(Vec3 p, Vec3 n, std::span<const Vec3> polygo
     return polygon_factor(relative, Vec3d(n));
 }
 
-double sphere_form_factor_times_pi(Vec3 p, Vec3 n, const Sphere& sphere) {
-    return form_factor_times_pi(sphere, Vec3d(p), Vec3d(n));
-}
-
-Rgb surface_light_irradiance(const SurfaceLight& light, Vec3 p, Vec3 n) {
-    if (!emits_towards(light, p)) return {};
-    const double f =
-        std::visit([&](const auto& shape) { return form_factor_times_pi(shape, Vec3d(p), Vec3d(n)); }, light.shape);
-    return light.radiance * static_cast<float>(f);
+double polygon_form_factor_times_pi(Vec3 p, Vec3 n, const Quad& quad) {
+    const Vec3d corner = Vec3d(quad.corner) - Vec3d(p), u(quad.u), v(quad.v);
+    Polygon polygon;
+    for (const Vec3d vertex : {corner, corner + u, corner + u + v, corner + v}) polygon.add(vertex);
+    return polygon_factor(polygon, Vec3d(n));
 }
 
 } // namespace duet

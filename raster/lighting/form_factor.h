@@ -1,8 +1,7 @@
-// This file computes the unoccluded irradiance from polygons and spheres in closed form.
+// This file computes the unoccluded irradiance from polygons in closed form.
 #pragma once
 
-#include "common/image/rgb.h"
-#include "common/light/light.h"
+#include "common/geometry/shape.h"
 
 #include <span>
 
@@ -14,14 +13,7 @@ namespace duet {
 /// faces p. The polygon has at most 8 vertices (an invariant). The computation is in double. The result is 0 where p
 /// lies in the polygon's plane.
 double polygon_form_factor_times_pi(Vec3 p, Vec3 n, std::span<const Vec3> polygon);
-/// Returns the irradiance at p per unit of radiance of a sphere, its visible cap clipped to the hemisphere of n, in
-/// [0, π] (Snyder 1996, "Area Light Sources for Real-Time Graphics", §A). The result is π where p is inside or on
-/// the sphere, which then fills the hemisphere.
-double sphere_form_factor_times_pi(Vec3 p, Vec3 n, const Sphere& sphere);
-
-/// Returns the unoccluded irradiance at p with normal n from an emissive surface, W/m². It is black where p is not
-/// on an emitting side. A point of the light's own surface lies in its plane only up to rounding, so callers must
-/// skip a surface's own light.
-Rgb surface_light_irradiance(const SurfaceLight& light, Vec3 p, Vec3 n);
+/// Returns the same for a quad. Its vertices are not rounded to float.
+double polygon_form_factor_times_pi(Vec3 p, Vec3 n, const Quad& quad);
 
 } // namespace duet

@@ -5,7 +5,7 @@
 #include "common/system/file.h"
 #include "compare/ladder/code_lines.h"
 #include "compare/ladder/shares.h"
-#include "raster/lighting/form_factor.h"
+#include "tests/support/form_factor.h"
 #include "tests/raytrace/scene_builder.h"
 #include "tests/support/scratch.h"
 

@@ -7,7 +7,7 @@
 #include "raster/gbuffer/gbuffer_pass.h"
 #include "raster/geometry/geometry.h"
 #include "raster/lighting/direct_light.h"
-#include "raster/lighting/form_factor.h"
+#include "tests/support/form_factor.h"
 #include "raster/lighting/light_set.h"
 #include "raster/lighting/lit_batch.h"
 #include "raster/lighting/polygon_light.h"

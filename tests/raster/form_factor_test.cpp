@@ -1,5 +1,5 @@
 // These tests compare closed-form irradiance with published values, laws, limits and hard cases.
-#include "raster/lighting/form_factor.h"
+#include "tests/support/form_factor.h"
 
 #include <doctest/doctest.h>
 

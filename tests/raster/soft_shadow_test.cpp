@@ -1,7 +1,7 @@
 // These tests compare soft shadows with the visible fraction of a light.
 #include "tests/raster/shadow_floor.h"
 
-#include "raster/lighting/form_factor.h"
+#include "tests/support/form_factor.h"
 
 #include <doctest/doctest.h>
 

@@ -4,7 +4,7 @@
 // comparisons therefore fails by chance once in 5 times. The seeds are fixed. If a change of the random numbers makes
 // one comparison fail, a different seed shows whether that was chance.
 #include "common/light/environment.h"
-#include "raster/lighting/form_factor.h"
+#include "tests/support/form_factor.h"
 #include "raytrace/sampling/sampler.h"
 #include "tests/raytrace/estimates.h"
 #include "tests/raytrace/scene_builder.h"

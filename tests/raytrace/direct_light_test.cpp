@@ -1,5 +1,5 @@
 // These tests compare direct light with closed forms.
-#include "raster/lighting/form_factor.h"
+#include "tests/support/form_factor.h"
 #include "raytrace/render.h"
 #include "tests/raytrace/estimates.h"
 #include "tests/raytrace/scene_builder.h"

@@ -1,6 +1,6 @@
 // These tests check the light tree: its bounds miss no light, and its probabilities match its samples.
 #include "compare/stress/chi_squared.h"
-#include "raster/lighting/form_factor.h"
+#include "tests/support/form_factor.h"
 #include "raytrace/sampling/light_sampler.h"
 #include "raytrace/sampling/sampler.h"
 

@@ -1,7 +1,7 @@
 // These tests check the emission and the sampling of lights.
 #include "common/light/light.h"
 #include "compare/stress/chi_squared.h"
-#include "raster/lighting/form_factor.h"
+#include "tests/support/form_factor.h"
 #include "raytrace/sampling/light_sampler.h"
 #include "raytrace/sampling/sampler.h"
 
