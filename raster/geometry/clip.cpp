@@ -20,9 +20,7 @@ struct Plane {
 PixelVertex cut(const PixelVertex& a, const PixelVertex& b, double a_distance, double b_distance) {
     if (std::abs(a_distance) > std::abs(b_distance)) return cut(b, a, b_distance, a_distance);
     // The signs differ, so there is no cancellation.
-    const double t = a_distance / (a_distance - b_distance);
-    const auto mix = [t](double from, double to) { return from + (to - from) * t; };
-    return {mix(a.xw, b.xw), mix(a.yw, b.yw), mix(a.w, b.w), mix(a.depth, b.depth)};
+    return between(a, b, a_distance / (a_distance - b_distance));
 }
 
 ClippedPolygon clip(const ClippedPolygon& polygon, const Plane& plane) {

@@ -17,6 +17,12 @@ struct PixelVertex {
     double depth = 0; ///< camera-space −z, meters; equals w under perspective
 };
 
+/// Returns the vertex at the fraction t of the way from a to b.
+inline PixelVertex between(const PixelVertex& a, const PixelVertex& b, double t) {
+    const auto mix = [t](double from, double to) { return from + (to - from) * t; };
+    return {mix(a.xw, b.xw), mix(a.yw, b.yw), mix(a.w, b.w), mix(a.depth, b.depth)};
+}
+
 /// Represents a point on the sub-pixel grid, in 1/256 pixel.
 struct FixedPoint {
     std::int32_t x = 0, y = 0;

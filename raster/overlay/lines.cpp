@@ -36,11 +36,6 @@ void rasterize_along_axis(std::int64_t u0, std::int64_t v0, std::int64_t u1, std
     }
 }
 
-PixelVertex between(const PixelVertex& a, const PixelVertex& b, double t) {
-    const auto mix = [t](double x, double y) { return x + (y - x) * t; };
-    return {mix(a.xw, b.xw), mix(a.yw, b.yw), mix(a.w, b.w), mix(a.depth, b.depth)};
-}
-
 } // namespace
 
 void draw_line(FixedPoint a, FixedPoint b, SampleOffset offset, Image<std::uint8_t>& marks) {
