@@ -127,12 +127,9 @@ void IrradianceProbes::set_distances(const ProbeCapture& capture, Probe& probe) 
     Image<Vec3> sums(kDistanceSide, kDistanceSide); // of distance, its square, and solid angle
     for_each_pixel(1, [&](const ProbeCapture::Pixel& pixel) {
         const Vec2 at = octahedral(ProbeCapture::direction(pixel, kSide));
-        const auto cell = [](float v) {
-            return std::clamp(static_cast<int>((v + 1) * 0.5f * static_cast<float>(kDistanceSide)), 0,
-                              kDistanceSide - 1);
-        };
         const float distance = min(capture.distance(pixel), farthest), weight = ProbeCapture::solid_angle(pixel, kSide);
-        sums(cell(at.x), cell(at.y)) += Vec3(distance, distance * distance, 1) * weight;
+        sums(cell_of(at.x, kDistanceSide), cell_of(at.y, kDistanceSide)) +=
+            Vec3(distance, distance * distance, 1) * weight;
     });
     for (int y = 0; y < kDistanceSide; ++y)
         for (int x = 0; x < kDistanceSide; ++x) {

@@ -4,6 +4,7 @@
 
 #include "raster/geometry/packet.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace duet::raster {
@@ -16,6 +17,10 @@ template <typename T> Vec2T<T> octahedral(const Vec3T<T>& w) {
     const auto sign = [&](const T& v) { return select(v < zero, -one, one); };
     const auto below = w.z < zero;
     return {select(below, (one - abs(y)) * sign(x), x), select(below, (one - abs(x)) * sign(y), y)};
+}
+/// Returns the index, of `side` cells that divide [−1, 1], of the one that holds v, or the nearest one.
+inline int cell_of(float v, int side) {
+    return std::clamp(static_cast<int>((v + 1) * 0.5f * static_cast<float>(side)), 0, side - 1);
 }
 /// Returns the unit direction of a position in the square; the inverse of octahedral().
 Vec3 octahedral_direction(Vec2 p);

@@ -2,6 +2,7 @@
 
 #include "raster/gbuffer/gbuffer_pass.h"
 #include "raster/lighting/background.h"
+#include "raster/probes/octahedral_map.h"
 #include "raster/shadows/cube_map.h"
 #include "raster/shadows/light_views.h"
 #include "raster/shadows/shadow_map_lookup.h"
@@ -81,10 +82,7 @@ ProbeCapture::ProbeCapture(const RasterSceneData& data, const RasterSettings& se
 ProbeCapture::Pixel ProbeCapture::pixel(Vec3 w) const {
     const std::size_t face = cube_face(w);
     const Vec3 f = to_face(face, w);
-    const auto cell = [&](float tangent) {
-        return std::clamp(static_cast<int>((tangent + 1) * 0.5f * static_cast<float>(side_)), 0, side_ - 1);
-    };
-    return {face, cell(f.x / f.z), cell(-f.y / f.z)};
+    return {face, cell_of(f.x / f.z, side_), cell_of(-f.y / f.z, side_)};
 }
 
 Vec3 ProbeCapture::direction(const Pixel& p, int side) {

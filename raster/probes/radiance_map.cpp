@@ -62,10 +62,7 @@ OctahedralMap::Texel filtered(const std::vector<OctahedralMap>& mips, const Lobe
         const Vec3 w = frame.to_world(samples.w[i]);
         const OctahedralMap& map = mips[samples.level[i]];
         const Vec2 p = octahedral(w);
-        const auto cell = [&](float v) {
-            return std::clamp(static_cast<int>((v + 1) * 0.5f * static_cast<float>(map.side())), 0, map.side() - 1);
-        };
-        const OctahedralMap::Texel& texel = map.texel(cell(p.x), cell(p.y));
+        const OctahedralMap::Texel& texel = map.texel(cell_of(p.x, map.side()), cell_of(p.y, map.side()));
         sum += Rgb(texel[0], texel[1], texel[2]) * samples.weight[i];
     }
     return {sum.r, sum.g, sum.b, 0};
