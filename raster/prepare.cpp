@@ -126,9 +126,6 @@ void prepare_lit(const RasterSettings& settings, RasterSceneData& data) {
 
 RasterScene prepare(const Scene& scene, const RasterSettings& settings) {
     RasterSceneData data{.scene = scene,
-                         .objects = {},
-                         .polygonal = {},
-                         .spheres = {},
                          .sky_irradiance = environment_irradiance(scene.environment, settings.threads),
                          .shapes = std::vector<PackedShape>(scene.shapes.begin(), scene.shapes.end()),
                          .texture_samplers = texture_samplers(scene.textures),
@@ -142,13 +139,14 @@ RasterScene prepare(const Scene& scene, const RasterSettings& settings) {
         data.any_emits = data.any_emits || object_emits;
         if (std::ranges::all_of(object.materials, emits)) data.emitters.push_back(i);
         const bool sphere = std::holds_alternative<Sphere>(shape);
-        if (can_be_seen_through(scene, object))
+        const bool alpha = can_be_seen_through(scene, object);
+        if (alpha)
             (sphere ? data.alpha_spheres : data.alpha_polygonal).push_back(i);
         else
             (sphere ? data.spheres : data.polygonal).push_back(i);
-        if (all_glass(scene, object) && !can_be_seen_through(scene, object)) data.glass.push_back(i);
+        if (all_glass(scene, object) && !alpha) data.glass.push_back(i);
         data.primitives += primitive_count(shape);
-        const bool stretched = std::holds_alternative<Sphere>(shape) && surface_light_index(scene, i, 0) < 0;
+        const bool stretched = sphere && surface_light_index(scene, i, 0) < 0;
         data.unsampled_emitters = data.unsampled_emitters || ((object.moving || stretched) && object_emits);
     }
     std::size_t packed = 0;

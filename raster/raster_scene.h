@@ -35,11 +35,11 @@ class GlassShapes; // raster/probes/glass_shapes.h
 
 struct RasterSceneData {
     const Scene& scene;
-    std::vector<RasterObject> objects;    ///< parallel to Scene::objects
+    std::vector<RasterObject> objects{};  ///< parallel to Scene::objects
     bool any_emits = false;               ///< whether any surface emits light
     std::vector<std::uint32_t> emitters{}; ///< indices of the objects all of whose materials emit, in order
-    std::vector<std::uint32_t> polygonal; ///< indices of the mesh and quad objects, in order
-    std::vector<std::uint32_t> spheres;   ///< indices of the sphere objects, in order
+    std::vector<std::uint32_t> polygonal{}; ///< indices of the mesh and quad objects, in order
+    std::vector<std::uint32_t> spheres{};  ///< indices of the sphere objects, in order
     /// The two lists hold the alpha-masked and alpha-blended objects, which are in neither list above
     /// (raster/shading/alpha_layers.h).
     std::vector<std::uint32_t> alpha_polygonal{}, alpha_spheres{};

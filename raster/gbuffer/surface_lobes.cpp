@@ -8,14 +8,10 @@ Rgb outer_reflectance(float eta) { return Rgb(sqr((eta - 1) / (eta + 1))); }
 struct LobesOf {
     float cosine;
 
-    SurfaceLobes operator()(const DiffuseBsdf& b) const { return {.diffuse = b.albedo, .specular = {}}; }
+    SurfaceLobes operator()(const DiffuseBsdf& b) const { return {.diffuse = b.albedo}; }
     /// The directional albedo is exact under uniform light, and close under light from an area.
-    SurfaceLobes operator()(const RoughDiffuseBsdf& b) const {
-        return {.diffuse = b.directional_albedo(cosine), .specular = {}};
-    }
-    SurfaceLobes operator()(const MetalBsdf& b) const {
-        return {.diffuse = {}, .specular = b.reflectance, .alpha = b.alpha};
-    }
+    SurfaceLobes operator()(const RoughDiffuseBsdf& b) const { return {.diffuse = b.directional_albedo(cosine)}; }
+    SurfaceLobes operator()(const MetalBsdf& b) const { return {.specular = b.reflectance, .alpha = b.alpha}; }
     SurfaceLobes operator()(const LayeredBsdf& b) const {
         return {.diffuse = b.albedos(cosine).diffuse,
                 .specular = b.glossy.f0,
@@ -24,12 +20,12 @@ struct LobesOf {
                 .coat_alpha = b.coat_alpha};
     }
     SurfaceLobes operator()(const RoughDielectricBsdf& b) const {
-        return {.diffuse = {}, .specular = outer_reflectance(b.eta), .alpha = b.alpha};
+        return {.specular = outer_reflectance(b.eta), .alpha = b.alpha};
     }
     SurfaceLobes operator()(const DielectricBsdf& b) const {
-        return {.diffuse = {}, .specular = outer_reflectance(b.eta), .alpha = 0};
+        return {.specular = outer_reflectance(b.eta), .alpha = 0};
     }
-    SurfaceLobes operator()(const ThinDielectricBsdf&) const { return {.diffuse = {}, .specular = {}, .alpha = 0}; }
+    SurfaceLobes operator()(const ThinDielectricBsdf&) const { return {.alpha = 0}; }
 };
 
 bool varies(const Principled& p) {

@@ -11,7 +11,7 @@ namespace duet::raster {
 
 /// Holds the G-buffer's material attributes of one pixel (raster/gbuffer/gbuffer.h).
 struct SurfaceLobes {
-    Rgb diffuse, specular;
+    Rgb diffuse{}, specular{};
     float alpha = 1, coat = 0, coat_alpha = 1;
 };
 
