@@ -117,6 +117,8 @@ std::vector<std::string> approximations(const RenderPlan& plan, const PathTracer
     std::vector<std::string> list;
     if (settings.integrator == Integrator::kNaive && plan.scene.needs.delta_lights)
         list.emplace_back("point, spot and sun lights are missing: rays that follow the materials cannot find them");
+    if (merges(settings.integrator))
+        list.emplace_back("photons blur light over a radius that shrinks with every sample");
     if (settings.integrator == Integrator::kDirect) list.emplace_back("light arrives after one scattering at most");
     if (settings.integrator == Integrator::kUnshadowed)
         list.emplace_back("direct light only, and nothing casts a shadow");
