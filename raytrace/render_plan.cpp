@@ -49,18 +49,22 @@ RenderPlan::RenderPlan(const PathTracerSceneData& prepared_, const View& view, c
     for (std::uint32_t i = 0; i < scene.materials.size(); ++i) details.push_back(surface_detail(scene, i));
     emission = prepared.emitters || !skips.emission;
     specular_light_samples = !skips.mirror_light;
-    needs_medium_stack = scene.needs.media;
+    needs_medium_stack = scene.needs.interiors || scene.needs.media;
     black_shadow_rays = !skips.shadow_rays;
     const bool with_environment =
         settings.environment && (prepared.environment || !skips.environment) && computes_light(settings.integrator);
     if (with_environment) environment = &scene.environment;
-    hits_find_light = with_environment || prepared.emitters || !skips.last_bounce;
+    const bool media_emit =
+        std::ranges::any_of(scene.media, [](const Medium& m) { return !is_black(m.absorption * m.radiance); });
+    hits_find_light = with_environment || prepared.emitters || media_emit || !skips.last_bounce;
     const bool environment_only = with_environment && settings.integrator == Integrator::kEnvironment;
     const LightSampler& chooser = environment_only   ? prepared.environment_light
                                   : with_environment ? prepared.lights
                                                      : prepared.finite_lights;
     const bool lights_useful = (prepared.scatters_diffusely && !chooser.empty()) || !skips.light_samples;
     if (samples_lights(settings.integrator) && max_depth > 0 && lights_useful) lights = &chooser;
+    if (lights != nullptr && !environment_only && !prepared.positional_lights.empty())
+        positional_lights = &prepared.positional_lights;
     // Paths are scattered in batches only if they need nothing that batches do not support: a medium stack, footprints,
     // or the shadow rays and light samples that tests request.
     if (!needs_medium_stack && !pixel_footprint && !black_shadow_rays && !specular_light_samples)
@@ -78,7 +82,7 @@ std::vector<SkippedWork> skipped(const RenderPlan& plan, const PathTracerSetting
         list.push_back({"textures", "materials without one, whose BSDF is made once", constant});
     if (!plan.scene.needs.alpha) skip("opacity tests", "no material has holes");
     if (!plan.scene.needs.normal_maps) skip("normal maps", "no material has one");
-    if (!plan.needs_medium_stack) skip("insides", "no glass absorbs, or stands in other glass");
+    if (!plan.needs_medium_stack) skip("insides", "there is no fog, and no glass absorbs or stands in other glass");
     if (!plan.pixel_footprint) skip("texture footprints", "no material has an image that is filtered");
     if (!plan.lens) skip("lens samples", "the camera has no aperture");
     if (!plan.motion) skip("time samples", "nothing moves");
@@ -96,9 +100,9 @@ std::vector<SkippedWork> skipped(const RenderPlan& plan, const PathTracerSetting
         else if (!plan.prepared.scatters_diffusely)
             skip("light samples", "all materials are mirrors or glass, which they cannot reach");
         else
-            skip("light samples",
-                 plan.environment != nullptr ? "only the environment emits, so evenly that rays find it best"
-                                             : "nothing emits");
+            skip("light samples", plan.environment != nullptr
+                                      ? "only the environment emits, so evenly that rays find it best"
+                                      : "nothing emits");
     } else if (plan.lights != nullptr && plan.environment != nullptr && sampled_irradiance(*plan.environment) == 0) {
         skip("light samples of the environment", "it is so even that rays find it best");
     }
@@ -120,6 +124,8 @@ std::vector<std::string> approximations(const RenderPlan& plan, const PathTracer
     if (merges(settings.integrator))
         list.emplace_back("photons blur light over a radius that shrinks with every sample");
     if (settings.integrator == Integrator::kDirect) list.emplace_back("light arrives after one scattering at most");
+    if (settings.integrator == Integrator::kUnshadowed && plan.scene.needs.media)
+        list.emplace_back("media are left out");
     if (settings.integrator == Integrator::kUnshadowed)
         list.emplace_back("direct light only, and nothing casts a shadow");
     if (settings.integrator == Integrator::kLights)
@@ -129,8 +135,7 @@ std::vector<std::string> approximations(const RenderPlan& plan, const PathTracer
     if (settings.integrator == Integrator::kReflection)
         list.emplace_back("only what is seen by way of metal and glass");
     const bool whole_paths = settings.integrator == Integrator::kPath || settings.integrator == Integrator::kNaive ||
-                             traces_light_paths(settings.integrator) ||
-                             settings.integrator == Integrator::kReflection;
+                             traces_light_paths(settings.integrator) || settings.integrator == Integrator::kReflection;
     if (whole_paths && plan.max_depth < kUnlimitedDepth)
         list.emplace_back(
             message("paths end after ", plan.max_depth, plan.max_depth == 1 ? " scattering" : " scatterings"));

@@ -27,11 +27,14 @@ struct RenderPlan {
     const std::vector<std::optional<Bsdf>>* bsdfs = nullptr; ///< by material; empty where a texture varies it
     std::vector<SurfaceDetail> details;                      ///< by material: what its surface points need
     bool emission = false;                                   ///< whether surfaces that are hit may emit
-    bool hits_find_light = false; ///< whether BSDF samples may find an emitter or the environment
+    bool hits_find_light = false; ///< whether rays may find an emitter, the environment, or a medium that emits
     bool specular_light_samples =
         false; ///< whether lights are sampled at mirrors and glass, too, which cannot reflect them
-    bool needs_medium_stack =
-        false; ///< whether a dielectric absorbs or has a priority, so that paths need a medium stack
+    /// Whether light meets something between surfaces, so that paths need a medium stack: media, or a dielectric that
+    /// absorbs or has a priority.
+    bool needs_medium_stack = false;
+    const std::vector<std::uint32_t>* positional_lights =
+        nullptr;                    ///< sampled along rays in media; null if there are none
     bool black_shadow_rays = false; ///< whether shadow rays are traced even if the surface reflects none of the light
     BatchedSurfaces batched;        ///< surfaces at which paths are scattered in batches (wavefront/batch.h)
     int max_depth = 0;

@@ -62,10 +62,11 @@ std::optional<float> constant_red(const TextureSet& set, const Texture& texture)
     return constant ? std::optional(pixels.front().r) : std::nullopt;
 }
 
-/// Drops what costs time and changes no pixel: lights that emit nothing, and masks that hide nothing. The alpha channel
-/// of many an image is 1 everywhere.
+/// Drops what costs time and changes no pixel: lights that emit nothing, media that do nothing, and masks that hide
+/// nothing. The alpha channel of many an image is 1 everywhere.
 void drop_ineffective(Scene& scene) {
     std::erase_if(scene.lights, [](const Light& light) { return is_black(light); });
+    std::erase_if(scene.media, [](const Medium& m) { return is_black(m.scattering) && is_black(m.absorption); });
     for (SurfaceMaps& maps : scene.maps) {
         if (maps.opacity.constant()) continue;
         const Texture& texture = scene.textures.textures[static_cast<std::size_t>(maps.opacity.texture)];
@@ -152,7 +153,7 @@ void add_material_needs(const Scene& scene, const Material& material, SceneNeeds
         needs.transmission = true;
         needs.specular = needs.specular || glass->thin || glass->smooth() || !glass->roughness.constant();
         needs.glossy = needs.glossy || (!glass->thin && !glass->smooth());
-        needs.media = needs.media || glass->has_interior_medium();
+        needs.interiors = needs.interiors || glass->has_interior_medium();
     }
     if (std::holds_alternative<Principled>(material) || std::holds_alternative<Coated>(material))
         needs.layers = needs.glossy = true;
@@ -185,6 +186,7 @@ SceneNeeds find_needs(const Scene& scene) {
             add_map_needs(scene, scene.maps[i], needs);
         }
     needs.lens = scene.camera.aperture_radius > 0;
+    needs.media = !scene.media.empty();
     needs.environment = !is_black(scene.environment);
     needs.delta_lights = scene.first_surface_light > 0;
     needs.surface_lights = scene.lights.size() > scene.first_surface_light;

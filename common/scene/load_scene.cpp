@@ -3,6 +3,7 @@
 #include "common/scene/json/json_reader.h"
 #include "common/scene/json/read_lights.h"
 #include "common/scene/json/read_materials.h"
+#include "common/scene/json/read_media.h"
 #include "common/scene/json/read_objects.h"
 #include "common/scene/json/scene_keys.h"
 #include "common/scene/motion_bounds.h"
@@ -49,6 +50,7 @@ Scene read_scene(const std::filesystem::path& path) {
     read_objects(file.at("objects"), materials, images, scene);
     if (file.has("lights"))
         for (const JsonValue& light : file.at("lights").elements()) scene.lights.push_back(read_light(light));
+    if (file.has("media")) scene.media = read_media(file.at("media"));
     if (file.has("environment")) scene.environment = read_environment(file.at("environment"), scene.files);
     return scene;
 }

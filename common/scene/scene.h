@@ -9,6 +9,7 @@
 #include "common/light/light.h"
 #include "common/material/material.h"
 #include "common/material/surface_maps.h"
+#include "common/medium/medium.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -34,16 +35,17 @@ struct Object {
 /// SceneNeeds lists the features that the scene uses. Pipelines use it to leave out code paths once, at the start.
 struct SceneNeeds {
     bool textures = false, image_textures = false;
-    bool footprints = false;   ///< an image texture is filtered over the sample's footprint
-    bool normal_maps = false;  ///< normal or bump maps
+    bool footprints = false;       ///< an image texture is filtered over the sample's footprint
+    bool normal_maps = false;      ///< normal or bump maps
     bool emitter_textures = false; ///< an emissive surface has a radiance texture
-    bool alpha = false;        ///< alpha masks or alpha blending
+    bool alpha = false;            ///< alpha masks or alpha blending
     bool motion = false, lens = false;
     bool environment = false; ///< the environment is not black
     bool delta_lights = false, surface_lights = false;
     bool glossy = false;       ///< rough metal, frosted glass and layered materials
     bool layers = false;       ///< principled and coated materials
-    bool media = false;        ///< glass that absorbs or has a priority
+    bool interiors = false;    ///< glass that absorbs or has a priority
+    bool media = false;        ///< fog
     bool specular = false;     ///< mirrors and glass
     bool transmission = false; ///< glass
     bool meshes = false, quads = false, spheres = false;
@@ -69,6 +71,7 @@ struct Scene {
     /// All lights from this index on are SurfaceLights, sorted by (object, primitive).
     std::size_t first_surface_light = 0;
     Environment environment;
+    std::vector<Medium> media;
     Box3 bounds; ///< bounds of all objects over their whole motion
     SceneNeeds needs;
 };

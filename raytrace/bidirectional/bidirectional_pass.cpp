@@ -18,7 +18,7 @@ void check_bidirectional(const Scene& scene, const PathTracerSettings& settings)
     if (settings.filter != FilterKind::kBox)
         throw Error(message("the integrator ", integrator_name(settings.integrator),
                             " weighs no light by a filter: found ", filter_name(settings.filter), ", expected box"));
-    if (scene.needs.media)
+    if (scene.needs.interiors)
         throw Error(message("a dielectric of the scene absorbs or has a priority, which the integrator ",
                             integrator_name(settings.integrator), " does not support: expected another"));
 }

@@ -31,6 +31,7 @@ struct RayCounts {
 template <typename T> struct VertexRandomSamplesT {
     Vec2T<T> bsdf, light;
     T light_choice, lobe, roulette;
+    T distance = T(0.0f); ///< to where media scatter the path; batches have none
 };
 using VertexRandomSamples = VertexRandomSamplesT<float>;
 /// Returns the first sample dimension of the vertex after `depth` scatterings.
@@ -40,7 +41,7 @@ inline std::uint32_t vertex_dimension(int depth) {
 inline VertexRandomSamples vertex_random_samples(Sampler& sampler, int depth) {
     sampler.set_dimension(vertex_dimension(depth));
     const Sampler::Block u = sampler.get_block();
-    return {{u[0], u[1]}, {u[2], u[3]}, u[4], u[5], u[6]};
+    return {{u[0], u[1]}, {u[2], u[3]}, u[4], u[5], u[6], u[7]};
 }
 
 /// Returns an unbiased estimate of the radiance along a camera ray of unit direction. Its first hit is given, and

@@ -52,9 +52,10 @@ private:
 
 /// Returns whether the light is visible from the vertex. This counts as one shadow ray.
 bool unoccluded(const RenderPlan& plan, const Ray& ray, const ShadowRayEnd& end); ///< `ray` leads to `end`
-inline bool unoccluded(const RenderPlan& plan, const Vertex& vertex, const LightLiSample& light_sample) {
+template <typename AnyVertex>
+inline bool unoccluded(const RenderPlan& plan, const AnyVertex& vertex, const LightLiSample& light_sample) {
     const Ray ray = spawn_ray(plan, vertex, light_sample.wi);
-    return unoccluded(plan, ray, ShadowRayEnd(plan.scene, ray, vertex.point.p, light_sample));
+    return unoccluded(plan, ray, ShadowRayEnd(plan.scene, ray, light_receiver(vertex).p, light_sample));
 }
 
 /// Returns the density by solid angle with which sample_li draws the direction to `point`, which is on an

@@ -24,6 +24,8 @@ public:
     /// Returns the relative index of refraction, inside over outside, of the boundary at which
     /// skip_ignored_boundaries() ended, as seen from its front. It is 0 if the material's own index applies.
     float relative_index() const { return relative_; }
+    /// Returns whether a dielectric fills the current point.
+    bool in_dielectric() const { return current_medium() != nullptr; }
     /// Returns the transmittance over a distance through the dielectric that fills the current point. At an infinite
     /// distance it is 0 in the channels that are absorbed.
     Rgb transmittance(float distance) const;

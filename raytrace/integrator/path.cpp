@@ -16,6 +16,7 @@ public:
         diffuse_ = is_diffuse(first);
         specular_ = is_specular(first);
     }
+    void start_in_medium() { diffuse_ = true; }
     void add(Rgb light, LightSource source, int bounces) { component(source, bounces) += light; }
     void add_shadowed(Rgb light, LightSource source, int bounces) {
         if (bounces == 1 && source == LightSource::kLight) components_.shadowed += light;
@@ -31,7 +32,7 @@ private:
     }
 
     LightComponents components_;
-    bool diffuse_ = false, specular_ = false; // about the BSDF of the first hit
+    bool diffuse_ = false, specular_ = false; // about what scatters first
 };
 
 // This sink adds up the light and logs each step.

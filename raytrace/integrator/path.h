@@ -8,6 +8,7 @@
 
 #include "raytrace/integrator/integrator.h"
 #include "raytrace/integrator/light_sampling.h"
+#include "raytrace/integrator/medium_sampling.h"
 #include "raytrace/integrator/medium_stack.h"
 #include "raytrace/integrator/path_footprint.h"
 #include "raytrace/integrator/path_state.h"
@@ -29,8 +30,7 @@ template <typename AnyVertex, typename T>
 inline T light_sample_weight(const AnyVertex& vertex, const LightLiSampleT<T>& light) {
     if (all(light.delta)) return T(1);
     // BSDF samples find the environment and all emitters at rest, too.
-    const T bsdf_pdf = pdf(vertex.bsdf, vertex.wo, vertex.frame.to_local(light.wi));
-    return mis_weight(light.pdf, select(light.delta, T(0), bsdf_pdf));
+    return mis_weight(light.pdf, select(light.delta, T(0), scattering_pdf(vertex, light.wi)));
 }
 
 /// Returns the MIS weight of light that a ray has found, against light samples at the previous vertex. `light_pdf` is
@@ -68,7 +68,7 @@ inline ScatteringT<T> scatter(const AnyVertex& vertex, const VertexRandomSamples
 }
 
 template <typename T> struct RouletteT {
-    T probability;      ///< of survival; may exceed 1
+    T probability; ///< of survival; may exceed 1
     MaskOf<T> survives;
 };
 /// Decides by Russian roulette with the random number u whether the path continues, and weights survivors up for the
@@ -88,6 +88,7 @@ class RadianceSum {
 public:
     static constexpr bool kLogsEvents = false; // whether the sink has a log() of all events
     void start(const Bsdf&) {}
+    void start_in_medium() {}
     void add(Rgb light, LightSource, int) { total_ += light; }
     void add_shadowed(Rgb, LightSource, int) {}
     Rgb result() const { return total_; }
@@ -96,20 +97,21 @@ private:
     Rgb total_;
 };
 
-// Replaces the medium stack in scenes where no dielectric absorbs or has a priority. It is empty.
+// Replaces the medium stack in scenes without media in which no dielectric absorbs or has a priority. It is empty.
 struct NoMediumStack {
     explicit NoMediumStack(const RenderPlan&) {}
     static constexpr float relative_index() { return 0; }
 };
 
-// Returns the random samples of the vertex that a ray has hit, if it uses any.
+// Returns the random samples of the vertex at the end of a ray, if it uses any.
 inline VertexRandomSamples random_samples_at(const RenderPlan& plan, Sampler& sampler, const Hit& hit, int depth) {
-    return hit.valid() && depth < plan.max_depth ? vertex_random_samples(sampler, depth) : VertexRandomSamples{};
+    const bool used = (hit.valid() && depth < plan.max_depth) || plan.scene.needs.media;
+    return used ? vertex_random_samples(sampler, depth) : VertexRandomSamples{};
 }
 
-/// Traces one path. kHasMediumStack is true in scenes where dielectrics absorb or have priorities, so that it has a
-/// medium stack.
-template <typename Sink, bool kHasMediumStack> class Path {
+/// Traces one path. kHasMedia is true in scenes with media, and where dielectrics absorb or have priorities, so that it
+/// has a medium stack.
+template <typename Sink, bool kHasMedia> class Path {
 public:
     Path(const RenderPlan& plan, const Sampler& sampler, RayCounts& counts, Sink sink = {})
         : plan_(plan), counts_(counts), sink_(sink), medium_stack_(plan), footprint_(plan, sampler.sample()) {}
@@ -124,9 +126,14 @@ public:
     /// Processes what the ray has hit after `depth` scatterings: adds the light found there, and replaces the ray by
     /// the one that continues. Returns false if the path ends.
     bool advance(Ray& ray, const Hit& nearest, int depth, const VertexRandomSamples& u) {
+        if constexpr (kHasMedia) {
+            const std::optional<MediumCollision> collision = pass_media(ray, nearest.t, depth, u);
+            if (is_black(state_.throughput)) return log_end("media absorb it");
+            if (collision) return scatter_in_medium(*collision, ray, depth, u) && goes_on(depth, u);
+        }
         Hit boundary_hit;
-        if constexpr (kHasMediumStack) boundary_hit = skip_ignored_boundaries(ray, nearest);
-        const Hit& hit = kHasMediumStack ? std::as_const(boundary_hit) : nearest;
+        if constexpr (kHasMedia) boundary_hit = skip_ignored_boundaries(ray, nearest);
+        const Hit& hit = kHasMedia ? std::as_const(boundary_hit) : nearest;
         if (!hit.valid()) {
             if constexpr (Sink::kLogsEvents) sink_.log().escape(ray, depth);
             add_environment(ray.direction, depth);
@@ -140,10 +147,7 @@ public:
         const bool specular = is_specular(vertex.bsdf) && !plan_.specular_light_samples;
         if (plan_.lights != nullptr && !specular) add_light_sample(vertex, u, depth);
         if (depth + 1 == plan_.max_depth && !plan_.hits_find_light) return log_end("nothing is left to find");
-        if (!leave(vertex, u, ray)) return false;
-        if (plan_.russian_roulette && depth > 0 && !survives(u.roulette)) return false;
-        ++counts_.indirect;
-        return true;
+        return leave(vertex, u, ray) && goes_on(depth, u);
     }
     auto result() const { return sink_.result(); }
 
@@ -179,12 +183,16 @@ private:
         add_found(emission, light_pdf, source_of(vertex.point), bounces);
     }
 
-    void add_light_sample(const Vertex& vertex, const VertexRandomSamples& u, int bounces) {
+    template <typename AnyVertex>
+    void add_light_sample(const AnyVertex& vertex, const VertexRandomSamples& u, int bounces) {
         const auto light_sample =
             sample_li(plan_.scene, *plan_.lights, light_receiver(vertex), u.light_choice, u.light);
         if (!light_sample) return log_no_light_sample("the chosen light does not shine here");
+        if constexpr (std::is_same_v<AnyVertex, MediumVertex>)
+            if (light_sample->delta && light_sample->distance < kInfinity)
+                return log_no_light_sample("the chosen light is sampled along the whole ray");
         Rgb scattered = scattered_light(vertex, *light_sample);
-        if constexpr (kHasMediumStack) scattered *= transmittance_to_light(vertex, *light_sample);
+        if constexpr (kHasMedia) scattered *= transmittance_to_light(vertex, *light_sample);
         if (is_black(scattered) && !plan_.black_shadow_rays)
             return log_no_light_sample("the surface does not scatter the chosen light towards here");
         const LightSource source = light_sample->light < 0 ? LightSource::kEnvironment : LightSource::kLight;
@@ -212,7 +220,7 @@ private:
         const ScatteringT<float> next = scatter(vertex, u, state_);
         if (!next.scatters) return log_end("the surface absorbs it");
         if (!next.continues) return log_end("its direction lies between the horizons of both normals");
-        if constexpr (kHasMediumStack)
+        if constexpr (kHasMedia)
             if (next.sample->transmitted && has_interior(vertex))
                 medium_stack_.cross(vertex.point.material, vertex.wo.z > 0);
         footprint_.scatter(next.sample->pdf, next.sample->specular);
@@ -245,14 +253,68 @@ private:
         return glass != nullptr && !glass->thin;
     }
 
-    // Returns the transmittance of a light sample through the dielectric that the vertex is inside of, or the
-    // dielectric on the other side of its surface.
+    // Returns the transmittance of a light sample through what fills the space on its side of the surface.
     Rgb transmittance_to_light(const Vertex& vertex, const LightLiSample& light_sample) const {
+        const Ray ray{vertex.point.p, light_sample.wi};
         if (same_hemisphere(vertex.wo, vertex.frame.to_local(light_sample.wi)) || !has_interior(vertex))
-            return medium_stack_.transmittance(light_sample.distance);
+            return transmittance_inside(medium_stack_, ray, light_sample.distance);
         MediumStack beyond = medium_stack_;
         beyond.cross(vertex.point.material, vertex.wo.z > 0);
-        return beyond.transmittance(light_sample.distance);
+        return transmittance_inside(beyond, ray, light_sample.distance);
+    }
+    Rgb transmittance_to_light(const MediumVertex& vertex, const LightLiSample& light_sample) const {
+        return transmittance(plan_.scene.media, Ray{vertex.p, light_sample.wi}, light_sample.distance);
+    }
+    Rgb transmittance_inside(const MediumStack& stack, const Ray& ray, float distance) const {
+        return stack.in_dielectric() ? stack.transmittance(distance) : transmittance(plan_.scene.media, ray, distance);
+    }
+
+    // Carries the path through the media on [0, t_end] of the ray, and adds the light that they emit, and that they
+    // scatter from point and spot lights. Returns where they scatter the path itself, if they do.
+    std::optional<MediumCollision> pass_media(const Ray& ray, float t_end, int depth, const VertexRandomSamples& u) {
+        if (!plan_.scene.needs.media || medium_stack_.in_dielectric()) return std::nullopt;
+        if (plan_.positional_lights != nullptr && depth < plan_.max_depth) add_scattered_light(ray, t_end, depth, u);
+        Rgb emitted;
+        const auto collision = sample_collision(plan_.scene.media, ray, t_end, u.distance, state_.throughput, emitted);
+        if (!is_black(emitted)) sink_.add(emitted, LightSource::kOther, depth);
+        return collision;
+    }
+
+    void add_scattered_light(const Ray& ray, float t_end, int bounces, const VertexRandomSamples& u) {
+        const std::optional<ScatteredLight> s = sample_scattered_light(plan_, ray, t_end, u.light);
+        if (!s) return;
+        ++counts_.shadow;
+        const bool visible = unoccluded(plan_, s->vertex, s->light);
+        const Rgb light = state_.throughput * s->radiance;
+        if constexpr (Sink::kLogsEvents) sink_.log().light_sample(s->light, s->radiance, visible, 1, light);
+        if (visible)
+            sink_.add(light, LightSource::kLight, bounces + 1);
+        else
+            sink_.add_shadowed(light, LightSource::kLight, bounces + 1);
+    }
+
+    // Samples the next direction from the phase function. Returns false if the path ends.
+    bool scatter_in_medium(const MediumCollision& collision, Ray& ray, int depth, const VertexRandomSamples& u) {
+        const MediumVertex vertex{ray.at(collision.t), ray.direction, ray.time, collision.asymmetry};
+        footprint_.at_hit(ray, collision.t);
+        if constexpr (Sink::kLogsEvents) sink_.log().medium_vertex(vertex, depth);
+        if (depth == 0) sink_.start_in_medium();
+        if (depth == plan_.max_depth) return log_end("it is as long as it may be (--depth)");
+        if (plan_.lights != nullptr) add_light_sample(vertex, u, depth);
+        if (depth + 1 == plan_.max_depth && !plan_.hits_find_light) return log_end("nothing is left to find");
+        const Vec3 wi = sample_phase(vertex.direction, vertex.asymmetry, u.bsdf);
+        const float pdf = scattering_pdf(vertex, wi);
+        footprint_.scatter(pdf, false);
+        state_.previous_vertex = {light_receiver(vertex), pdf, plan_.lights == nullptr};
+        ray = spawn_ray(plan_, vertex, wi);
+        return true;
+    }
+
+    // Returns whether the path goes on after a scattering.
+    bool goes_on(int depth, const VertexRandomSamples& u) {
+        if (plan_.russian_roulette && depth > 0 && !survives(u.roulette)) return false;
+        ++counts_.indirect;
+        return true;
     }
 
     bool survives(float u) {
@@ -275,7 +337,7 @@ private:
     RayCounts& counts_;
     Sink sink_;
     PathState state_;
-    std::conditional_t<kHasMediumStack, MediumStack, NoMediumStack> medium_stack_;
+    std::conditional_t<kHasMedia, MediumStack, NoMediumStack> medium_stack_;
     PathFootprint footprint_;
 };
 

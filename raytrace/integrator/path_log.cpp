@@ -47,6 +47,11 @@ void PathLog::vertex(const Vertex& vertex, const Hit& hit, int depth) {
          << "  seen from    " << (vertex.wo.z < 0 ? "the back" : "the front") << ", cosine " << vertex.wo.z << "\n";
 }
 
+void PathLog::medium_vertex(const MediumVertex& vertex, int depth) {
+    out_ << "\nvertex " << depth << ": in a medium\n"
+         << "  point        " << text_of(vertex.p) << "\n";
+}
+
 void PathLog::escape(const Ray& ray, int depth) {
     out_ << "\nvertex " << depth << ": none, the ray escapes towards " << text_of(ray.direction) << "\n";
 }

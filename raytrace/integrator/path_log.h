@@ -3,7 +3,7 @@
 
 #include "common/material/bsdf.h"
 #include "raytrace/integrator/light_components.h"
-#include "raytrace/integrator/light_sampling.h"
+#include "raytrace/integrator/medium_vertex.h"
 #include "raytrace/integrator/path_state.h"
 
 #include <sstream>
@@ -17,6 +17,7 @@ public:
     explicit PathLog(const Scene& scene) : scene_(scene) {}
 
     void vertex(const Vertex& vertex, const Hit& hit, int depth);
+    void medium_vertex(const MediumVertex& vertex, int depth);
     void escape(const Ray& ray, int depth);
     /// Logs light that the ray itself has found. `weight` is its MIS weight against light samples, and `light` is
     /// what it adds.

@@ -70,6 +70,11 @@ template <typename AnyVertex, typename T> inline RgbT<T> scattering(const AnyVer
     return select(consistent, eval(vertex.bsdf, vertex.wo, local) * abs_cos_theta(local), RgbT<T>(T(0)));
 }
 
+/// Returns the density by solid angle with which sampling the BSDF draws wi (world space, unit).
+template <typename AnyVertex, typename T> inline T scattering_pdf(const AnyVertex& vertex, Vec3T<T> wi) {
+    return pdf(vertex.bsdf, vertex.wo, vertex.frame.to_local(wi));
+}
+
 /// Returns the fraction of a pixel's width that its `sample` covers: the samples up to it share the pixel's area. It
 /// does not depend on how many samples follow, so that continued films and shards have the bits of a single run. In
 /// the limit nothing is blurred.

@@ -35,7 +35,7 @@ public:
         take(0, [](VertexRandomSamples& u, Vec2 pair) { u.bsdf = pair; });
         take(1, [](VertexRandomSamples& u, Vec2 pair) { u.light = pair; });
         take(2, [](VertexRandomSamples& u, Vec2 pair) { u.light_choice = pair.x, u.lobe = pair.y; });
-        take(3, [](VertexRandomSamples& u, Vec2 pair) { u.roulette = pair.x; });
+        take(3, [](VertexRandomSamples& u, Vec2 pair) { u.roulette = pair.x, u.distance = pair.y; });
     }
 
 private:
@@ -63,7 +63,7 @@ private:
     std::array<std::uint32_t, kClasses> ends_{};
 };
 
-template <bool kHasMediumStack> class Wavefront {
+template <bool kHasMedia> class Wavefront {
 public:
     Wavefront(const RenderPlan& plan, std::span<Ray> rays, std::span<Hit> hits, std::span<Sampler> samplers,
               RayCounts& counts)
@@ -98,15 +98,21 @@ private:
         active_.clear();
         escape(by_class_.of(BatchedSurfaces::kMiss), depth);
         const auto others = by_class_.of(BatchedSurfaces::kOther);
-        const UsedDimensions all{true, plan_.lights != nullptr, true, plan_.russian_roulette && depth > 0};
-        dimension_sampler_.draw(samplers_, others, depth, all, random_samples_);
+        draw_all(others, depth);
         for (const std::uint32_t i : others) advance_alone(i, depth);
         for (std::size_t k = 0; k < Kind::kCount; ++k)
             if (!by_class_.of(k).empty()) advance_batches(Kind::of_index(k), by_class_.of(k), depth);
     }
+    // Draws all random samples that a vertex may use.
+    void draw_all(std::span<const std::uint32_t> indices, int depth) {
+        const UsedDimensions all{true, plan_.lights != nullptr, true,
+                                 (plan_.russian_roulette && depth > 0) || plan_.scene.needs.media};
+        dimension_sampler_.draw(samplers_, indices, depth, all, random_samples_);
+    }
     // Ends all paths, which have reached the greatest depth.
     void end(int depth) {
-        for (const std::uint32_t i : active_) paths_[i].advance(rays_[i], hits_[i], depth, VertexRandomSamples());
+        if (plan_.scene.needs.media) draw_all(active_, depth);
+        for (const std::uint32_t i : active_) paths_[i].advance(rays_[i], hits_[i], depth, random_samples_[i]);
         active_.clear();
     }
     void advance_alone(std::uint32_t i, int depth) {
@@ -115,13 +121,15 @@ private:
 
     void escape(std::span<const std::uint32_t> indices, int depth) {
         const Environment* environment = plan_.environment;
-        if (!kHasMediumStack && environment == nullptr) return;
-        if constexpr (!kHasMediumStack) {
+        if (!kHasMedia && environment == nullptr) return;
+        if constexpr (!kHasMedia) {
             if (const auto* even = std::get_if<ConstantEnvironment>(environment))
                 return escape_to(*even, indices, depth);
             if (const auto* sky = std::get_if<SkyEnvironment>(environment)) return escape_to(*sky, indices, depth);
         }
-        for (const std::uint32_t i : indices) paths_[i].advance(rays_[i], hits_[i], depth, VertexRandomSamples());
+        // A ray that hits nothing uses random samples only where media may scatter the path on its way.
+        if (plan_.scene.needs.media) draw_all(indices, depth);
+        for (const std::uint32_t i : indices) advance_alone(i, depth);
     }
     // Adds the light of an environment that is not sampled as a light, in a loop without calls.
     template <typename Sky> void escape_to(const Sky& sky, std::span<const std::uint32_t> indices, int depth) {
@@ -158,7 +166,7 @@ private:
     const std::span<Hit> hits_;
     const std::span<Sampler> samplers_;
     RayCounts& counts_;
-    std::vector<Path<RadianceSum, kHasMediumStack>> paths_;
+    std::vector<Path<RadianceSum, kHasMedia>> paths_;
     std::vector<std::uint32_t> active_;
     ByClass by_class_;
     std::vector<VertexRandomSamples> random_samples_;

@@ -10,7 +10,7 @@ const std::vector<JsonKeys>& scene_keys() {
     static const std::vector<JsonKeys> all = {
         {"scene",
          {"camera", "objects"},
-         {"$schema", "description", "image", "textures", "materials", "lights", "environment"}},
+         {"$schema", "description", "image", "textures", "materials", "lights", "environment", "media"}},
         {"perspective",
          {"eye", "look_at"},
          {"projection", "up", "fov_degrees", "near", "aperture_radius", "focus_distance", "shutter"}},
@@ -56,6 +56,8 @@ const std::vector<JsonKeys>& scene_keys() {
         {"constant_environment", {"type", "radiance"}, {}},
         {"sky_environment", {"type"}, {"down", "up"}},
         {"image_environment", {"type", "file"}, {"scale", "rotate_degrees"}},
+
+        {"fog", {"type"}, {"low", "high", "scattering", "absorption", "radiance", "asymmetry"}},
     };
     return all;
 }

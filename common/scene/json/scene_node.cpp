@@ -1,5 +1,6 @@
 #include "common/scene/json/scene_node.h"
 
+#include "common/scene/json/read_media.h"
 #include "common/scene/json/scene_keys.h"
 #include "common/scene/obj/add_obj_materials.h"
 #include "common/system/error.h"
@@ -23,10 +24,9 @@ Shape read_quad(const JsonValue& value) {
 }
 
 Shape read_box(const JsonValue& value) {
-    const Vec3 low(value.at("low").vec3()), high(value.at("high").vec3());
-    if (!(low.x < high.x && low.y < high.y && low.z < high.z))
-        value.fail("\"low\" must be below \"high\" on each axis");
-    return box_quads(low, high);
+    const Box3 box{Vec3(value.at("low").vec3()), Vec3(value.at("high").vec3())};
+    check_corners(value, box);
+    return box_quads(box.low, box.high);
 }
 
 } // namespace

@@ -1,0 +1,66 @@
+// Where a path is scattered inside of media, and where along a ray to look for light that they scatter.
+#pragma once
+
+#include "common/medium/medium.h"
+#include "raytrace/integrator/medium_vertex.h"
+
+#include <optional>
+#include <span>
+
+namespace duet::raytrace {
+
+/// A MediumCollision is a point of a ray at which a medium scatters a path.
+struct MediumCollision {
+    float t = 0;
+    float asymmetry = 0; ///< that of the medium
+};
+/// Follows a path along [0, t_end] of its ray. Returns where a medium scatters it, or nothing if it arrives at t_end.
+/// `throughput` is multiplied by the transmittance and, at a collision, by the coefficient of scattering, divided by
+/// the density of this outcome. `emitted` is increased by what the media emit on the way, times the throughput. The
+/// distance is decided by u in [0, 1).
+///
+/// All channels share one path, even if a medium scatters them differently. Distances are drawn for the channel that
+/// scatters most. Such a tentative collision is then accepted with a probability that depends on the throughput, so
+/// that weights stay bounded (Kutz et al. 2017, "Spectral and Decomposition Tracking for Rendering Heterogeneous
+/// Volumes", §4). Absorption and emission are integrated in closed form.
+std::optional<MediumCollision> sample_collision(std::span<const Medium> media, const Ray& ray, float t_end, float u,
+                                                Rgb& throughput, Rgb& emitted);
+
+/// A ScatteredLight is light of a point or spot light that media scatter back along a ray.
+struct ScatteredLight {
+    MediumVertex vertex; ///< where it is scattered
+    LightLiSample light;
+    Rgb radiance; ///< what arrives at the begin of the ray over the density of the sample, unless light is occluded
+};
+/// Samples the light of the plan's point and spot lights that media scatter on [0, t_end] of the ray. u in [0, 1)²
+/// chooses the distance and the light. Returns nothing if the sample is dark.
+std::optional<ScatteredLight> sample_scattered_light(const RenderPlan& plan, const Ray& ray, float t_end, Vec2 u);
+
+/// Draws the distance along a ray at which light from a point is scattered. One half of the samples have a density in
+/// proportion to 1 / (distance to the point)², which cancels the falloff of its light (Kulla and Fajardo 2012,
+/// "Importance Sampling Techniques for Path Tracing in Participating Media", §4: equi-angular sampling). The density of
+/// the other half falls like the transmittance, which matters in dense fog.
+class ScatteringDistance {
+public:
+    /// The distances lie in `range`, which must not be empty. `extinction` is σs + σa there, ≥ 0. The ray's direction
+    /// has unit length.
+    ScatteringDistance(const Ray& ray, Vec3 light, Interval range, float extinction);
+    float sample(float u) const;
+    /// Returns the density by distance at a t of the range.
+    float pdf(float t) const;
+    /// Returns the integral of 1 / (distance to the point)² over the range, 1/m.
+    float integral() const { return angle_ / height_; }
+
+private:
+    float sample_angle(float u) const;
+    float sample_transmittance(float u) const;
+
+    Interval range_;
+    float height_; ///< distance of the light from the ray's line, > 0
+    float begin_;  ///< the begin of the range, from where the line is nearest to the light
+    float angle_;  ///< angle between both ends of the range, seen from the light
+    float extinction_;
+    float scattered_; ///< 1 − exp(−extinction · length), or 0 if only angles are drawn
+};
+
+} // namespace duet::raytrace
