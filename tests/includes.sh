@@ -4,7 +4,7 @@
 # usage: includes.sh SOURCE_DIR
 set -eu
 cd "$1"
-common="vec image sampling geometry camera texture material light scene program"
+common="vec image sampling geometry camera texture material light medium scene program"
 raster="geometry visibility shader gbuffer screen_space shadows lighting probes shading output overlay"
 raytrace="sampling film acceleration integrator bidirectional wavefront"
 grep -rnoE '#include "[^"]+"' common raster raytrace compare models tests --include='*.h' --include='*.cpp' |

@@ -12,8 +12,8 @@ namespace duet {
 /// Returns the density by solid angle with which light that travels along `from` is scattered to `to` (both unit).
 /// Its integral over all directions is 1, so it is the density of sample_phase(), too. |g| must be below 1.
 inline float phase(Vec3 from, Vec3 to, float g) {
-    // 1 + g² − 2g·cos θ = (1 − g)² + 2g·(1 − cos θ) does not cancel where g and the cosine are near 1, and its twin for
-    // g < 0 does not where g and the cosine are near −1.
+    // 1 + g² − 2g·cos θ is computed as (1 − |g|)² + 2|g|·(distance of the cosine from the peak), which does not cancel
+    // there.
     const float from_peak = g < 0 ? 1 + dot(from, to) : 1 - dot(from, to);
     const float size = std::abs(g);
     const float squared = sqr(1 - size) + 2 * size * std::max(from_peak, 0.0f);

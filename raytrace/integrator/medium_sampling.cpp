@@ -112,8 +112,6 @@ Rgb scattering_at(std::span<const Medium> media, const Ray& ray, float t, Vec3 w
     return sum;
 }
 
-float mean_extinction(const MediumStretch& stretch) { return average(stretch.scattering + stretch.absorption); }
-
 // Returns the part of the range in which a ray is inside of the cone of a spot light, or a longer one. A point of the
 // ray is inside if its height over the apex, along the axis, is at least cos θ times its distance from there. The
 // squares of both are equal at the roots of a quadratic equation.
@@ -138,17 +136,27 @@ Interval lit_range(const SpotLight& light, const Ray& ray, Interval range) {
     return {std::max(range.begin, first), std::min(range.end, second)};
 }
 
-// A PointOfLight is a point or spot light and the part of a ray that it may light.
-struct PointOfLight {
-    Vec3 position;
-    Interval range;
-    float intensity; // mean of the channels
-};
-PointOfLight point_of_light(const Light& light, const Ray& ray, Interval range) {
-    if (const auto* spot = std::get_if<SpotLight>(&light))
-        return {spot->position, lit_range(*spot, ray, range), average(spot->intensity)};
-    const auto& point = std::get<PointLight>(light);
-    return {point.position, range, average(point.intensity)};
+// Returns how to sample the distances at which the light of a delta light is scattered, or nothing if it does not reach
+// the range. `intensity` is set to the mean of its channels.
+std::optional<ScatteringDistance> scattering_distance(std::span<const Medium> media, const Light& light, const Ray& ray,
+                                                      Interval range, float& intensity) {
+    const auto extinction = [&](float t) {
+        const MediumStretch stretch = stretch_at(media, ray, t, range.end);
+        return average(stretch.scattering + stretch.absorption);
+    };
+    if (const auto* sun = std::get_if<SunLight>(&light)) {
+        intensity = average(sun->irradiance);
+        return ScatteringDistance(range, extinction(range.begin));
+    }
+    if (const auto* point = std::get_if<PointLight>(&light)) {
+        intensity = average(point->intensity);
+        return ScatteringDistance(ray, point->position, range, extinction(range.begin));
+    }
+    const auto& spot = std::get<SpotLight>(light);
+    intensity = average(spot.intensity);
+    range = lit_range(spot, ray, range);
+    if (range.empty()) return std::nullopt;
+    return ScatteringDistance(ray, spot.position, range, extinction(range.begin));
 }
 
 // Chooses one light of at most kCandidates by the light that it would send to the ray without media and occluders. If
@@ -156,17 +164,17 @@ PointOfLight point_of_light(const Light& light, const Ray& ray, Interval range) 
 constexpr std::size_t kCandidates = 8;
 
 std::optional<SampledLight> choose_light(const RenderPlan& plan, const Ray& ray, Interval range, float u) {
-    const std::vector<std::uint32_t>& lights = *plan.positional_lights;
+    const std::vector<std::uint32_t>& lights = *plan.delta_lights;
     const std::size_t stride = (lights.size() + kCandidates - 1) / kCandidates;
     const float scaled = u * static_cast<float>(stride);
     const std::size_t first = std::min(static_cast<std::size_t>(scaled), stride - 1);
     std::array<float, kCandidates> weights{};
     float sum = 0;
     for (std::size_t i = first, k = 0; i < lights.size(); i += stride, ++k) {
-        const PointOfLight light = point_of_light(plan.scene.lights[lights[i]], ray, range);
-        if (light.range.empty()) continue;
-        weights[k] = light.intensity * ScatteringDistance(ray, light.position, light.range, 0).integral();
-        sum += weights[k];
+        float intensity = 0;
+        const auto distance =
+            scattering_distance(plan.scene.media, plan.scene.lights[lights[i]], ray, range, intensity);
+        if (distance) sum += weights[k] = intensity * distance->integral();
     }
     float left = (scaled - static_cast<float>(first)) * sum;
     std::optional<SampledLight> chosen;
@@ -187,22 +195,24 @@ std::optional<ScatteredLight> sample_scattered_light(const RenderPlan& plan, con
     const std::optional<SampledLight> chosen = choose_light(plan, ray, range, u.y);
     if (!chosen) return std::nullopt;
     const Light& light = plan.scene.lights[chosen->index];
-    const PointOfLight point = point_of_light(light, ray, range);
-    const MediumStretch front = stretch_at(media, ray, point.range.begin, t_end);
-    const ScatteringDistance distance(ray, point.position, point.range, mean_extinction(front));
-    const float t = distance.sample(u.x);
+    float intensity = 0;
+    const auto distance = scattering_distance(media, light, ray, range, intensity);
+    const float t = distance->sample(u.x);
     const MediumVertex vertex{ray.at(t), ray.direction, ray.time, 0};
     const std::optional<LightSample> s = sample_light(light, vertex.p, {});
     if (!s) return std::nullopt;
-    const float pdf = chosen->probability * distance.pdf(t);
+    const float pdf = chosen->probability * distance->pdf(t);
     const Rgb radiance = transmittance(media, ray, t) * scattering_at(media, ray, t, s->wi) * s->radiance *
                          transmittance(media, spawn_ray(plan, vertex, s->wi), s->distance) / pdf;
     if (is_black(radiance)) return std::nullopt;
     return ScatteredLight{vertex, light_sample(*s, {chosen->index, pdf, 0}), radiance};
 }
 
+ScatteringDistance::ScatteringDistance(Interval range, float extinction)
+    : range_(range), extinction_(extinction), scattered_(-std::expm1(-product(extinction, range.end - range.begin))) {}
+
 ScatteringDistance::ScatteringDistance(const Ray& ray, Vec3 light, Interval range, float extinction)
-    : range_(range), extinction_(extinction), scattered_(-std::expm1(-product(extinction, range.end - range.begin))) {
+    : ScatteringDistance(range, extinction) {
     const Vec3 to_light = light - ray.at(range.begin);
     // A light on the ray itself would leave no distance but its own to draw, so it counts as slightly beside it.
     height_ = std::max(length(cross(to_light, ray.direction)), 1e-5f * std::max(length(to_light), 1e-30f));
@@ -211,6 +221,7 @@ ScatteringDistance::ScatteringDistance(const Ray& ray, Vec3 light, Interval rang
     // The difference of the angles to both ends would cancel for a distant light.
     angle_ = end < kInfinity ? std::atan2(height_ * (range.end - range.begin), sqr(height_) + begin_ * end)
                              : std::atan2(height_, begin_);
+    share_of_angles_ = scattered_ > 0 ? 0.5f : 1.0f;
 }
 
 float ScatteringDistance::sample_angle(float u) const {
@@ -225,15 +236,21 @@ float ScatteringDistance::sample_transmittance(float u) const {
 }
 
 float ScatteringDistance::sample(float u) const {
-    if (!(scattered_ > 0)) return sample_angle(u);
-    return u < 0.5f ? sample_angle(2 * u) : sample_transmittance(2 * u - 1);
+    return u < share_of_angles_ ? sample_angle(u / share_of_angles_)
+                                : sample_transmittance((u - share_of_angles_) / (1 - share_of_angles_));
 }
 
 float ScatteringDistance::pdf(float t) const {
     const float distance = t - range_.begin;
-    const float by_angle = height_ / (angle_ * (sqr(height_) + sqr(begin_ + distance)));
-    if (!(scattered_ > 0)) return by_angle;
-    return 0.5f * (by_angle + extinction_ * std::exp(-extinction_ * distance) / scattered_);
+    float density = 0;
+    if (share_of_angles_ > 0) density = share_of_angles_ * height_ / (angle_ * (sqr(height_) + sqr(begin_ + distance)));
+    if (share_of_angles_ < 1)
+        density += (1 - share_of_angles_) * extinction_ * std::exp(-extinction_ * distance) / scattered_;
+    return density;
+}
+
+float ScatteringDistance::integral() const {
+    return share_of_angles_ > 0 ? angle_ / height_ : std::min(range_.end - range_.begin, 1 / extinction_);
 }
 
 } // namespace duet::raytrace

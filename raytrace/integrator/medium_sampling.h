@@ -26,41 +26,43 @@ struct MediumCollision {
 std::optional<MediumCollision> sample_collision(std::span<const Medium> media, const Ray& ray, float t_end, float u,
                                                 Rgb& throughput, Rgb& emitted);
 
-/// A ScatteredLight is light of a point or spot light that media scatter back along a ray.
+/// A ScatteredLight is light of a delta light that media scatter back along a ray.
 struct ScatteredLight {
     MediumVertex vertex; ///< where it is scattered
     LightLiSample light;
     Rgb radiance; ///< what arrives at the begin of the ray over the density of the sample, unless light is occluded
 };
-/// Samples the light of the plan's point and spot lights that media scatter on [0, t_end] of the ray. u in [0, 1)²
-/// chooses the distance and the light. Returns nothing if the sample is dark.
+/// Samples the light of the plan's delta lights that media scatter on [0, t_end] of the ray. u in [0, 1)² chooses the
+/// distance and the light. Returns nothing if the sample is dark.
 std::optional<ScatteredLight> sample_scattered_light(const RenderPlan& plan, const Ray& ray, float t_end, Vec2 u);
 
-/// Draws the distance along a ray at which light from a point is scattered. One half of the samples have a density in
-/// proportion to 1 / (distance to the point)², which cancels the falloff of its light (Kulla and Fajardo 2012,
-/// "Importance Sampling Techniques for Path Tracing in Participating Media", §4: equi-angular sampling). The density of
-/// the other half falls like the transmittance, which matters in dense fog.
+/// Draws the distance along a ray at which the light of a delta light is scattered. For a point or spot light, one half
+/// of the samples have a density in proportion to 1 / (distance to the light)², which cancels the falloff of its light
+/// (Kulla and Fajardo 2012, "Importance Sampling Techniques for Path Tracing in Participating Media", §4: equi-angular
+/// sampling). The density of all others falls like the transmittance.
 class ScatteringDistance {
 public:
-    /// The distances lie in `range`, which must not be empty. `extinction` is σs + σa there, ≥ 0. The ray's direction
-    /// has unit length.
+    /// For a sun. The distances lie in `range`, which must not be empty. `extinction` is σs + σa at its begin, > 0.
+    ScatteringDistance(Interval range, float extinction);
+    /// For a light at a point. The ray's direction has unit length; `extinction` may be 0.
     ScatteringDistance(const Ray& ray, Vec3 light, Interval range, float extinction);
     float sample(float u) const;
     /// Returns the density by distance at a t of the range.
     float pdf(float t) const;
-    /// Returns the integral of 1 / (distance to the point)² over the range, 1/m.
-    float integral() const { return angle_ / height_; }
+    /// Returns how much light arrives on the range per unit of intensity or irradiance, by the roughest estimate: the
+    /// integral of 1 / (distance to the light)² or, for a sun, the length that it lights.
+    float integral() const;
 
 private:
     float sample_angle(float u) const;
     float sample_transmittance(float u) const;
 
     Interval range_;
-    float height_; ///< distance of the light from the ray's line, > 0
-    float begin_;  ///< the begin of the range, from where the line is nearest to the light
-    float angle_;  ///< angle between both ends of the range, seen from the light
-    float extinction_;
-    float scattered_; ///< 1 − exp(−extinction · length), or 0 if only angles are drawn
+    float extinction_, scattered_; ///< `scattered_` is 1 − exp(−extinction · length)
+    float share_of_angles_ = 0;    ///< share of the samples that cancel the falloff
+    float height_ = 0;             ///< distance of the light from the ray's line, > 0
+    float begin_ = 0;              ///< the begin of the range, from where the line is nearest to the light
+    float angle_ = 0;              ///< angle between both ends of the range, seen from the light
 };
 
 } // namespace duet::raytrace

@@ -189,8 +189,7 @@ private:
             sample_li(plan_.scene, *plan_.lights, light_receiver(vertex), u.light_choice, u.light);
         if (!light_sample) return log_no_light_sample("the chosen light does not shine here");
         if constexpr (std::is_same_v<AnyVertex, MediumVertex>)
-            if (light_sample->delta && light_sample->distance < kInfinity)
-                return log_no_light_sample("the chosen light is sampled along the whole ray");
+            if (light_sample->delta) return log_no_light_sample("the chosen light is sampled along the whole ray");
         Rgb scattered = scattered_light(vertex, *light_sample);
         if constexpr (kHasMedia) scattered *= transmittance_to_light(vertex, *light_sample);
         if (is_black(scattered) && !plan_.black_shadow_rays)
@@ -270,10 +269,10 @@ private:
     }
 
     // Carries the path through the media on [0, t_end] of the ray, and adds the light that they emit, and that they
-    // scatter from point and spot lights. Returns where they scatter the path itself, if they do.
+    // scatter from delta lights. Returns where they scatter the path itself, if they do.
     std::optional<MediumCollision> pass_media(const Ray& ray, float t_end, int depth, const VertexRandomSamples& u) {
         if (!plan_.scene.needs.media || medium_stack_.in_dielectric()) return std::nullopt;
-        if (plan_.positional_lights != nullptr && depth < plan_.max_depth) add_scattered_light(ray, t_end, depth, u);
+        if (plan_.delta_lights != nullptr && depth < plan_.max_depth) add_scattered_light(ray, t_end, depth, u);
         Rgb emitted;
         const auto collision = sample_collision(plan_.scene.media, ray, t_end, u.distance, state_.throughput, emitted);
         if (!is_black(emitted)) sink_.add(emitted, LightSource::kOther, depth);
