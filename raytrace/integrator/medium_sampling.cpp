@@ -202,8 +202,9 @@ std::optional<ScatteredLight> sample_scattered_light(const RenderPlan& plan, con
     const std::optional<LightSample> s = sample_light(light, vertex.p, {});
     if (!s) return std::nullopt;
     const float pdf = chosen->probability * distance->pdf(t);
-    const Rgb radiance = transmittance(media, ray, t) * scattering_at(media, ray, t, s->wi) * s->radiance *
-                         transmittance(media, spawn_ray(plan, vertex, s->wi), s->distance) / pdf;
+    const Rgb scattering = scattering_at(media, ray, t, s->wi) / pdf; // at first, because each of both may be huge
+    const Rgb radiance = transmittance(media, ray, t) * scattering * s->radiance *
+                         transmittance(media, spawn_ray(plan, vertex, s->wi), s->distance);
     if (is_black(radiance)) return std::nullopt;
     return ScatteredLight{vertex, light_sample(*s, {chosen->index, pdf, 0}), radiance};
 }

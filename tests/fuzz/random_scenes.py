@@ -388,6 +388,13 @@ class Scene:
             "scale": self.pick([0, 1, self.uniform(0.1, 10), self.log_uniform(1e-6, 1e6)]),
             "rotate_degrees": self.pick([90, self.uniform(-720, 720), LARGEST])})}
 
+    def medium(self):
+        """Fog in a box, in a part of space that is open on some sides, or everywhere."""
+        self.places.append(self.place())
+        return {"type": "fog", **self.some(self.box(), 0.9), **self.some({
+            "scattering": self.power(0.3 / self.unit), "absorption": self.power(0.3 / self.unit),
+            "radiance": self.power(1), "asymmetry": self.pick([-0.99, 0, 0.99, self.uniform(-0.9, 0.9)])}, 0.6)}
+
     def file(self):
         """The whole scene. The order of its keys is random."""
         for n in range(self.random.randint(0, 5)):
@@ -400,6 +407,7 @@ class Scene:
             scene["textures"] = self.textures
         scene |= self.some({"lights": [self.light() for _ in range(self.random.randint(0, 4))],
                             "environment": self.environment()}, 0.7)
+        scene |= self.some({"media": [self.medium() for _ in range(self.random.randint(0, 3))]}, 0.25)
         scene |= self.some({"image": {"width": self.random.randint(1, 64), "height": self.random.randint(1, 64)},
                             "description": f"Sizes about {self.unit:.3g} m.", "$schema": "scene.schema.json"}, 0.3)
         return {key: scene[key] for key in self.random.sample(list(scene), len(scene))}
