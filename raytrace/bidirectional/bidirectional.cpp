@@ -18,6 +18,12 @@ float weight(double light_side, double camera_side) {
 // Camera subpaths use the dimensions of plain paths. Light subpaths use those behind the longest of them.
 int light_subpath_depth(const RenderPlan& plan, int depth) { return plan.max_depth + 1 + depth; }
 
+Ray importance_ray(const SubpathVertex& at, Vec3 w) {
+    Ray ray{at.importance_origin(w), w};
+    ray.time = at.vertex.point.time;
+    return ray;
+}
+
 EmissionRandomSamples emission_samples(const RenderPlan& plan, Sampler& sampler) {
     sampler.set_dimension(vertex_dimension(light_subpath_depth(plan, 0)));
     const Sampler::Block u = sampler.get_block();
@@ -74,7 +80,7 @@ void BidirectionalTracer::trace_light_subpath(float time, Sampler& sampler) {
         if (depth + 1 < plan_.max_depth) {
             const VertexRandomSamples u = vertex_random_samples(sampler, light_subpath_depth(plan_, depth + 1));
             next = leave(at, u, TransportMode::kImportance, path, sums);
-            if (next.continues) ray = spawn_ray(plan_, at.vertex, next.wi);
+            if (next.continues) ray = importance_ray(at, next.wi);
         }
         if (!connectable) light_subpath_.pop_back();
         if (!next.continues) return;
@@ -109,7 +115,7 @@ std::optional<Splat> BidirectionalTracer::connection_to_camera(const SubpathVert
     const Vec3 w(seen->to_camera);
     const Rgb scattered = at.importance_scattering(w);
     if (is_black(scattered)) return std::nullopt;
-    const Ray ray = spawn_ray(plan_, at.vertex, w);
+    const Ray ray = importance_ray(at, w);
     Hit end;
     end.t = static_cast<float>(seen->distance) - length(ray.origin - at.vertex.point.p);
     ++counts_.shadow;
@@ -149,6 +155,7 @@ Rgb BidirectionalTracer::trace_camera_subpath(Ray ray, Hit hit, const Pinhole& p
                 if (depth + light.depth + 2 <= plan_.max_depth) sum += connection(at, light);
             if (photons != nullptr) sum += merged_light(at, *photons);
         }
+        if (depth + 1 == plan_.max_depth && !plan_.hits_find_light) return sum;
         previous = light_receiver(at.vertex);
         const ScatteringT<float> next = leave(at, u, TransportMode::kRadiance, path, sums);
         if (!next.continues) return sum;
@@ -198,14 +205,14 @@ Rgb BidirectionalTracer::light_sample(const SubpathVertex& at, const VertexRando
     const auto pdf = static_cast<double>(s->pdf);
     const double light_side = s->delta ? 0 : mis(at.pdf(at.to_previous, s->wi, TransportMode::kRadiance) / pdf);
     const double camera_side =
-        at.mis.over_connection(density * at.cosine(s->wi) / (pdf * geometry),
+        at.mis.over_connection(density * at.cosine_of_light(s->wi) / (pdf * geometry),
                                at.pdf(s->wi, at.to_previous, TransportMode::kImportance), merging_);
     return scattered * (weight(light_side, camera_side) / s->pdf);
 }
 
-bool BidirectionalTracer::visible(const Vertex& from, const Vertex& to, Vec3 w) {
-    const float time = from.point.time;
-    const Vec3 start = ray_origin(plan_, from.point, w, time), end = ray_origin(plan_, to.point, -w, time);
+bool BidirectionalTracer::visible(const Vertex& camera, const SubpathVertex& light, Vec3 w) {
+    const float time = camera.point.time;
+    const Vec3 start = ray_origin(plan_, camera.point, w, time), end = light.importance_origin(-w);
     Ray ray{start, normalize(end - start)};
     ray.time = time;
     Hit before;
@@ -220,14 +227,14 @@ Rgb BidirectionalTracer::connection(const SubpathVertex& camera, const SubpathVe
     if (!(squared_distance > 0)) return Rgb();
     const Vec3 w(offset / std::sqrt(squared_distance));
     const Rgb scattered = scattering(camera.vertex, w) * light.importance_scattering(-w);
-    if (is_black(scattered) || !visible(camera.vertex, light.vertex, w)) return Rgb();
+    if (is_black(scattered) || !visible(camera.vertex, light, w)) return Rgb();
     const double to_light = camera.pdf(camera.to_previous, w, TransportMode::kRadiance);
     const double to_camera = light.pdf(light.to_previous, -w, TransportMode::kImportance);
     const double light_side =
         light.mis.over_connection(to_light * light.cosine(w) / squared_distance,
                                   light.pdf(-w, light.to_previous, TransportMode::kRadiance), merging_);
     const double camera_side =
-        camera.mis.over_connection(to_camera * camera.cosine(w) / squared_distance,
+        camera.mis.over_connection(to_camera * camera.cosine_of_light(w) / squared_distance,
                                    camera.pdf(w, camera.to_previous, TransportMode::kImportance), merging_);
     return camera.throughput * light.throughput * scattered *
            (weight(light_side, camera_side) / static_cast<float>(squared_distance));
@@ -242,7 +249,7 @@ Rgb BidirectionalTracer::merged_light(const SubpathVertex& at, const PhotonMap& 
         if (at.depth + photon.depth + 1 > plan_.max_depth) return;
         const Vec3 wi = photon.to_previous;
         const Rgb scattered = scattering(vertex, wi);
-        if (is_black(scattered)) return;
+        if (is_black(scattered) || at.cosine_of_light(wi) == 0) return;
         const double light_side =
             photon.mis.over_merging(at.pdf(at.to_previous, wi, TransportMode::kRadiance), merging_);
         const double camera_side =

@@ -47,7 +47,7 @@ private:
     Rgb light_sample(const SubpathVertex& at, const VertexRandomSamples& u);
     Rgb connection(const SubpathVertex& camera, const SubpathVertex& light);
     Rgb merged_light(const SubpathVertex& at, const PhotonMap& photons) const;
-    bool visible(const Vertex& from, const Vertex& to, Vec3 w);
+    bool visible(const Vertex& camera, const SubpathVertex& light, Vec3 w);
     double path_count() const { return static_cast<double>(view_.width) * static_cast<double>(view_.height); }
 
     const RenderPlan& plan_;

@@ -22,9 +22,21 @@ void MisSums::scatter(double pdf, double reverse_pdf, double cosine, bool specul
     connection = mis(1 / pdf);
 }
 
+double SubpathVertex::cosine_of_light(Vec3 wi) const {
+    const Vec3 ng = vertex.point.ng;
+    const bool reflected = same_hemisphere(vertex.wo, vertex.frame.to_local(wi));
+    return reflected && dot(wi, ng) * dot(to_previous, ng) < 0 ? 0 : cosine(wi);
+}
+
+// A subpath samples the BSDF for the direction it came from as Vertex::wo has it: moved to the visible side.
 double SubpathVertex::pdf(Vec3 from, Vec3 to, TransportMode mode) const {
-    const Frame& frame = vertex.frame;
-    return static_cast<double>(duet::pdf(vertex.bsdf, frame.to_local(from), frame.to_local(to), mode));
+    const Vec3 came_from = direction_to_viewer(vertex.frame, vertex.point.ng, -from);
+    return static_cast<double>(duet::pdf(vertex.bsdf, came_from, vertex.frame.to_local(to), mode));
+}
+
+Vec3 SubpathVertex::importance_origin(Vec3 w) const {
+    const SurfacePoint& point = vertex.point;
+    return offset_origin(point.p, point.p_error, dot(w, point.ng) < 0 ? -point.ng : point.ng);
 }
 
 namespace {
@@ -36,9 +48,10 @@ float shading_normal_factor(const Vertex& vertex, Vec3 to_light, Vec3 w) {
     return abs(dot(to_light, ns) * dot(w, ng)) / abs(dot(to_light, ng) * dot(w, ns));
 }
 
-// Returns whether the vertex lets light from `to_light` pass to w: see is_consistent, with w as the viewer.
-bool lets_light_pass(const Vertex& vertex, Vec3 to_light, Vec3 w) {
-    const Vec3 light = vertex.frame.to_local(to_light), viewer = vertex.frame.to_local(w);
+// Returns whether the vertex lets light from `to_light` pass to a viewer, who is given in the frame as Vertex::wo is:
+// see is_consistent.
+bool lets_light_pass(const Vertex& vertex, Vec3 to_light, Vec3 viewer) {
+    const Vec3 light = vertex.frame.to_local(to_light);
     const Vec3 normal = same_hemisphere(light, viewer) ? vertex.point.terminator_normal : vertex.point.ng;
     return dot(to_light, normal) * light.z > 0;
 }
@@ -48,8 +61,8 @@ bool lets_light_pass(const Vertex& vertex, Vec3 to_light, Vec3 w) {
 // The path tracer calls the BSDF with the viewer's direction first, moved to the visible side. So does this function.
 Rgb SubpathVertex::importance_scattering(Vec3 w) const {
     const Frame& frame = vertex.frame;
-    if (!lets_light_pass(vertex, to_previous, w)) return Rgb();
     const Vec3 viewer = direction_to_viewer(frame, vertex.point.ng, -w), light = frame.to_local(to_previous);
+    if (!lets_light_pass(vertex, to_previous, viewer)) return Rgb();
     const auto geometric = static_cast<float>(cosine(w) / cosine(to_previous));
     return eval(vertex.bsdf, viewer, light) * (abs_cos_theta(light) * geometric);
 }
@@ -59,14 +72,17 @@ ScatteringT<float> scatter(const SubpathVertex& at, const VertexRandomSamples& u
     const bool importance = mode == TransportMode::kImportance;
     ScatteringT<float> next = scatter(at.vertex, u, path, mode);
     if (next.continues && importance) {
-        next.continues = lets_light_pass(at.vertex, at.to_previous, next.wi);
+        // A viewer beyond the horizon of the shading normal sees a direction that was moved, which is never drawn.
+        const Vec3 viewer = next.sample->wi;
+        next.continues =
+            dot(next.wi, at.vertex.point.ng) * viewer.z > 0 && lets_light_pass(at.vertex, at.to_previous, viewer);
         path.throughput *= shading_normal_factor(at.vertex, at.to_previous, next.wi);
     }
     if (!next.continues) return next;
     const TransportMode reverse = importance ? TransportMode::kRadiance : TransportMode::kImportance;
     const double reverse_pdf = next.sample->specular ? 0 : at.pdf(next.wi, at.to_previous, reverse);
-    sums.scatter(static_cast<double>(next.sample->pdf), reverse_pdf, at.cosine(next.wi), next.sample->specular,
-                 merging);
+    const double cosine = importance ? at.cosine(next.wi) : at.cosine_of_light(next.wi);
+    sums.scatter(static_cast<double>(next.sample->pdf), reverse_pdf, cosine, next.sample->specular, merging);
     return next;
 }
 

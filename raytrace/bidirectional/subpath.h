@@ -58,11 +58,18 @@ struct SubpathVertex {
 
     /// Returns |cos θ| of a direction to the geometric normal.
     double cosine(Vec3 w) const { return static_cast<double>(abs(dot(vertex.point.ng, w))); }
+    /// Returns |cos θ| of the direction from which a light subpath would arrive at this vertex of a camera subpath. It
+    /// is 0 for light that the vertex reflects from below the triangle's plane, as the shading normal allows (see
+    /// shading_terminator.h): light subpaths hit the triangle from its other side there.
+    double cosine_of_light(Vec3 wi) const;
     /// Returns the density by solid angle with which a subpath of the given mode that came from `from` leaves in
     /// direction `to` (both unit, in world space, away from the vertex).
     double pdf(Vec3 from, Vec3 to, TransportMode mode) const;
     /// Returns f·|cos θ| of a vertex of a light subpath in direction w: it scatters light from the vertex before.
     Rgb importance_scattering(Vec3 w) const;
+    /// Returns the origin of a ray from this vertex of a light subpath toward w. The light goes where a camera subpath
+    /// would come from, whose rays end on the triangle, and not on the smooth surface from which they leave.
+    Vec3 importance_origin(Vec3 w) const;
 };
 
 /// Draws the direction in which a subpath of the given mode leaves the vertex, and updates the path's throughput and
