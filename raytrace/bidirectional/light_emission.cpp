@@ -133,6 +133,8 @@ std::optional<EmittedRay> LightEmission::sample(const EmissionRandomSamples& u, 
         ray.origin = center_ + frame.s * disk.x + frame.t * disk.y - ray.direction * static_cast<float>(radius_);
         emitted->position = ray.origin;
     }
+    // A light at one position may lie in a surface, which must not hold its rays up: see ShadowRayEnd.
+    if (!environment && is_delta(index)) ray.t_min = max_component(abs(ray.origin)) * kPositionError;
     ray.time = time;
     emitted->light = index;
     const double density = this->density(index, emitted->position, ray.direction, ray.origin).density;
