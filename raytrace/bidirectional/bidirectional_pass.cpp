@@ -29,23 +29,40 @@ namespace {
 // on threads; meanwhile it takes memory.
 constexpr int kRowsInGroup = 64;
 
-// The radius of merging is at first this number of pixels, where the camera looks at. Sample i merges over the first
-// radius times (i + 1)^(-1/8): then the variance and the bias both vanish with more samples (Kaplanyan and Dachsbacher
-// 2013, "Adaptive Progressive Photon Mapping", whose α is 3/4 here).
+// The radius of merging is at first this number of pixels, on the median of the visible surfaces. Sample i merges over
+// the first radius times (i + 1)^(-1/8): then the variance and the bias both vanish with more samples (Knaus and
+// Zwicker 2011, "Progressive Photon Mapping: A Probabilistic Approach", whose α is 3/4 here).
 constexpr double kFirstRadius = 1.5;
 
-float merging_radius(const View& view, std::uint32_t index) {
-    const auto seen = seen_through(CameraModel(view).pinhole(), view.camera.look_at);
-    const double pixel =
-        seen ? 1 / std::sqrt(seen->pixel_density) : length(view.camera.look_at - view.camera.eye) * 1e-3;
-    return static_cast<float>(kFirstRadius * pixel * std::pow(index + 1.0, -0.125));
+// Returns the radius of merging of the first sample, in meters.
+double first_radius(const RenderPlan& plan, const View& view) {
+    constexpr int kGrid = 16; // rays per axis
+    const CameraModel camera(view);
+    const Pinhole pinhole = camera.pinhole();
+    std::vector<double> pixels; // widths in meters
+    const auto add_pixel_at = [&](Vec3d p) {
+        if (const auto seen = seen_through(pinhole, p)) pixels.push_back(1 / std::sqrt(seen->pixel_density));
+    };
+    for (int i = 0; i < kGrid * kGrid; ++i) {
+        const Vec2d at((i % kGrid + 0.5) / kGrid * view.width, (i / kGrid + 0.5) / kGrid * view.height);
+        const Ray ray = camera.ray(at, {0.5, 0.5}, 0.5);
+        if (const Hit hit = plan.prepared.accelerator.closest(ray); hit.valid())
+            add_pixel_at(Vec3d(ray.origin) + Vec3d(ray.direction) * static_cast<double>(hit.t));
+    }
+    if (pixels.empty()) add_pixel_at(view.camera.look_at);
+    if (pixels.empty()) return 0;
+    const auto median = pixels.begin() + static_cast<std::ptrdiff_t>(pixels.size() / 2);
+    std::nth_element(pixels.begin(), median, pixels.end());
+    return kFirstRadius * *median;
 }
 
 class SampleOfAllPixels {
 public:
-    SampleOfAllPixels(const PassContext& context, const LightEmission& emission, std::uint32_t index)
+    // `first_radius` is that of merging at the first sample; 0: subpaths do not merge.
+    SampleOfAllPixels(const PassContext& context, const LightEmission& emission, double first_radius,
+                      std::uint32_t index)
         : context_(context), emission_(emission), index_(index),
-          radius_(merges(context.settings.integrator) ? merging_radius(context.view, index) : 0),
+          radius_(static_cast<float>(first_radius * std::pow(index + 1.0, -0.125))),
           sums_(context.view.width, context.view.height) {}
 
     // Returns false if it was stopped. Where subpaths merge, all light subpaths are traced before the camera subpaths.
@@ -88,13 +105,22 @@ private:
         return true;
     }
 
+    // Returns the time of all rays where subpaths merge: a photon lights what is there at its own time only.
+    float common_time() const {
+        Sampler sampler = context_.settings.make_sampler();
+        sampler.start(0, 0, index_);
+        const CameraRaySample u = sampler.camera_ray_samples({false, context_.plan.motion});
+        return static_cast<float>(camera_.time(static_cast<double>(u.time)));
+    }
+
     void render_row(int y, bool light, bool camera, Row& row) {
         RayCounts counts;
         BidirectionalTracer tracer(context_.plan, emission_, context_.view, radius_, counts);
         Sampler sampler = context_.settings.make_sampler();
         for (int x = 0; x < sums_.width(); ++x) {
             sampler.start(x, y, index_);
-            const Ray ray = camera_ray(context_.plan, camera_, x, y, sampler);
+            Ray ray = camera_ray(context_.plan, camera_, x, y, sampler);
+            if (radius_ > 0) ray.time = time_;
             const CameraRaySample u = sampler.camera_ray_samples({context_.plan.lens, context_.plan.motion});
             const Pinhole pinhole = camera_.pinhole(Vec2d(u.lens));
             tracer.trace_light_subpath(ray.time, sampler);
@@ -118,6 +144,7 @@ private:
     const std::uint32_t index_; // of the sample, in each pixel
     const float radius_;        // of merging; 0: none
     const CameraModel camera_{context_.view};
+    const float time_ = common_time();
     Image<Rgbd> sums_;
     std::vector<Photon> photons_;
     std::optional<PhotonMap> photon_map_;
@@ -128,10 +155,11 @@ private:
 
 bool render_bidirectional_pass(const PassContext& context, double begin, double end) {
     const LightEmission emission(context.plan);
+    const double radius = merges(context.settings.integrator) ? first_radius(context.plan, context.view) : 0;
     const Film& film = context.checkpoint.film();
     const std::uint32_t from = film.min_samples_taken(), to = film.pixels()(0, 0).target;
     for (std::uint32_t i = from; i < to; ++i) {
-        SampleOfAllPixels sample(context, emission, context.settings.first_sample + i);
+        SampleOfAllPixels sample(context, emission, radius, context.settings.first_sample + i);
         if (!sample.render()) return false;
         context.checkpoint.add([&] { sample.add_to_film(); });
         context.control.report(lerp(begin, end, static_cast<double>(i + 1 - from) / static_cast<double>(to - from)));
