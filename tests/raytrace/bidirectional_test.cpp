@@ -86,7 +86,7 @@ Scene glass_in_motion() {
     return builder.finish();
 }
 
-// Returns a ball that moves fast through the light of a lamp. Its shadow moves with it.
+// Returns a ball that moves fast below an area light. Its shadow moves with it.
 Scene fast_ball() {
     SceneBuilder builder = room();
     const std::uint32_t ball = builder.shape(Sphere{{-0.8f, 1, 0}, 0.4f});
@@ -106,7 +106,7 @@ Scene coarse_smooth_ball() {
     return builder.finish();
 }
 
-// Returns a lamp of one point that lies in a tilted black floor. Rounding errors put it on one side or the other.
+// Returns a point light that lies in a tilted black floor. Rounding errors put it on one side or the other.
 Scene light_in_a_floor() {
     SceneBuilder builder;
     const Vec3 u(1, 0.1f, 0.05f), v(0.02f, 0.3f, -1);
