@@ -44,7 +44,7 @@ MisSums sums_at_first_hit(const RenderPlan& plan, const LightEmission& emission,
         emission.density(emitted.light, emitted.position, -at.to_previous, at.vertex.point.p);
     const double arrived = density * at.cosine(at.to_previous);
     const double earlier = emission.is_delta(emitted.light) ? 0 : mis(geometry / arrived);
-    return {mis(light_sample_pdf * geometry / arrived), earlier, merging > 0 ? earlier / mis(merging) : 0};
+    return {mis(light_sample_pdf * geometry / arrived), earlier, 0, merging > 0 ? earlier / mis(merging) : 0};
 }
 
 } // namespace
@@ -104,7 +104,7 @@ void BidirectionalTracer::connect_to_camera(const Pinhole& pinhole, std::vector<
 
 void BidirectionalTracer::add_photons(std::vector<Photon>& photons) const {
     for (const SubpathVertex& at : light_subpath_)
-        photons.push_back({at.vertex.point.p, at.to_previous, at.throughput, at.mis, at.depth});
+        if (at.depth > 0) photons.push_back({at.vertex.point.p, at.to_previous, at.throughput, at.mis, at.depth});
 }
 
 std::optional<Splat> BidirectionalTracer::connection_to_camera(const SubpathVertex& at, const Pinhole& pinhole) {
@@ -121,8 +121,8 @@ std::optional<Splat> BidirectionalTracer::connection_to_camera(const SubpathVert
     ++counts_.shadow;
     if (plan_.prepared.accelerator.occluded(ray, end)) return std::nullopt;
     const double density = seen->pixel_density / path_count();
-    const double light_side =
-        at.mis.over_connection(density * at.cosine(w), at.pdf(w, at.to_previous, TransportMode::kRadiance), merging_);
+    const double light_side = at.mis.over_connection(
+        density * at.cosine(w), at.pdf(w, at.to_previous, TransportMode::kRadiance), merging_at(at));
     const float factor = static_cast<float>(density) * weight(light_side, 0);
     const auto pixel =
         static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(view_.width) + static_cast<std::uint32_t>(x);
@@ -204,9 +204,8 @@ Rgb BidirectionalTracer::light_sample(const SubpathVertex& at, const VertexRando
     const auto [density, geometry] = emission_.density(index, q, -s->wi, vertex.point.p);
     const auto pdf = static_cast<double>(s->pdf);
     const double light_side = s->delta ? 0 : mis(at.pdf(at.to_previous, s->wi, TransportMode::kRadiance) / pdf);
-    const double camera_side =
-        at.mis.over_connection(density * at.cosine_of_light(s->wi) / (pdf * geometry),
-                               at.pdf(s->wi, at.to_previous, TransportMode::kImportance), merging_);
+    const double camera_side = at.mis.over_connection(density * at.cosine_of_light(s->wi) / (pdf * geometry),
+                                                      at.pdf(s->wi, at.to_previous, TransportMode::kImportance), 0);
     return scattered * (weight(light_side, camera_side) / s->pdf);
 }
 
@@ -232,7 +231,7 @@ Rgb BidirectionalTracer::connection(const SubpathVertex& camera, const SubpathVe
     const double to_camera = light.pdf(light.to_previous, -w, TransportMode::kImportance);
     const double light_side =
         light.mis.over_connection(to_light * light.cosine(w) / squared_distance,
-                                  light.pdf(-w, light.to_previous, TransportMode::kRadiance), merging_);
+                                  light.pdf(-w, light.to_previous, TransportMode::kRadiance), merging_at(light));
     const double camera_side =
         camera.mis.over_connection(to_camera * camera.cosine_of_light(w) / squared_distance,
                                    camera.pdf(w, camera.to_previous, TransportMode::kImportance), merging_);

@@ -32,7 +32,7 @@ public:
     void trace_light_subpath(float time, Sampler& sampler);
     /// Appends the light that the light subpath sends to pixels. `pinhole` is the view through the sample's lens point.
     void connect_to_camera(const Pinhole& pinhole, std::vector<Splat>& splats);
-    /// Appends the photons of the light subpath.
+    /// Appends the photons of the light subpath. There is none at its first hit, where light samples find direct light.
     void add_photons(std::vector<Photon>& photons) const;
     /// Returns the light that the camera ray brings, whose first hit is given and may be invalid: of the light subpath,
     /// and of all photons that are near, if any are given.
@@ -48,6 +48,7 @@ private:
     Rgb connection(const SubpathVertex& camera, const SubpathVertex& light);
     Rgb merged_light(const SubpathVertex& at, const PhotonMap& photons) const;
     bool visible(const Vertex& camera, const SubpathVertex& light, Vec3 w);
+    double merging_at(const SubpathVertex& light) const { return light.depth > 0 ? merging_ : 0; }
     double path_count() const { return static_cast<double>(view_.width) * static_cast<double>(view_.height); }
 
     const RenderPlan& plan_;

@@ -1,24 +1,29 @@
 #include "raytrace/bidirectional/subpath.h"
 
+#include <utility>
+
 namespace duet::raytrace {
 
 void MisSums::arrive(double squared_distance, double cosine) {
     connection *= mis(squared_distance / cosine);
     earlier *= mis(1 / cosine);
+    last_merging *= mis(1 / cosine);
     earlier_than_merging *= mis(1 / cosine);
 }
 
-void MisSums::scatter(double pdf, double reverse_pdf, double cosine, bool specular, double merging) {
+void MisSums::scatter(double pdf, double reverse_pdf, double cosine, bool specular, double merging, bool merges) {
+    earlier += std::exchange(last_merging, 0);
     if (specular) { // both densities are infinite in the same proportion
         connection = 0;
         earlier *= mis(cosine);
         earlier_than_merging *= mis(cosine);
         return;
     }
-    earlier = mis(cosine / pdf) * (earlier * mis(reverse_pdf) + connection + mis(merging));
+    earlier = mis(cosine / pdf) * (earlier * mis(reverse_pdf) + connection);
     if (merging > 0)
         earlier_than_merging =
-            mis(cosine / pdf) * (earlier_than_merging * mis(reverse_pdf) + connection / mis(merging) + 1);
+            mis(cosine / pdf) * (earlier_than_merging * mis(reverse_pdf) + connection / mis(merging) + merges);
+    if (merges) last_merging = mis(cosine / pdf) * mis(merging);
     connection = mis(1 / pdf);
 }
 
@@ -82,7 +87,8 @@ ScatteringT<float> scatter(const SubpathVertex& at, const VertexRandomSamples& u
     const TransportMode reverse = importance ? TransportMode::kRadiance : TransportMode::kImportance;
     const double reverse_pdf = next.sample->specular ? 0 : at.pdf(next.wi, at.to_previous, reverse);
     const double cosine = importance ? at.cosine(next.wi) : at.cosine_of_light(next.wi);
-    sums.scatter(static_cast<double>(next.sample->pdf), reverse_pdf, cosine, next.sample->specular, merging);
+    sums.scatter(static_cast<double>(next.sample->pdf), reverse_pdf, cosine, next.sample->specular, merging,
+                 !importance || at.depth > 0);
     return next;
 }
 

@@ -15,13 +15,18 @@ inline double mis(double ratio) { return ratio * ratio; }
 ///
 /// Where subpaths may also merge, at vertices closer than a radius, that is one more strategy per vertex.
 /// `merging` is η, the number of light subpaths times the area of the disk of that radius: the density of merging over
-/// that of connecting. It is 0 where subpaths do not merge.
+/// that of connecting. It is 0 where subpaths do not merge. They do not merge at the first hit of a light subpath,
+/// because light samples find direct light better.
 struct MisSums {
     /// This is the strategy that connects this vertex with the one before, in place of a sampled ray: the ratio of
     /// densities d_VCM, without the factor `pdf` of over_connection().
     double connection = 0;
-    /// These are all strategies that connect an earlier pair of vertices: d_VC, without `pdf` and `reverse_pdf`.
+    /// These are all strategies that connect an earlier pair of vertices, or merge earlier vertices than the last:
+    /// d_VC, without `pdf` and `reverse_pdf`.
     double earlier = 0;
+    /// This is the strategy that merges the last vertex. It counts only where that is not the first hit of a light
+    /// subpath.
+    double last_merging = 0;
     /// These are all strategies that connect or merge earlier vertices, over merging at this one: d_VM. Not used where
     /// subpaths do not merge.
     double earlier_than_merging = 0;
@@ -30,13 +35,14 @@ struct MisSums {
     void arrive(double squared_distance, double cosine);
     /// Updates the sums for scattering: `pdf` is the density of the new direction, at |cos θ| = `cosine` to the
     /// geometric normal, and `reverse_pdf` that of scattering backwards along the path. No connection ends at a
-    /// specular vertex.
-    void scatter(double pdf, double reverse_pdf, double cosine, bool specular, double merging);
+    /// specular vertex. `merges` tells whether this vertex may merge.
+    void scatter(double pdf, double reverse_pdf, double cosine, bool specular, double merging, bool merges);
     /// Returns the sum over all strategies whose connection is on this side of the current one. `pdf` is the density by
     /// area with which the other side would draw this vertex, and `reverse_pdf` the density by solid angle with which
-    /// a subpath of the other side would go on from here to the vertex before.
+    /// a subpath of the other side would go on from here to the vertex before. `merging` is 0 where this vertex, on the
+    /// way of the light, is the first.
     double over_connection(double pdf, double reverse_pdf, double merging) const {
-        return mis(pdf) * (mis(merging) + connection + earlier * mis(reverse_pdf));
+        return mis(pdf) * (mis(merging) + connection + (earlier + last_merging) * mis(reverse_pdf));
     }
     /// Returns the same sum where this vertex merges with one of the other side. `reverse_pdf` is as above.
     double over_merging(double reverse_pdf, double merging) const {
