@@ -20,6 +20,7 @@ int depth(const PathTracerSettings& settings) {
     case Integrator::kNaive:
     case Integrator::kBidirectional:
     case Integrator::kVcm:
+    case Integrator::kPhotons:
     case Integrator::kReflection:
         return requested;
     case Integrator::kDirect:

@@ -21,6 +21,7 @@ enum class Integrator {
     kNaive,         ///< BSDF sampling only, as in book 1 of Ray Tracing in One Weekend
     kBidirectional, ///< paths from the camera and from the lights, joined: Veach 1997, §10
     kVcm,           ///< the same, and paths that nearly meet are merged: Georgiev et al. 2012
+    kPhotons,       ///< progressive photon mapping: Hachisuka and Jensen 2009
     kDirect,        ///< emission and direct light: paths of at most one scattering event
     kUnshadowed,    ///< direct light by light sampling without visibility: the rasterizer's quantity
     kLights,        ///< components of path: LightComponents::emission and direct, Scene::lights and their shadows
@@ -29,14 +30,23 @@ enum class Integrator {
     kNormal,        ///< the shading normal as a color: (n + 1)/2
     kAlbedo,        ///< base colors
 };
-/// Returns the integrator named "path", "naive", "bidirectional", "vcm", "direct", "unshadowed", "lights",
-/// "environment", "reflection", "normal" or "albedo". Throws Error for any other name.
+/// Returns the integrator named "path", "naive", "bidirectional", "vcm", "photons", "direct", "unshadowed",
+/// "lights", "environment", "reflection", "normal" or "albedo". Throws Error for any other name.
 Integrator integrator(std::string_view name);
 std::string_view integrator_name(Integrator integrator);
 /// Returns whether paths start at the lights, too, so that a sample reaches other pixels than its own.
-inline bool traces_light_paths(Integrator i) { return i == Integrator::kBidirectional || i == Integrator::kVcm; }
+inline bool traces_light_paths(Integrator integrator) {
+    return integrator == Integrator::kBidirectional || integrator == Integrator::kVcm ||
+           integrator == Integrator::kPhotons;
+}
 /// Returns whether paths from the camera and from the lights merge where they nearly meet.
-inline bool merges(Integrator integrator) { return integrator == Integrator::kVcm; }
+inline bool merges(Integrator integrator) {
+    return integrator == Integrator::kVcm || integrator == Integrator::kPhotons;
+}
+/// Returns whether vertices of paths from the camera and from the lights are connected.
+inline bool connects(Integrator integrator) {
+    return integrator == Integrator::kBidirectional || integrator == Integrator::kVcm;
+}
 
 struct PathTracerSettings : RenderSettings {
     PathTracerSettings() { samples_per_pixel = 64; }

@@ -50,8 +50,8 @@ MisSums sums_at_first_hit(const RenderPlan& plan, const LightEmission& emission,
 } // namespace
 
 BidirectionalTracer::BidirectionalTracer(const RenderPlan& plan, const LightEmission& emission, const View& view,
-                                         float radius, RayCounts& counts)
-    : plan_(plan), emission_(emission), view_(view),
+                                         Integrator integrator, float radius, RayCounts& counts)
+    : plan_(plan), emission_(emission), view_(view), connects_(connects(integrator)),
       merging_(path_count() * kPiDouble * sqr(static_cast<double>(radius))), counts_(counts) {}
 
 void BidirectionalTracer::trace_light_subpath(float time, Sampler& sampler) {
@@ -60,6 +60,8 @@ void BidirectionalTracer::trace_light_subpath(float time, Sampler& sampler) {
     const std::optional<EmittedRay> emitted = emission_.sample(emission_samples(plan_, sampler), time);
     if (!emitted) return;
     PathThroughputT<float> path;
+    if (!connects_ && emitted->light == plan_.lights->environment_index())
+        path.throughput *= static_cast<float>(emission_.photon_fraction(-emitted->ray.direction));
     MisSums sums;
     Ray ray = emitted->ray;
     for (int depth = 0; depth < plan_.max_depth; ++depth) {
@@ -135,9 +137,11 @@ Rgb BidirectionalTracer::trace_camera_subpath(Ray ray, Hit hit, const Pinhole& p
     PathThroughputT<float> path;
     MisSums sums;
     LightReceiver previous;
+    Wanted wanted = Wanted::kAll;
     PathFootprint footprint(plan_, sampler.sample());
     for (int depth = 0;; ++depth) {
-        if (!hit.valid()) return sum + path.throughput * environment_light(ray.direction, depth, previous, sums);
+        if (!hit.valid())
+            return sum + path.throughput * environment_light(ray.direction, depth, previous, sums, wanted);
         SubpathVertex at(plan_, ray, hit, footprint.at_hit(ray, hit.t), depth);
         const double cosine = at.cosine(at.to_previous);
         if (depth > 0)
@@ -146,10 +150,14 @@ Rgb BidirectionalTracer::trace_camera_subpath(Ray ray, Hit hit, const Pinhole& p
             sums.connection = mis(path_count() / (seen->pixel_density * cosine));
         at.throughput = path.throughput;
         at.mis = sums;
-        sum += at.throughput * emitted_light(at, depth, hit.t, previous);
+        sum += at.throughput * emitted_light(at, depth, hit.t, previous, wanted);
         if (depth == plan_.max_depth || !(cosine > 0)) return sum;
+        if (wanted == Wanted::kDirect) {
+            if (emission_.complete()) return sum;
+            wanted = Wanted::kRest;
+        }
         const VertexRandomSamples u = vertex_random_samples(sampler, depth);
-        if (plan_.lights != nullptr && !is_specular(at.vertex.bsdf)) {
+        if (wanted == Wanted::kAll && plan_.lights != nullptr && !is_specular(at.vertex.bsdf)) {
             sum += at.throughput * light_sample(at, u);
             for (const SubpathVertex& light : light_subpath_)
                 if (depth + light.depth + 2 <= plan_.max_depth) sum += connection(at, light);
@@ -159,6 +167,8 @@ Rgb BidirectionalTracer::trace_camera_subpath(Ray ray, Hit hit, const Pinhole& p
         previous = light_receiver(at.vertex);
         const ScatteringT<float> next = leave(at, u, TransportMode::kRadiance, path, sums);
         if (!next.continues) return sum;
+        if (wanted == Wanted::kAll && !next.sample->specular && photons_bring(static_cast<double>(next.sample->pdf)))
+            wanted = Wanted::kDirect;
         footprint.scatter(next.sample->pdf, next.sample->specular);
         ray = spawn_ray(plan_, at.vertex, next.wi);
         ++counts_.indirect;
@@ -166,29 +176,39 @@ Rgb BidirectionalTracer::trace_camera_subpath(Ray ray, Hit hit, const Pinhole& p
     }
 }
 
-Rgb BidirectionalTracer::environment_light(Vec3 w, int depth, const LightReceiver& previous,
-                                           const MisSums& sums) const {
+// In photon mapping, photons bring all light that a vertex scatters, except direct light, as light samples find that
+// better, and except what comes from directions that the BSDF draws densely: few photons arrive from these, and each
+// would count much. Such a direction is followed.
+bool BidirectionalTracer::photons_bring(double bsdf_pdf) const {
+    constexpr double kFollowed = 4; // per steradian; a diffuse BSDF reaches 0.32, and a rough mirror 0.08 / alpha²
+    return !connects_ && !emission_.empty() && bsdf_pdf <= kFollowed;
+}
+
+Rgb BidirectionalTracer::environment_light(Vec3 w, int depth, const LightReceiver& previous, const MisSums& sums,
+                                           Wanted wanted) const {
     if (plan_.environment == nullptr) return Rgb();
     const Rgb light = radiance(*plan_.environment, w);
+    if (wanted == Wanted::kRest) return light * static_cast<float>(1 - emission_.photon_fraction(w));
     if (depth == 0 || plan_.lights == nullptr || emission_.empty()) return light;
     const auto sample_pdf = static_cast<double>(pdf_li(*plan_.environment, *plan_.lights, previous, w));
     const double density = emission_.density(plan_.lights->environment_index(), {}, -w, {}).density;
-    return light * weight(0, mis(sample_pdf) * sums.connection + mis(density) * sums.earlier);
+    return light * weight(0, mis(sample_pdf) * sums.connection + if_connected(mis(density) * sums.earlier));
 }
 
 Rgb BidirectionalTracer::emitted_light(const SubpathVertex& at, int depth, float distance,
-                                       const LightReceiver& previous) const {
+                                       const LightReceiver& previous, Wanted wanted) const {
     if (!plan_.emission) return Rgb();
     const SurfacePoint& point = at.vertex.point;
     const Rgb light = emitted(at.vertex.material, plan_.scene.textures, point, at.to_previous);
     if (is_black(light) || depth == 0 || plan_.lights == nullptr) return light;
     const std::int64_t index = surface_light_index(plan_.scene, point.object, point.primitive);
     if (index < 0) return light; // no other strategy finds it
+    if (wanted == Wanted::kRest) return Rgb();
     const auto [density, geometry] =
         emission_.density(static_cast<std::size_t>(index), point.p, at.to_previous, previous.p);
     const double by_area = static_cast<double>(pdf_li(plan_.scene, *plan_.lights, previous, point)) * geometry /
                            sqr(static_cast<double>(distance));
-    return light * weight(0, mis(by_area) * at.mis.connection + mis(density) * at.mis.earlier);
+    return light * weight(0, mis(by_area) * at.mis.connection + if_connected(mis(density) * at.mis.earlier));
 }
 
 Rgb BidirectionalTracer::light_sample(const SubpathVertex& at, const VertexRandomSamples& u) {
@@ -204,8 +224,9 @@ Rgb BidirectionalTracer::light_sample(const SubpathVertex& at, const VertexRando
     const auto [density, geometry] = emission_.density(index, q, -s->wi, vertex.point.p);
     const auto pdf = static_cast<double>(s->pdf);
     const double light_side = s->delta ? 0 : mis(at.pdf(at.to_previous, s->wi, TransportMode::kRadiance) / pdf);
-    const double camera_side = at.mis.over_connection(density * at.cosine_of_light(s->wi) / (pdf * geometry),
-                                                      at.pdf(s->wi, at.to_previous, TransportMode::kImportance), 0);
+    const double camera_side =
+        if_connected(at.mis.over_connection(density * at.cosine_of_light(s->wi) / (pdf * geometry),
+                                            at.pdf(s->wi, at.to_previous, TransportMode::kImportance), 0));
     return scattered * (weight(light_side, camera_side) / s->pdf);
 }
 
@@ -249,10 +270,11 @@ Rgb BidirectionalTracer::merged_light(const SubpathVertex& at, const PhotonMap& 
         const Vec3 wi = photon.to_previous;
         const Rgb scattered = scattering(vertex, wi);
         if (is_black(scattered) || at.cosine_of_light(wi) == 0) return;
-        const double light_side =
-            photon.mis.over_merging(at.pdf(at.to_previous, wi, TransportMode::kRadiance), merging_);
+        const double pdf = at.pdf(at.to_previous, wi, TransportMode::kRadiance);
+        if (!connects_ && !photons_bring(pdf)) return;
+        const double light_side = if_connected(photon.mis.over_merging(pdf, merging_));
         const double camera_side =
-            at.mis.over_merging(at.pdf(wi, at.to_previous, TransportMode::kImportance), merging_);
+            if_connected(at.mis.over_merging(at.pdf(wi, at.to_previous, TransportMode::kImportance), merging_));
         // The photon's throughput includes the cosine to the geometric normal.
         sum += photon.throughput * scattered * (weight(light_side, camera_side) / static_cast<float>(at.cosine(wi)));
     });

@@ -2,7 +2,8 @@
 // tracer hardly does, as the light of a caustic (Veach 1997, §10; Lafortune and Willems 1993). Vertex connection and
 // merging also merges those of their vertices that are close (Georgiev et al. 2012; Hachisuka et al. 2012): so it finds
 // caustics in a mirror, where nothing can be connected. Merging blurs light over a radius, which shrinks with every
-// sample.
+// sample. Progressive photon mapping connects nothing: a camera subpath merges with photons at the first vertex that
+// spreads light (Hachisuka and Jensen 2009; Knaus and Zwicker 2011).
 #pragma once
 
 #include "raytrace/bidirectional/camera_projection.h"
@@ -25,8 +26,8 @@ struct Splat {
 class BidirectionalTracer {
 public:
     /// Refers to all arguments. `radius` is that of merging; 0: subpaths do not merge.
-    BidirectionalTracer(const RenderPlan& plan, const LightEmission& emission, const View& view, float radius,
-                        RayCounts& counts);
+    BidirectionalTracer(const RenderPlan& plan, const LightEmission& emission, const View& view, Integrator integrator,
+                        float radius, RayCounts& counts);
 
     /// Traces the light subpath of a sample, in place of the one before. `time` is that of its camera ray.
     void trace_light_subpath(float time, Sampler& sampler);
@@ -35,25 +36,36 @@ public:
     /// Appends the photons of the light subpath. There is none at its first hit, where light samples find direct light.
     void add_photons(std::vector<Photon>& photons) const;
     /// Returns the light that the camera ray brings, whose first hit is given and may be invalid: of the light subpath,
-    /// and of all photons that are near, if any are given.
+    /// and of all photons that are near, if any are given. In photon mapping it needs no light subpath.
     Rgb trace_camera_subpath(Ray ray, Hit hit, const Pinhole& pinhole, Sampler& sampler, const PhotonMap* photons);
 
 private:
     std::optional<Splat> connection_to_camera(const SubpathVertex& at, const Pinhole& pinhole);
     ScatteringT<float> leave(const SubpathVertex& at, const VertexRandomSamples& u, TransportMode mode,
                              PathThroughputT<float>& path, MisSums& sums);
-    Rgb environment_light(Vec3 w, int depth, const LightReceiver& previous, const MisSums& sums) const;
-    Rgb emitted_light(const SubpathVertex& at, int depth, float distance, const LightReceiver& previous) const;
+    /// This is the light for which a camera subpath still searches.
+    enum class Wanted {
+        kAll,
+        kDirect, ///< photons have brought all light that the last vertex scatters, except direct light
+        kRest,   ///< photons or light samples have found all light, except what sends no photons
+    };
+    Rgb environment_light(Vec3 w, int depth, const LightReceiver& previous, const MisSums& sums, Wanted wanted) const;
+    Rgb emitted_light(const SubpathVertex& at, int depth, float distance, const LightReceiver& previous,
+                      Wanted wanted) const;
+    bool photons_bring(double bsdf_pdf) const;
     Rgb light_sample(const SubpathVertex& at, const VertexRandomSamples& u);
     Rgb connection(const SubpathVertex& camera, const SubpathVertex& light);
     Rgb merged_light(const SubpathVertex& at, const PhotonMap& photons) const;
     bool visible(const Vertex& camera, const SubpathVertex& light, Vec3 w);
+    /// Returns the MIS sum of strategies that need light subpaths other than photons.
+    double if_connected(double sum) const { return connects_ ? sum : 0; }
     double merging_at(const SubpathVertex& light) const { return light.depth > 0 ? merging_ : 0; }
     double path_count() const { return static_cast<double>(view_.width) * static_cast<double>(view_.height); }
 
     const RenderPlan& plan_;
     const LightEmission& emission_;
     const View& view_;
+    const bool connects_;
     const double merging_; ///< see MisSums
     RayCounts& counts_;
     std::deque<SubpathVertex> light_subpath_; ///< connections end at all of its vertices that are not specular

@@ -66,7 +66,8 @@ public:
           sums_(context.view.width, context.view.height) {}
 
     // Returns false if it was stopped. Where subpaths merge, all light subpaths are traced before the camera subpaths.
-    // They are traced once more beside their camera subpaths, because keeping their vertices would take gigabytes.
+    // To be connected, they are traced once more beside their camera subpaths, because keeping their vertices would
+    // take gigabytes.
     bool render() {
         if (radius_ == 0) return render_rows(true, true);
         if (!render_rows(true, false)) return false;
@@ -115,7 +116,9 @@ private:
 
     void render_row(int y, bool light, bool camera, Row& row) {
         RayCounts counts;
-        BidirectionalTracer tracer(context_.plan, emission_, context_.view, radius_, counts);
+        BidirectionalTracer tracer(context_.plan, emission_, context_.view, context_.settings.integrator, radius_,
+                                   counts);
+        const bool connected = connects(context_.settings.integrator);
         Sampler sampler = context_.settings.make_sampler();
         for (int x = 0; x < sums_.width(); ++x) {
             sampler.start(x, y, index_);
@@ -123,9 +126,9 @@ private:
             if (radius_ > 0) ray.time = time_;
             const CameraRaySample u = sampler.camera_ray_samples({context_.plan.lens, context_.plan.motion});
             const Pinhole pinhole = camera_.pinhole(Vec2d(u.lens));
-            tracer.trace_light_subpath(ray.time, sampler);
+            if (light || connected) tracer.trace_light_subpath(ray.time, sampler);
             if (light) {
-                tracer.connect_to_camera(pinhole, row.splats);
+                if (connected) tracer.connect_to_camera(pinhole, row.splats);
                 if (radius_ > 0) tracer.add_photons(row.photons);
             }
             if (!camera) continue;

@@ -38,13 +38,25 @@ Vec3 normal_at(const SurfaceLight& light, Vec3 q) {
     return std::visit([](const auto& shape) { return point_of(shape, Vec2(0, 0)).n; }, light.shape);
 }
 
+bool all_emitters_are_lights(const Scene& scene) {
+    for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+        const std::size_t count = primitive_count(scene.shapes[scene.objects[o].shape]);
+        for (std::uint32_t p = 0; p < count; ++p)
+            if (emitter(scene.materials[material_index(scene, o, p)]) != nullptr &&
+                surface_light_index(scene, o, p) < 0)
+                return false;
+    }
+    return true;
+}
+
 double sphere_projection(double radius) { return kPiDouble * sqr(radius); }
 
 } // namespace
 
 LightEmission::LightEmission(const RenderPlan& plan)
     : plan_(plan), center_(plan.scene.bounds.center()),
-      radius_(static_cast<double>(length(plan.scene.bounds.diagonal())) / 2) {
+      radius_(static_cast<double>(length(plan.scene.bounds.diagonal())) / 2),
+      complete_(plan.environment == nullptr && all_emitters_are_lights(plan.scene)) {
     if (plan.lights == nullptr || plan.scene.bounds.empty()) return;
     std::vector<double> powers;
     for (const Light& light : plan.scene.lights)
@@ -57,6 +69,11 @@ LightEmission::LightEmission(const RenderPlan& plan)
 
 bool LightEmission::is_delta(std::size_t light) const {
     return light < plan_.scene.lights.size() && !std::holds_alternative<SurfaceLight>(plan_.scene.lights[light]);
+}
+
+double LightEmission::photon_fraction(Vec3 w) const {
+    const double sampled = empty() ? 0 : static_cast<double>(pdf(*plan_.environment, w));
+    return sampled / (sampled + static_cast<double>(kUniformSpherePdf));
 }
 
 EmissionDensity LightEmission::density(std::size_t index, Vec3 q, Vec3 w, Vec3 p) const {

@@ -38,11 +38,18 @@ public:
 
     /// Returns whether no light emits rays.
     bool empty() const { return choice_.size() == 0 || choice_.integral() == 0; }
+    /// Returns whether all light of the scene is emitted. Else only paths from the camera find some of it: even light
+    /// of the environment, or emitters without a Light (they move, or are ellipsoids).
+    bool complete() const { return complete_; }
     /// Draws a ray at the time `time`. Returns nothing where the sample is degenerate.
     std::optional<EmittedRay> sample(const EmissionRandomSamples& u, float time) const;
     /// Returns the density with which sample() draws the ray from the light's point q in the unit direction w, which
     /// reaches the point p. At infinity only w counts, and at a light of one position, q is that position.
     EmissionDensity density(std::size_t light, Vec3 q, Vec3 w, Vec3 p) const;
+    /// Returns the fraction of the environment's light from direction w that photons carry in photon mapping. The rest
+    /// is left to paths from the camera, which find even light better. Without it, the weight of a photon would have
+    /// no bound where the environment is hardly brighter than what is not sampled.
+    double photon_fraction(Vec3 w) const;
     /// Returns whether the light shines from one position or direction, which no other ray finds.
     bool is_delta(std::size_t light) const;
 
@@ -51,6 +58,7 @@ private:
     Vec3 center_; ///< of the sphere around the scene, through which rays from infinity pass
     double radius_;
     Distribution1D choice_; ///< by light, and for the environment
+    bool complete_;
 };
 
 } // namespace duet::raytrace

@@ -10,17 +10,18 @@ namespace duet::raytrace {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, Integrator>, 11> kNames{{{"path", Integrator::kPath},
-                                                                         {"naive", Integrator::kNaive},
-                                                                         {"bidirectional", Integrator::kBidirectional},
-                                                                         {"vcm", Integrator::kVcm},
-                                                                         {"direct", Integrator::kDirect},
-                                                                         {"unshadowed", Integrator::kUnshadowed},
-                                                                         {"lights", Integrator::kLights},
-                                                                         {"environment", Integrator::kEnvironment},
-                                                                         {"reflection", Integrator::kReflection},
-                                                                         {"normal", Integrator::kNormal},
-                                                                         {"albedo", Integrator::kAlbedo}}};
+constexpr std::array<std::pair<std::string_view, Integrator>, 12> kNames{{{"path", Integrator::kPath},
+                                                                          {"naive", Integrator::kNaive},
+                                                                          {"bidirectional", Integrator::kBidirectional},
+                                                                          {"vcm", Integrator::kVcm},
+                                                                          {"photons", Integrator::kPhotons},
+                                                                          {"direct", Integrator::kDirect},
+                                                                          {"unshadowed", Integrator::kUnshadowed},
+                                                                          {"lights", Integrator::kLights},
+                                                                          {"environment", Integrator::kEnvironment},
+                                                                          {"reflection", Integrator::kReflection},
+                                                                          {"normal", Integrator::kNormal},
+                                                                          {"albedo", Integrator::kAlbedo}}};
 
 } // namespace
 
@@ -28,8 +29,8 @@ Integrator integrator(std::string_view name) {
     for (const auto& [known, value] : kNames)
         if (known == name) return value;
     throw Error(message("unknown integrator '", name,
-                        "': expected path, naive, bidirectional, vcm, direct, unshadowed, lights, environment, "
-                        "reflection, normal or albedo"));
+                        "': expected path, naive, bidirectional, vcm, photons, direct, unshadowed, lights, "
+                        "environment, reflection, normal or albedo"));
 }
 
 std::string_view integrator_name(Integrator integrator) {
@@ -57,7 +58,8 @@ RadianceFunction radiance_function(Integrator integrator) {
     case Integrator::kDirect:
         return path_radiance;
     case Integrator::kBidirectional:
-    case Integrator::kVcm: // light paths reach other pixels: render_bidirectional_pass()
+    case Integrator::kVcm:
+    case Integrator::kPhotons: // light paths reach other pixels: render_bidirectional_pass()
         break;
     }
     throw Error(message("the integrator ", integrator_name(integrator),
