@@ -57,7 +57,8 @@ int main(int argc, char** argv) {
         command_line.add("--integrator", integrator_name,
                          "path (default), naive (no light sampling), bidirectional (paths from the camera and from the"
                          " lights, connected), vcm (the same, also merged where they nearly meet), photons "
-                         "(progressive photon mapping), direct, unshadowed (direct light without visibility), lights "
+                         "(progressive photon mapping), whitted (mirrors, glass and hard shadows), direct, "
+                         "unshadowed (direct light without visibility), lights "
                          "(emission and direct light of lights), environment"
                          " (its light on diffuse surfaces), reflection (what is seen by way of metal and glass), "
                          "normal or albedo");

@@ -21,6 +21,7 @@ int depth(const PathTracerSettings& settings) {
     case Integrator::kBidirectional:
     case Integrator::kVcm:
     case Integrator::kPhotons:
+    case Integrator::kWhitted:
     case Integrator::kReflection:
         return requested;
     case Integrator::kDirect:
@@ -123,8 +124,12 @@ std::vector<std::string> approximations(const RenderPlan& plan, const PathTracer
         list.emplace_back("point, spot and sun lights are missing: rays that follow the materials cannot find them");
     if (merges(settings.integrator))
         list.emplace_back("photons blur light over a radius that shrinks with every sample");
+    if (settings.integrator == Integrator::kWhitted)
+        list.emplace_back("lights shine from their centers, and surfaces do not light each other");
     if (settings.integrator == Integrator::kDirect) list.emplace_back("light arrives after one scattering at most");
-    if (settings.integrator == Integrator::kUnshadowed && plan.scene.needs.media)
+    const bool leaves_out_media =
+        settings.integrator == Integrator::kUnshadowed || settings.integrator == Integrator::kWhitted;
+    if (leaves_out_media && plan.scene.needs.media)
         list.emplace_back("media are left out");
     if (settings.integrator == Integrator::kUnshadowed)
         list.emplace_back("direct light only, and nothing casts a shadow");

@@ -22,6 +22,7 @@ enum class Integrator {
     kBidirectional, ///< paths from the camera and from the lights, joined: Veach 1997, §10
     kVcm,           ///< the same, and paths that nearly meet are merged: Georgiev et al. 2012
     kPhotons,       ///< progressive photon mapping: Hachisuka and Jensen 2009
+    kWhitted,       ///< mirrors, glass and hard shadows, without light between surfaces: Whitted 1980
     kDirect,        ///< emission and direct light: paths of at most one scattering event
     kUnshadowed,    ///< direct light by light sampling without visibility: the rasterizer's quantity
     kLights,        ///< components of path: LightComponents::emission and direct, Scene::lights and their shadows
@@ -30,7 +31,7 @@ enum class Integrator {
     kNormal,        ///< the shading normal as a color: (n + 1)/2
     kAlbedo,        ///< base colors
 };
-/// Returns the integrator named "path", "naive", "bidirectional", "vcm", "photons", "direct", "unshadowed",
+/// Returns the integrator named "path", "naive", "bidirectional", "vcm", "photons", "whitted", "direct", "unshadowed",
 /// "lights", "environment", "reflection", "normal" or "albedo". Throws Error for any other name.
 Integrator integrator(std::string_view name);
 std::string_view integrator_name(Integrator integrator);

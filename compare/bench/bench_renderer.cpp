@@ -33,6 +33,8 @@ std::string note_of(raytrace::Integrator integrator, const Scene& scene) {
     using raytrace::Integrator;
     const bool delta_lights = scene.needs.delta_lights;
     switch (integrator) {
+    case Integrator::kWhitted:
+        return "Lights shine from their centers, and surfaces do not light each other.";
     case Integrator::kDirect:
         return "Light after more than one scattering is missing.";
     case Integrator::kUnshadowed:

@@ -10,12 +10,13 @@ namespace duet::raytrace {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, Integrator>, 12> kNames{{{"path", Integrator::kPath},
+constexpr std::array<std::pair<std::string_view, Integrator>, 13> kNames{{{"path", Integrator::kPath},
                                                                           {"naive", Integrator::kNaive},
                                                                           {"bidirectional", Integrator::kBidirectional},
                                                                           {"vcm", Integrator::kVcm},
                                                                           {"photons", Integrator::kPhotons},
-                                                                          {"direct", Integrator::kDirect},
+                                                                          {"whitted", Integrator::kWhitted},
+                                                                         {"direct", Integrator::kDirect},
                                                                           {"unshadowed", Integrator::kUnshadowed},
                                                                           {"lights", Integrator::kLights},
                                                                           {"environment", Integrator::kEnvironment},
@@ -29,8 +30,8 @@ Integrator integrator(std::string_view name) {
     for (const auto& [known, value] : kNames)
         if (known == name) return value;
     throw Error(message("unknown integrator '", name,
-                        "': expected path, naive, bidirectional, vcm, photons, direct, unshadowed, lights, "
-                        "environment, reflection, normal or albedo"));
+                        "': expected path, naive, bidirectional, vcm, photons, whitted, direct, unshadowed, "
+                        "lights, environment, reflection, normal or albedo"));
 }
 
 std::string_view integrator_name(Integrator integrator) {
@@ -41,6 +42,8 @@ std::string_view integrator_name(Integrator integrator) {
 
 RadianceFunction radiance_function(Integrator integrator) {
     switch (integrator) {
+    case Integrator::kWhitted:
+        return whitted_radiance;
     case Integrator::kUnshadowed:
         return unshadowed_radiance;
     case Integrator::kLights:

@@ -50,6 +50,7 @@ using RadianceFunction = Rgb (*)(const RenderPlan& plan, const Ray& ray, const H
                                  RayCounts& counts);
 
 Rgb path_radiance(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);        ///< path.cpp
+Rgb whitted_radiance(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);     ///< whitted.cpp
 Rgb unshadowed_radiance(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);  ///< unshadowed.cpp
 Rgb lights_radiance(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);      ///< single_component.cpp
 Rgb environment_radiance(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&); ///< single_component.cpp
