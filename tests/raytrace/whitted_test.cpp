@@ -53,9 +53,9 @@ TEST_SUITE("unit") {
 
     TEST_CASE("Whitted: every light counts, and one of area shines from its center") {
         SceneBuilder builder = floor();
-        const std::uint32_t lamp = builder.material(Emissive{Rgb(4.0f)});
-        builder.add(quad({-0.5f, 2, -0.25f}, {0.5f, 0, 0}, {0, 0, 0.5f}), lamp); // faces down
-        builder.add(quad({0.25f, 2, -0.25f}, {0.5f, 0, 0}, {0, 0, 0.5f}), lamp);
+        const std::uint32_t light = builder.material(Emissive{Rgb(4.0f)});
+        builder.add(quad({-0.5f, 2, -0.25f}, {0.5f, 0, 0}, {0, 0, 0.5f}), light); // faces down
+        builder.add(quad({0.25f, 2, -0.25f}, {0.5f, 0, 0}, {0, 0, 0.5f}), light);
         builder.scene.camera.eye = {0, 1.5, 0.01};
         builder.scene.camera.fov_degrees = 50;
         const Scene scene = builder.finish();
