@@ -105,8 +105,12 @@ void BidirectionalTracer::connect_to_camera(const Pinhole& pinhole, std::vector<
 }
 
 void BidirectionalTracer::add_photons(std::vector<Photon>& photons) const {
-    for (const SubpathVertex& at : light_subpath_)
-        if (at.depth > 0) photons.push_back({at.vertex.point.p, at.to_previous, at.throughput, at.mis, at.depth});
+    for (const SubpathVertex& at : light_subpath_) {
+        if (at.depth == 0) continue;
+        const SurfacePoint& point = at.vertex.point;
+        const float ratio = abs(dot(at.to_previous, point.ns) / dot(at.to_previous, point.ng));
+        photons.push_back({point.p, at.to_previous, at.throughput * ratio, at.mis, at.depth});
+    }
 }
 
 std::optional<Splat> BidirectionalTracer::connection_to_camera(const SubpathVertex& at, const Pinhole& pinhole) {
@@ -275,8 +279,8 @@ Rgb BidirectionalTracer::merged_light(const SubpathVertex& at, const PhotonMap& 
         const double light_side = if_connected(photon.mis.over_merging(pdf, merging_));
         const double camera_side =
             if_connected(at.mis.over_merging(at.pdf(wi, at.to_previous, TransportMode::kImportance), merging_));
-        // The photon's throughput includes the cosine to the geometric normal.
-        sum += photon.throughput * scattered * (weight(light_side, camera_side) / static_cast<float>(at.cosine(wi)));
+        // The photon's own surface has a cosine, already, which may differ from the one here.
+        sum += photon.flux * scattered * (weight(light_side, camera_side) / abs(dot(wi, vertex.point.ns)));
     });
     return at.throughput * sum * static_cast<float>(1 / merging_);
 }

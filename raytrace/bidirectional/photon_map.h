@@ -13,7 +13,7 @@ namespace duet::raytrace {
 struct Photon {
     Vec3 p;
     Vec3 to_previous; ///< unit direction to where the light came from
-    Rgb throughput;   ///< of the subpath, in W
+    Rgb flux; ///< throughput of the subpath, in W, times the cosine to the shading over that to the geometric normal
     MisSums mis;
     int depth; ///< number of scatterings before this vertex
 };

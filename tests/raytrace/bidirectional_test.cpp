@@ -138,7 +138,7 @@ constexpr float kSunRadiance = 0.5f;
 Scene floor_beside_a_mirror() {
     SceneBuilder builder;
     builder.add(quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}), builder.material(Diffuse{{Rgb(0.5f)}}));
-    builder.add(quad({3, 0.5f, 3}, {0, 0, -6}, {0, 5, 0}), builder.material(Metal{{Rgb(1.0f)}}));
+    builder.add(quad({3, 1.9f, 1.1f}, {0, 0, -2.2f}, {0, 2.2f, 0}), builder.material(Metal{{Rgb(1.0f)}}));
     const Vec3 direction = normalize(Vec3(1, -1, 0));
     builder.scene.lights = {SunLight{direction, Rgb(kSunRadiance * kPi / (0.5f * -direction.y))}};
     builder.scene.camera.projection = Camera::Projection::kOrthographic;
@@ -357,7 +357,8 @@ TEST_SUITE("statistical") {
         CHECK(merged.error < 0.004 * merged.mean);
     }
 
-    // All lights send photons here, or none of them, or some. The odds and the tolerance are those of the next test.
+    // All lights send photons here, or only some. The bound is six standard errors, and 1 % for light that is blurred
+    // over the edges of surfaces. Direct light is not blurred.
     TEST_CASE("photon mapping converges to the path tracer's image") {
         const std::pair<std::string, Scene> scenes[] = {{"surface lights", under_surface_lights()},
                                                         {"delta lights", under_delta_lights()},
@@ -365,10 +366,10 @@ TEST_SUITE("statistical") {
                                                         {"fast ball", fast_ball()},
                                                         {"partly without photons", partly_without_photons()}};
         for (const auto& named : scenes)
-            for (const int depth : {1, 2, 5}) {
+            for (const int depth : {1, 5}) {
                 PathTracerSettings settings;
                 settings.max_depth = depth;
-                settings.samples_per_pixel = 512;
+                settings.samples_per_pixel = 256;
                 const Estimate path = estimate(named.second, 24, settings);
                 settings.integrator = Integrator::kPhotons;
                 settings.samples_per_pixel = 128;
@@ -378,17 +379,17 @@ TEST_SUITE("statistical") {
                 CAPTURE(path.mean);
                 CAPTURE(photons.mean);
                 CAPTURE(photons.error);
-                const double blur = depth == 1 ? 0 : 0.005 * path.mean;
+                const double blur = depth == 1 ? 0 : 0.01 * path.mean; // the radius is 1/16 of the image
                 CHECK(std::abs(path.mean - photons.mean) < 6 * std::hypot(path.error, photons.error) + blur);
                 CHECK(photons.error < 0.004 * photons.mean);
             }
     }
 
-    // The mirror sends even light to the floor. A photon within the radius r of a point lies beyond the floor's edge
-    // with some probability; there is none, so that much light is missing. Let (x, z) be uniform in a disk of radius r.
-    // A point of the floor, of sides 2, has (1 - |x|/2)(1 - |z|/2) of it in the mean, and the mean of that is 1 - 4r/3π
-    // + r²/8π. Sample i has the radius r (i + 1)^(-1/8). The bound is six standard errors over ten seeds, which is
-    // exceeded by chance once in 5,000 times.
+    // The mirror sends even light to the floor. Where the disk around a point reaches beyond the floor's edge, it finds
+    // no photons there, and so much light is missing. Let (x, z) be uniform in a disk of radius r. A floor of sides 2
+    // holds both a point and the point displaced by (x, z) with probability (1 - |x|/2)(1 - |z|/2), whose mean is
+    // 1 - 4r/3π + r²/8π. The radius of sample i is that of the first times (i + 1)^(-1/8). The bound is five standard
+    // errors over at least 20 seeds, which is exceeded by chance once in 12,000 times.
     TEST_CASE("the bias of photon mapping shrinks as theory says") {
         constexpr int kSize = 16;
         const double first_radius = 1.5 * 2 / kSize;
@@ -399,14 +400,14 @@ TEST_SUITE("statistical") {
                 const double r = first_radius * std::pow(i + 1.0, -0.125);
                 inside += (1 - 4 * r / (3 * kPiDouble) + r * r / (8 * kPiDouble)) / samples;
             }
-            const Estimate photons = estimate(floor_beside_a_mirror(), kSize, settings);
+            const Estimate photons = estimate(floor_beside_a_mirror(), kSize, settings, 5120 / samples);
             CAPTURE(samples);
             CAPTURE(inside);
             CAPTURE(photons.mean);
             CAPTURE(photons.error);
             CHECK(std::abs(photons.mean / static_cast<double>(kSunRadiance) - (1 + inside)) <
-                  6 * photons.error / static_cast<double>(kSunRadiance) + 1e-5);
-            CHECK(photons.error < 0.02 * photons.mean / std::sqrt(samples));
+                  5 * photons.error / static_cast<double>(kSunRadiance));
+            CHECK(photons.error < 0.0015);
         }
     }
 
