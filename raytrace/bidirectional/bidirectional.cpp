@@ -196,7 +196,7 @@ Rgb BidirectionalTracer::environment_light(Vec3 w, int depth, const LightReceive
     if (depth == 0 || plan_.lights == nullptr || emission_.empty()) return light;
     const auto sample_pdf = static_cast<double>(pdf_li(*plan_.environment, *plan_.lights, previous, w));
     const double density = emission_.density(plan_.lights->environment_index(), {}, -w, {}).density;
-    return light * weight(0, mis(sample_pdf) * sums.connection + if_connected(mis(density) * sums.earlier));
+    return light * weight(0, mis(sample_pdf) * sums.connection + (connects_ ? mis(density) * sums.earlier : 0));
 }
 
 Rgb BidirectionalTracer::emitted_light(const SubpathVertex& at, int depth, float distance,
@@ -212,7 +212,7 @@ Rgb BidirectionalTracer::emitted_light(const SubpathVertex& at, int depth, float
         emission_.density(static_cast<std::size_t>(index), point.p, at.to_previous, previous.p);
     const double by_area = static_cast<double>(pdf_li(plan_.scene, *plan_.lights, previous, point)) * geometry /
                            sqr(static_cast<double>(distance));
-    return light * weight(0, mis(by_area) * at.mis.connection + if_connected(mis(density) * at.mis.earlier));
+    return light * weight(0, mis(by_area) * at.mis.connection + (connects_ ? mis(density) * at.mis.earlier : 0));
 }
 
 Rgb BidirectionalTracer::light_sample(const SubpathVertex& at, const VertexRandomSamples& u) {
@@ -223,14 +223,14 @@ Rgb BidirectionalTracer::light_sample(const SubpathVertex& at, const VertexRando
     if (is_black(scattered)) return Rgb();
     ++counts_.shadow;
     if (!unoccluded(plan_, vertex, *s)) return Rgb();
+    if (!connects_) return scattered * (light_sample_weight(vertex, *s) / s->pdf);
     const std::size_t index = s->light < 0 ? plan_.lights->environment_index() : static_cast<std::size_t>(s->light);
     const Vec3 q = s->distance < kInfinity ? vertex.point.p + s->wi * s->distance : Vec3();
     const auto [density, geometry] = emission_.density(index, q, -s->wi, vertex.point.p);
     const auto pdf = static_cast<double>(s->pdf);
     const double light_side = s->delta ? 0 : mis(at.pdf(at.to_previous, s->wi, TransportMode::kRadiance) / pdf);
-    const double camera_side =
-        if_connected(at.mis.over_connection(density * at.cosine_of_light(s->wi) / (pdf * geometry),
-                                            at.pdf(s->wi, at.to_previous, TransportMode::kImportance), 0));
+    const double camera_side = at.mis.over_connection(density * at.cosine_of_light(s->wi) / (pdf * geometry),
+                                                      at.pdf(s->wi, at.to_previous, TransportMode::kImportance), 0);
     return scattered * (weight(light_side, camera_side) / s->pdf);
 }
 
@@ -264,6 +264,15 @@ Rgb BidirectionalTracer::connection(const SubpathVertex& camera, const SubpathVe
            (weight(light_side, camera_side) / static_cast<float>(squared_distance));
 }
 
+// Returns the MIS weight of merging. In photon mapping, a photon counts fully, unless its direction is followed.
+float BidirectionalTracer::photon_weight(const SubpathVertex& at, const Photon& photon) const {
+    const Vec3 wi = photon.to_previous;
+    const double pdf = at.pdf(at.to_previous, wi, TransportMode::kRadiance);
+    if (!connects_) return photons_bring(pdf) ? 1 : 0;
+    return weight(photon.mis.over_merging(pdf, merging_),
+                  at.mis.over_merging(at.pdf(wi, at.to_previous, TransportMode::kImportance), merging_));
+}
+
 // A photon takes the place of a vertex of the camera subpath, so that the BSDF is the camera subpath's, and no ray is
 // traced. Its light comes from the area of the disk around that vertex.
 Rgb BidirectionalTracer::merged_light(const SubpathVertex& at, const PhotonMap& photons) const {
@@ -274,13 +283,9 @@ Rgb BidirectionalTracer::merged_light(const SubpathVertex& at, const PhotonMap& 
         const Vec3 wi = photon.to_previous;
         const Rgb scattered = scattering(vertex, wi);
         if (is_black(scattered) || at.cosine_of_light(wi) == 0) return;
-        const double pdf = at.pdf(at.to_previous, wi, TransportMode::kRadiance);
-        if (!connects_ && !photons_bring(pdf)) return;
-        const double light_side = if_connected(photon.mis.over_merging(pdf, merging_));
-        const double camera_side =
-            if_connected(at.mis.over_merging(at.pdf(wi, at.to_previous, TransportMode::kImportance), merging_));
-        // The photon's own surface has a cosine, already, which may differ from the one here.
-        sum += photon.flux * scattered * (weight(light_side, camera_side) / abs(dot(wi, vertex.point.ns)));
+        const float mis_weight = photon_weight(at, photon);
+        // The photon's flux includes the cosine to its own surface, in place of the one here.
+        sum += photon.flux * scattered * (mis_weight / abs(dot(wi, vertex.point.ns)));
     });
     return at.throughput * sum * static_cast<float>(1 / merging_);
 }

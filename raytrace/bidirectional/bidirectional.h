@@ -57,8 +57,7 @@ private:
     Rgb connection(const SubpathVertex& camera, const SubpathVertex& light);
     Rgb merged_light(const SubpathVertex& at, const PhotonMap& photons) const;
     bool visible(const Vertex& camera, const SubpathVertex& light, Vec3 w);
-    /// Returns the MIS sum of strategies that need light subpaths other than photons.
-    double if_connected(double sum) const { return connects_ ? sum : 0; }
+    float photon_weight(const SubpathVertex& at, const Photon& photon) const;
     double merging_at(const SubpathVertex& light) const { return light.depth > 0 ? merging_ : 0; }
     double path_count() const { return static_cast<double>(view_.width) * static_cast<double>(view_.height); }
 
