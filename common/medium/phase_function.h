@@ -11,13 +11,14 @@ namespace duet {
 
 /// Returns the density by solid angle with which light that travels along `from` is scattered to `to` (both unit).
 /// Its integral over all directions is 1, so it is the density of sample_phase(), too. |g| must be below 1.
-inline float phase(Vec3 from, Vec3 to, float g) {
+/// T is float or a batch of floats.
+template <typename T> T phase(const Vec3T<T>& from, const Vec3T<T>& to, float g) {
     // 1 + g² − 2g·cos θ is computed as (1 − |g|)² + 2|g|·(distance of the cosine from the peak), which does not cancel
     // there.
-    const float from_peak = g < 0 ? 1 + dot(from, to) : 1 - dot(from, to);
+    const T from_peak = g < 0 ? T(1) + dot(from, to) : T(1) - dot(from, to);
     const float size = std::abs(g);
-    const float squared = sqr(1 - size) + 2 * size * std::max(from_peak, 0.0f);
-    return kInvPi / 4 * (1 - size) * (1 + size) / (squared * std::sqrt(squared));
+    const T squared = T(sqr(1 - size)) + T(2 * size) * max(from_peak, T(0));
+    return T(kInvPi / 4 * (1 - size) * (1 + size)) / (squared * sqrt(squared));
 }
 
 /// Draws the direction (unit) to which light that travels along `from` is scattered, with density phase(). u is in
