@@ -12,8 +12,9 @@ constexpr int kTileSide = 16, kBatch = static_cast<int>(Floats::size);
 class PixelLighter {
 public:
     PixelLighter(const GBuffer& gbuffer, std::span<const FrameLight> lights, const LightSet& light_set,
-                 const ShadowLookup* shadows, const ChosenLights& chosen, DirectLight& result)
-        : gbuffer_(gbuffer), lights_(lights), light_set_(light_set), shadows_(shadows), chosen_(chosen),
+                 std::span<const Medium> media, const ShadowLookup* shadows, const ChosenLights& chosen,
+                 DirectLight& result)
+        : gbuffer_(gbuffer), lights_(lights), light_set_(light_set), media_(media), shadows_(shadows), chosen_(chosen),
           result_(result) {}
 
     /// Lights a row of pixels by the given lights.
@@ -104,7 +105,11 @@ private:
 
     void add(const LitBatch& batch, const FrameLight& light, float weight, LitBatch::Lobes lobes, int x, int y,
              Sum& sum) const {
-        const RgbT<Floats> reflected = batch.reflected(light, lobes) * Floats(weight);
+        RgbT<Floats> reflected = batch.reflected(light, lobes) * Floats(weight);
+        if (!media_.empty()) {
+            const LightDirection to = direction_to(light, batch.p());
+            reflected *= transmittance(optical_depth(media_, batch.p(), to.wi, to.distance));
+        }
         if (shadows_ == nullptr || !shadows_->shadows(light.index)) {
             sum.exact += reflected;
             return;
@@ -143,6 +148,7 @@ private:
     const GBuffer& gbuffer_;
     std::span<const FrameLight> lights_;
     const LightSet& light_set_;
+    std::span<const Medium> media_; ///< relative to the eye
     const ShadowLookup* shadows_;
     ChosenLights chosen_; ///< its random number is new for each cluster
     DirectLight& result_;
@@ -176,13 +182,15 @@ void compute_direct_light(const RasterSceneData& data, const RasterSettings& set
         else
             *image = {};
     }
-    const LightSet light_set(lights, shadows);
+    std::vector<Medium> media;
+    if (settings.fog) media = frame_media(data.scene.media, gbuffer.projection);
+    const LightSet light_set(lights, shadows, media.empty());
     const bool few = lights.size() <= LightSet::kFewLights; // which lists would not make fewer
     std::vector<WeightedLight> all_of_few;
     if (few)
         for (const std::uint32_t i : light_set.lights()) all_of_few.push_back({i, 1});
     parallel_for(static_cast<std::size_t>((height + kTileSide - 1) / kTileSide), settings.threads, [&](std::size_t i) {
-        PixelLighter lighter(gbuffer, lights, light_set, shadows, chosen, light);
+        PixelLighter lighter(gbuffer, lights, light_set, media, shadows, chosen, light);
         const int first = static_cast<int>(i) * kTileSide;
         if (few)
             for (int y = first; y < std::min(first + kTileSide, height); ++y) lighter.light_row(y, all_of_few);

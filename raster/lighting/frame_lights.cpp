@@ -68,4 +68,18 @@ std::vector<FrameLight> frame_lights(std::span<const Light> lights, const Screen
     return result;
 }
 
+LightDirection direction_to(const FrameLight& light, const Vec3T<Floats>& p) {
+    if (light.kind == FrameLight::Kind::kSun) return {broadcast<Floats>(light.axis), Floats(kInfinity)};
+    const Vec3T<Floats> way = broadcast<Floats>(light.center()) - p;
+    const Floats distance = max(xsimd::sqrt(dot(way, way)), Floats(1e-15f));
+    return {way * (Floats(1.0f) / distance), distance};
+}
+
+std::vector<Medium> frame_media(std::span<const Medium> media, const ScreenProjection& projection) {
+    std::vector<Medium> result(media.begin(), media.end());
+    for (Medium& medium : result)
+        medium.box = {projection.relative(Vec3d(medium.box.low)), projection.relative(Vec3d(medium.box.high))};
+    return result;
+}
+
 } // namespace duet::raster

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/light/light.h"
+#include "common/medium/medium.h"
 #include "raster/gbuffer/screen_projection.h"
 
 #include <span>
@@ -26,9 +27,31 @@ struct FrameLight {
 
     explicit FrameLight(Kind kind_, Rgb emitted_ = {}) : kind(kind_), emitted(emitted_) {}
     bool flat() const { return kind == Kind::kTriangle || kind == Kind::kQuad; }
+    /// Returns the middle of a light that is not a sun.
+    Vec3 center() const {
+        if (!flat()) return position;
+        return position + (u + v) * (kind == Kind::kQuad ? 1.0f / 2 : 1.0f / 3);
+    }
 };
+
+/// Returns a fraction of a spot's intensity, dimmed as its cone demands, for unit directions towards the spot.
+inline Floats dimmed_by_cone(const FrameLight& spot, const Vec3T<Floats>& wi, const Floats& fraction) {
+    const Floats cosine = -dot(wi, broadcast<Floats>(spot.axis)), three(3.0f);
+    const Floats s = clamp((cosine - Floats(spot.cos_outer)) * Floats(spot.inverse_range), Floats(0.0f), Floats(1.0f));
+    return fraction * s * s * (three - s - s);
+}
+
+/// Describes where a light lies, for points relative to the eye.
+struct LightDirection {
+    Vec3T<Floats> wi; ///< unit, to its middle
+    Floats distance;  ///< infinite for a sun
+};
+LightDirection direction_to(const FrameLight& light, const Vec3T<Floats>& p);
 
 /// Converts the lights that emit anything.
 std::vector<FrameLight> frame_lights(std::span<const Light> lights, const ScreenProjection& projection);
+
+/// Converts the scene's media: their boxes are relative to the eye.
+std::vector<Medium> frame_media(std::span<const Medium> media, const ScreenProjection& projection);
 
 } // namespace duet::raster

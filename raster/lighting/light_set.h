@@ -51,8 +51,8 @@ public:
     static constexpr float kError = 1.0f / 512;
 
     LightSet() = default;
-    /// Lights that `shadows`, which may be null, shadows one by one never count as far.
-    LightSet(std::span<const FrameLight> lights, const ShadowLookup* shadows);
+    /// Lights that `shadows`, which may be null, shadows one by one never count as far. None does unless `sums`.
+    LightSet(std::span<const FrameLight> lights, const ShadowLookup* shadows, bool sums = true);
     /// Makes this a copy of the given columns of another set.
     void assign(const LightSet& other, std::span<const std::uint32_t> columns);
 

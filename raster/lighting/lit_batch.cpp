@@ -153,11 +153,7 @@ Color LitBatch::from_position(const FrameLight& light, const Lanes& diffuse_lane
     const Floats inverse = inverse_sqrt(max(dot(way, way), Floats(1e-30f)));
     const Vec3T<Floats> wi = way * inverse;
     Floats fraction = inverse * inverse;
-    if (light.kind == FrameLight::Kind::kSpot) {
-        const Floats cosine = -dot(wi, broadcast<Floats>(light.axis));
-        const Floats s = clamp((cosine - Floats(light.cos_outer)) * Floats(light.inverse_range), kNone, kOne);
-        fraction = fraction * s * s * (Floats(3.0f) - s - s);
-    }
+    if (light.kind == FrameLight::Kind::kSpot) fraction = dimmed_by_cone(light, wi, fraction);
     return from_direction(wi, fraction, diffuse_lanes) * broadcast<Floats>(light.emitted);
 }
 

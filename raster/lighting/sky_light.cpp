@@ -1,6 +1,7 @@
 #include "raster/lighting/sky_light.h"
 
 #include "raster/geometry/lane_math.h"
+#include "raster/lighting/frame_lights.h"
 #include "raster/lighting/spherical_harmonics.h"
 #include "raster/visibility/shader.h"
 
@@ -11,6 +12,8 @@ namespace duet::raster {
 void add_sky_light(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
                    const GtaoImage* occlusion, Planes3& radiance) {
     const IrradianceHarmonics& coefficients = data.sky_irradiance;
+    std::vector<Medium> media;
+    if (settings.fog) media = frame_media(data.scene.media, gbuffer.projection);
     for_each_batch(gbuffer.width(), gbuffer.height(), settings.threads, [&](int x, int y) {
         const RgbT<Floats> albedo = gbuffer.diffuse.color(x, y);
         const auto lit = gbuffer.visible(x, y) & (albedo.r + albedo.g + albedo.b > Floats(0.0f));
@@ -23,7 +26,10 @@ void add_sky_light(const RasterSceneData& data, const RasterSettings& settings, 
             sum += broadcast<Floats>(coefficients[i]) * (towards[i] - Floats(1.5f) * blocked[i]);
         for (std::size_t i = 4; i < 9; ++i) sum += broadcast<Floats>(coefficients[i]) * (towards[i] * sky.visible);
         const Floats none(0.0f);
-        const RgbT<Floats> irradiance{max(sum.r, none), max(sum.g, none), max(sum.b, none)};
+        RgbT<Floats> irradiance{max(sum.r, none), max(sum.g, none), max(sum.b, none)};
+        if (!media.empty()) // as if all of it came along the normal
+            irradiance *= transmittance(optical_depth<Floats>(media, gbuffer.points(x, y), gbuffer.normal.vector(x, y),
+                                                              Floats(kInfinity)));
         const RgbT<Floats> before = radiance.color(x, y);
         radiance.set(x, y, blend(lit, before + albedo * irradiance * Floats(kInvPi), before));
     });
