@@ -82,17 +82,40 @@ SharpShadowMap::Plane SharpShadowMap::plane(const Floats& x, const Floats& y, co
             Floats(kSteepest) / (cosine + Floats(kSteepest) * sine) * unit};
 }
 
-Floats SharpShadowMap::visibility(const Vec3T<Floats>& p, const Vec3T<Floats>& n, Mask& inside) const {
+SharpShadowMap::Texels SharpShadowMap::texels(const Vec3T<Floats>& p, Mask& inside) const {
     const auto row = [&](std::size_t r) {
         const Vec4& m = to_texel_[r];
         return Floats(m.x) * p.x + Floats(m.y) * p.y + Floats(m.z) * p.z + Floats(m.w);
     };
-    const Floats depth = row(2), over_w = Floats(1.0f) / row(3), zero(0.0f), half(0.5f);
+    const Floats depth = row(2), over_w = Floats(1.0f) / row(3);
     const Floats x = row(0) * over_w, y = row(1) * over_w;
     const Floats low(static_cast<float>(ShadowMap::kMargin)),
         high(static_cast<float>(map_.side() - ShadowMap::kMargin));
     inside = (depth > Floats(near_)) & (x >= low) & (y >= low) & (x <= high) & (y <= high);
+    return {x, y, depth};
+}
+
+Floats SharpShadowMap::visibility(const Vec3T<Floats>& p, Mask& inside) const {
+    const auto [x, y, depth] = texels(p, inside);
     if (!xsimd::any(inside)) return Floats(1.0f);
+    const Floats one(1.0f), half(0.5f), zero(0.0f);
+    const Floats x0 = xsimd::floor(x - half), y0 = xsimd::floor(y - half), fx = x - half - x0, fy = y - half - y0;
+    const Ints first = truncated(xsimd::select(inside, y0, zero)) * Ints(map_.side()) +
+                       truncated(xsimd::select(inside, x0, zero));
+    // Reversed depth beyond which a texel is before the point, where 0 means that nothing is.
+    const Floats limit = Floats(near_ * (1 + kRounding)) / max(depth, Floats(near_));
+    const auto row = [&](int j) {
+        const float* texels = map_.reversed_depth().pixels().data() + j * map_.side();
+        const auto lit = [&](int i) { return xsimd::select(gather(texels + i, first) > limit, zero, one); };
+        return lit(0) * (one - fx) + lit(1) * fx;
+    };
+    return row(0) * (one - fy) + row(1) * fy;
+}
+
+Floats SharpShadowMap::visibility(const Vec3T<Floats>& p, const Vec3T<Floats>& n, Mask& inside) const {
+    const auto [x, y, depth] = texels(p, inside);
+    if (!xsimd::any(inside)) return Floats(1.0f);
+    const Floats zero(0.0f), half(0.5f);
     const Plane plane = this->plane(x, y, max(depth, Floats(near_)), n);
     const bool dithered = map_.dithered();
     const auto weights = dithered ? box : spline;

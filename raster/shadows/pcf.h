@@ -17,8 +17,14 @@ public:
     /// B-spline, or over a box of 4 texels if the map is dithered. `inside` receives the lanes that lie in the map; the
     /// others are unspecified.
     Floats visibility(const Vec3T<Floats>& p, const Vec3T<Floats>& n, xsimd::batch_bool<float>& inside) const;
+    /// Returns the lit fraction of points in space, which have no normal: the four nearest texels, interpolated.
+    Floats visibility(const Vec3T<Floats>& p, xsimd::batch_bool<float>& inside) const;
 
 private:
+    struct Texels {
+        Floats x, y, depth; ///< position in the map, and depth of a point
+    };
+    Texels texels(const Vec3T<Floats>& p, xsimd::batch_bool<float>& inside) const;
     /// Receiver's plane as a linear function of texels, in the units of what the map stores.
     struct Plane {
         Floats at, dx, dy, rounding;

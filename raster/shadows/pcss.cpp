@@ -160,11 +160,20 @@ SoftShadowMap::Outline SoftShadowMap::outline_from(const Vec3s& p) const {
     return {none, frame.s * radius, frame.t * radius, frame.s * over, frame.t * over, over, over, kind_, axis};
 }
 
+/// Returns a vector in the cube's frame.
+Vec3s SoftShadowMap::local(const Vec3s& w) const {
+    const auto axis = [&](Vec3d a) { return dot(w, broadcast<Floats>(Vec3(a))); };
+    return {axis(cube_.frame.s), axis(cube_.frame.t), axis(cube_.frame.n)};
+}
+
+Floats SoftShadowMap::visibility(const Vec3d& eye, const Vec3s& p) const {
+    const Vec3s own = local(p + broadcast<Floats>(Vec3(eye - cube_.center)));
+    Floats texel;
+    const Vec3s seen = cube_.surface(own, texel);
+    return xsimd::select(dot(own, own) > dot(seen, seen) * Floats(1 + kRounding), Floats(0.0f), Floats(1.0f));
+}
+
 Floats SoftShadowMap::visibility(const Vec3d& eye, const Vec3s& p, const Vec3s& n, const Ints& pattern) const {
-    const auto local = [&](const Vec3s& w) {
-        const auto axis = [&](Vec3d a) { return dot(w, broadcast<Floats>(Vec3(a))); };
-        return Vec3s{axis(cube_.frame.s), axis(cube_.frame.t), axis(cube_.frame.n)};
-    };
     const Vec3 offset(eye - cube_.center);
     const Vec3s own = local(p + broadcast<Floats>(offset));
     const Outline light = outline_from(own);

@@ -38,6 +38,9 @@ public:
     /// in [0, 16) selects the taps of each lane: those of all sixteen patterns together cover the light evenly.
     Floats visibility(const Vec3d& eye, const Vec3T<Floats>& p, const Vec3T<Floats>& n, const Ints& pattern) const;
 
+    /// Returns 1 where points see the light's center, else 0.
+    Floats visibility(const Vec3d& eye, const Vec3T<Floats>& p) const;
+
     static constexpr int kSearchTaps = 8, kFilterTaps = 8;
 
 private:
@@ -46,6 +49,7 @@ private:
     struct Outline;
 
     Outline outline_from(const Vec3T<Floats>& p) const;
+    Vec3T<Floats> local(const Vec3T<Floats>& w) const;
 
     DepthCube cube_;
     Emitter::Kind kind_;

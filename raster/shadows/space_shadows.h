@@ -1,0 +1,27 @@
+// Shadows at points in space, such as those of fog: one look at the shadow maps, without a surface's normal.
+#pragma once
+
+#include "raster/shadows/pcf.h"
+#include "raster/shadows/shadow_map_lookup.h"
+
+namespace duet::raster {
+
+/// Looks up the shadows in space for one view at one time.
+class SpaceShadows {
+public:
+    /// `data`, which is not copied, must have its shadow maps.
+    SpaceShadows(const RasterSceneData& data, const Vec3d& eye, float time);
+
+    /// Returns the visible fraction of a light, an index into Scene::lights, at points relative to the eye. Each cell
+    /// of an area light is visible if its center is.
+    Floats visibility(std::size_t light, const Vec3T<Floats>& p) const;
+
+private:
+    const Shadows& shadows_;
+    const SoftShadowMaps& soft_;
+    Vec3d eye_;
+    std::size_t moment_;
+    std::vector<std::vector<SharpShadowMap>> sharp_; ///< for each source: its views, then the faces of its cubes
+};
+
+} // namespace duet::raster
