@@ -46,6 +46,7 @@ RungRenderers light_renderers(const char* name, const PreparedPair& pair, const 
     raster::RasterSettings raster = pair.raster_settings;
     raster.components = parts;
     raster.environment = environment;
+    raster.fog = integrator == raytrace::Integrator::kPath; // the others leave media out
     raytrace::PathTracerSettings raytrace = pair.raytrace_settings;
     raytrace.integrator = integrator;
     raytrace.environment = environment;

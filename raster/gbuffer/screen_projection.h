@@ -35,6 +35,12 @@ public:
         const Vec3T<T> v = perspective_ ? p : Vec3T<T>{T(direction_.x), T(direction_.y), T(direction_.z)};
         return v * -inverse_sqrt(dot(v, v));
     }
+    /// Returns the distance of a point from where the ray through it starts: the eye, or the camera's plane.
+    template <typename T> T distance(Vec3T<T> p) const {
+        if (perspective_) return sqrt(dot(p, p));
+        return (p.x - T(origin_.x)) * T(direction_.x) + (p.y - T(origin_.y)) * T(direction_.y) +
+               (p.z - T(origin_.z)) * T(direction_.z); // the direction is unit
+    }
     /// Returns (x·w, y·w, depth, w) of a point; (x, y) is in pixels, and whole numbers are sample positions.
     template <typename T> std::array<T, 4> homogeneous(Vec3T<T> p) const {
         const auto row = [&](std::size_t r) {

@@ -32,6 +32,8 @@ std::vector<SkippedWork> list_skipped(const RasterSceneData& data, const RasterS
         add_if(!needs.environment, "environment", "it is black");
         add_if(needs.environment && !settings.environment, "environment", "turned off");
         add_if(data.scene.lights.empty(), "lights", "the scene has none");
+        add_if(data.scene.media.empty(), "media", "the scene has none");
+        add_if(!data.scene.media.empty() && !settings.fog, "media", "turned off");
         add_if(!settings.components.emission, "emission", "turned off");
         add_if(!settings.components.direct, "direct light", "turned off");
         add_if(!settings.components.environment, "environment on diffuse surfaces", "turned off");
@@ -118,6 +120,17 @@ std::vector<std::string> approximations(const RasterSceneData& data, const Raste
     add_if(parts.direct && needs.emitter_textures, "Textured area lights light other surfaces by their mean radiance.");
     add_if(parts.direct && data.unsampled_emitters,
            "Emissive surfaces that move, and stretched spheres, are visible but light nothing.");
+    if (scene.media.empty() || !settings.fog) return result;
+    add_if(true, "Light that media scatter is computed in cells of 8 x 8 pixels by 64 slices.");
+    add_if(parts.environment && data.irradiance_probes && settings.indirect_light,
+           "Light that media scatter more than once is what irradiance probes see, from all directions alike.");
+    add_if(environment && parts.environment && !settings.indirect_light,
+           "Media attenuate the environment's light on diffuse surfaces as if it came along the normal.");
+    add_if(parts.environment && !settings.indirect_light,
+           "Light that media scatter more than once, and light of surfaces that they scatter, is left out.");
+    add_if(parts.direct && needs.surface_lights, "Media scatter the light of area lights as if it came from their "
+                                                 "middle.");
+    add_if(needs.transmission, "Media are inside of glass, too.");
     return result;
 }
 

@@ -29,6 +29,15 @@ void add_reflected(const RasterSettings& settings, const GBuffer& gbuffer, Plane
 
 } // namespace
 
+AmbientLight ambient_light(const RasterSceneData& data, const RasterSettings& settings,
+                           const ScreenProjection& projection) {
+    if (!settings.components.environment) return {};
+    if (!data.irradiance_probes || !settings.indirect_light) return environment_in_fog(data, settings, projection);
+    return [&probes = *data.irradiance_probes, eye = projection.eye()](const Vec3T<Floats>& p) {
+        return probes.mean_radiance(eye, p);
+    };
+}
+
 void add_indirect_light(const RasterSettings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
                         Planes3& radiance) {
     add_reflected(settings, gbuffer, radiance, [&](int x, int y, const RgbT<Floats>&, const auto& lit) {

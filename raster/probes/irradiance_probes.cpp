@@ -77,6 +77,7 @@ IrradianceProbes::IrradianceProbes(const RasterSceneData& data, const RasterSett
         constexpr std::size_t kMostLights = 8;
         const ChosenLights lights{kMostLights, unit_float(high_bits(mix_bits(i)))};
         captures[i] = std::make_unique<ProbeCapture>(data, settings, position, kSide, data.glass, lights);
+        captures[i]->add_fog(data, settings, {});
     });
     drop_strays(captures);
     parallel_for(probes_.size(), settings.threads, [&](std::size_t i) {
@@ -143,6 +144,10 @@ void IrradianceProbes::set_distances(const ProbeCapture& capture, Probe& probe) 
 /// lights emit, and, after the first bounce, of what the probes held after the last one.
 IrradianceHarmonics IrradianceProbes::gather(const ProbeCapture& capture, int bounce) const {
     Projection::Sum sum{};
+    const ProbeCapture::Face& first = capture.faces().front();
+    const bool hazy = bounce > 0 && !first.haze.empty();
+    const Vec3s center{Floats(0.0f), Floats(0.0f), Floats(0.0f)};
+    const RgbT<Floats> around = hazy ? mean_radiance(first.gbuffer.projection.eye(), center) : RgbT<Floats>();
     for_each_pixel(kBatch, [&](const ProbeCapture::Pixel& p) {
         const ProbeCapture::Face& face = capture.faces()[p.face];
         RgbT<Floats> light = face.direct.color(p.x, p.y);
@@ -154,6 +159,7 @@ IrradianceHarmonics IrradianceProbes::gather(const ProbeCapture& capture, int bo
                 irradiance(g.projection.eye(), g.points(p.x, p.y), g.normal.vector(p.x, p.y), seen);
             light += blend(seen, albedo * arriving * Floats(kInvPi), RgbT<Floats>(Floats(0.0f)));
         }
+        if (hazy) light += face.haze.color(p.x, p.y) * around;
         projection().add(p, light, sum);
     });
     IrradianceHarmonics result;
@@ -191,29 +197,71 @@ private:
     }
 };
 
-RgbT<Floats> IrradianceProbes::irradiance(const Vec3d& eye, const Vec3s& p, const Vec3s& n, const Mask& mask) const {
+/// Says between which probes a batch of points lies.
+struct IrradianceProbes::Place {
+    alignas(64) std::array<std::int32_t, Ints::size> cells; ///< the first probe of each cell
+    std::array<Floats, 3> f;                                ///< position in the cell
+    Floats beyond;                                          ///< distance from the grid in cells
+
+    /// Returns the weight of a corner of the cell in the linear interpolation.
+    Floats weight(int dx, int dy, int dz) const {
+        const auto part = [&](std::size_t axis, int far) { return far ? f[axis] : Floats(1.0f) - f[axis]; };
+        return part(0, dx) * part(1, dy) * part(2, dz);
+    }
+};
+
+IrradianceProbes::Place IrradianceProbes::place_of(const Vec3d& eye, const Vec3s& p) const {
     const Vec3 first(origin_ - eye), step(step_);
+    Place result{{}, {}, Floats(0.0f)};
     std::array<Ints, 3> cell;
-    std::array<Floats, 3> f;
     const std::array<Floats, 3> at{p.x, p.y, p.z};
-    Floats beyond(0.0f); // distance from the grid in cells
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const Floats unclamped = (at[axis] - Floats(first[axis])) * Floats(1 / step[axis]);
         const Floats g =
             clamp(unclamped, Floats(kInset), Floats(static_cast<float>(size_[axis] - 1) - kInset));
-        beyond = max(beyond, abs(unclamped - g));
+        result.beyond = max(result.beyond, abs(unclamped - g));
         cell[axis] = xsimd::min(truncated(g), Ints(size_[axis] - 2));
-        f[axis] = g - xsimd::batch_cast<float>(cell[axis]);
+        result.f[axis] = g - xsimd::batch_cast<float>(cell[axis]);
     }
-    alignas(64) std::array<std::int32_t, Ints::size> cells;
-    (cell[0] + Ints(size_[0]) * (cell[1] + Ints(size_[1]) * cell[2])).store_aligned(cells.data());
+    (cell[0] + Ints(size_[0]) * (cell[1] + Ints(size_[1]) * cell[2])).store_aligned(result.cells.data());
+    return result;
+}
+
+/// Calls use(first, own) for the cells in which the given lanes lie: the cell's first probe, and its lanes. Cells are
+/// large, so a batch mostly lies in one.
+template <typename Cells, typename Use> void for_each_cell(const Cells& cells, std::uint32_t left, const Use& use) {
+    while (left != 0) {
+        const std::int32_t first = cells[static_cast<std::size_t>(std::countr_zero(left))];
+        const auto own = xsimd::bool_cast(Ints::load_aligned(cells.data()) == Ints(first));
+        left &= ~lane_bits(own);
+        use(first, own);
+    }
+}
+
+RgbT<Floats> IrradianceProbes::mean_radiance(const Vec3d& eye, const Vec3s& p) const {
+    const Place place = place_of(eye, p);
+    RgbT<Floats> result(Floats(0.0f));
+    for_each_cell(place.cells, lane_bits(Mask(true)), [&](std::int32_t first, const Mask& own) {
+        RgbT<Floats> sum(Floats(0.0f));
+        for (int corner = 0; corner < 8; ++corner) {
+            const int dx = corner & 1, dy = corner >> 1 & 1, dz = corner >> 2;
+            const auto probe = static_cast<std::size_t>(first + dx + size_[0] * (dy + size_[1] * dz));
+            sum += broadcast<Floats>(probes_[probe].irradiance[0]) * place.weight(dx, dy, dz);
+        }
+        result = blend(own, sum, result);
+    });
+    // The first harmonic of the irradiance is π times the mean radiance.
+    std::array<Floats, 9> constant;
+    constant.fill(Floats(0.0f)), constant[0] = Floats(1.0f);
+    return faded_to_sky(result, constant, place.beyond) * Floats(kInvPi);
+}
+
+RgbT<Floats> IrradianceProbes::irradiance(const Vec3d& eye, const Vec3s& p, const Vec3s& n, const Mask& mask) const {
+    const Vec3 step(step_);
+    const Place place = place_of(eye, p);
     const std::array<Floats, 9> basis = harmonics(n);
     RgbT<Floats> result(Floats(0.0f));
-    // Cells are large, so a batch mostly lies in one.
-    for (std::uint32_t left = lane_bits(mask); left != 0;) {
-        const std::int32_t base = cells[static_cast<std::size_t>(std::countr_zero(left))];
-        const auto own = Ints::load_aligned(cells.data()) == Ints(base);
-        left &= ~lane_bits(own);
+    for_each_cell(place.cells, lane_bits(mask), [&](std::int32_t base, const Mask& own) {
         Floats sum(0.0f);
         RgbT<Floats> light(Floats(0.0f));
         for (int corner = 0; corner < 8; ++corner) {
@@ -221,17 +269,16 @@ RgbT<Floats> IrradianceProbes::irradiance(const Vec3d& eye, const Vec3s& p, cons
             const auto probe = static_cast<std::size_t>(base + dx + size_[0] * (dy + size_[1] * dz));
             const Vec3 q(probes_[probe].position - eye);
             const float bias = kBias * std::min({step.x, step.y, step.z});
-            const auto part = [&](std::size_t axis, int far) { return far ? f[axis] : Floats(1.0f) - f[axis]; };
             const Corner c(probes_[probe],
                            Vec3s{Floats(q.x) - p.x, Floats(q.y) - p.y, Floats(q.z) - p.z} - n * Floats(bias), n, basis,
-                           part(0, dx) * part(1, dy) * part(2, dz));
+                           place.weight(dx, dy, dz));
             sum += c.weight;
             light += c.irradiance * c.weight;
         }
         const Floats over = Floats(1.0f) / sum;
-        result = blend(xsimd::bool_cast(own), light * over, result);
-    }
-    return faded_to_sky(result, basis, beyond);
+        result = blend(own, light * over, result);
+    });
+    return faded_to_sky(result, basis, place.beyond);
 }
 
 std::size_t IrradianceProbes::memory_bytes() const {

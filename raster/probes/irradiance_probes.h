@@ -22,6 +22,8 @@ public:
     /// `mask` leaves out.
     RgbT<Floats> irradiance(const Vec3d& eye, const Vec3T<Floats>& p, const Vec3T<Floats>& n,
                             const xsimd::batch_bool<float>& mask) const;
+    /// Returns the mean radiance from all directions at points in space. Walls do not stop it between two probes.
+    RgbT<Floats> mean_radiance(const Vec3d& eye, const Vec3T<Floats>& p) const;
     /// Returns the distance between neighboring probes, in meters: the largest of the three axes.
     float spacing() const;
     std::size_t memory_bytes() const;
@@ -47,6 +49,8 @@ private:
                   const std::vector<std::unique_ptr<ProbeCapture>>& captures);
     RgbT<Floats> faded_to_sky(const RgbT<Floats>& irradiance, const std::array<Floats, 9>& basis,
                               const Floats& cells) const;
+    struct Place;
+    Place place_of(const Vec3d& eye, const Vec3T<Floats>& p) const;
     template <typename Visit> void for_each_neighbor(std::size_t probe, const Visit& visit) const;
     struct Corner;
 

@@ -33,7 +33,7 @@ ProbeCapture::Face capture(const RasterSceneData& data, const RasterSettings& se
         return std::binary_search(selection.objects.begin(), selection.objects.end(), object) != selection.excluded;
     });
     ProbeCapture::Face face{GBuffer(ScreenProjection(pass.pinhole, offset), side, side, any_clear_coat(data.scene)),
-                            Planes3(side, side), Planes3(side, side)};
+                            Planes3(side, side), Planes3(side, side), {}};
     fill_gbuffer(data, settings, *geometry, pass, grid, offset, Control{}, face.gbuffer, face.emission);
     if (!selection.excluded) return face;
     draw_background(data, settings, face.gbuffer, face.direct);
@@ -78,6 +78,20 @@ ProbeCapture::ProbeCapture(const RasterSceneData& data, const RasterSettings& se
 ProbeCapture::ProbeCapture(const RasterSceneData& data, const RasterSettings& settings, Vec3d center,
                            std::uint32_t object, int side)
     : side_(side), faces_(capture_all(data, settings, center, side, {{object}, false})) {}
+
+void ProbeCapture::add_fog(const RasterSceneData& data, const RasterSettings& settings, const AmbientLight& ambient) {
+    if (!settings.fog || data.scene.media.empty()) return;
+    FogGrid fog;
+    for (Face& face : faces_) {
+        GBuffer& gbuffer = face.gbuffer;
+        fog.compute(data, settings, gbuffer, ambient,
+                    {.time = static_cast<float>(data.scene.camera.shutter_open), .slices = 16, .threads = 1});
+        face.haze = fog.haze(gbuffer, 1);
+        fog.apply(gbuffer, 1, true, face.direct);
+        for (Planes3* image : {&face.emission, &gbuffer.diffuse, &gbuffer.specular})
+            fog.apply(gbuffer, 1, false, *image);
+    }
+}
 
 ProbeCapture::Pixel ProbeCapture::pixel(Vec3 w) const {
     const std::size_t face = cube_face(w);

@@ -2,6 +2,7 @@
 // light can bounce between probes without rendering again.
 #pragma once
 
+#include "raster/fog/fog_grid.h"
 #include "raster/gbuffer/gbuffer.h"
 #include "raster/lighting/direct_light.h"
 #include "raster/raster_scene.h"
@@ -17,6 +18,7 @@ public:
         GBuffer gbuffer;
         Planes3 emission; ///< of the visible surfaces
         Planes3 direct;   ///< direct light that the surfaces reflect, and the background
+        Planes3 haze;     ///< fraction of even light that media scatter to the probe; empty if there are none
     };
     /// Renders side × side pixels for each face, on the calling thread. The objects in `excluded`, in order, are left
     /// out. The lights are the `chosen` ones.
@@ -26,6 +28,10 @@ public:
     /// Renders one object alone, without light: its surface as seen from within or from outside.
     ProbeCapture(const RasterSceneData& data, const RasterSettings& settings, Vec3d center, std::uint32_t object,
                  int side);
+
+    /// Attenuates what is seen through media, and the lobes with it, as light may be added to them later. Adds the
+    /// light that media scatter and emit. `ambient` may be empty.
+    void add_fog(const RasterSceneData& data, const RasterSettings& settings, const AmbientLight& ambient);
 
     std::vector<Face>& faces() { return faces_; }
     const std::vector<Face>& faces() const { return faces_; }

@@ -53,6 +53,7 @@ void add_reflected_light(const RasterSceneData& data, RasterSettings settings, P
         if (data.irradiance_probes) add_indirect_light(settings, face.gbuffer, *data.irradiance_probes, face.direct);
         add_reflections(data, settings, face.gbuffer, nullptr, face.direct);
     }
+    capture.add_fog(data, settings, ambient_light(data, settings, capture.faces().front().gbuffer.projection));
 }
 
 /// Returns what a capture shows, with or without what its surfaces emit.

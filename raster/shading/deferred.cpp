@@ -120,6 +120,14 @@ void shade_gbuffer(const RasterSceneData& data, const RasterSettings& settings, 
         }
     }
     recorder.record(&LightComponentImages::reflection);
+    if (!settings.fog || data.scene.media.empty()) return;
+    if (options.fog == nullptr)
+        frame.fog.compute(data, settings, gbuffer, ambient_light(data, settings, gbuffer.projection),
+                          {.time = options.time, .background = options.background && !options.sparse,
+                           .threads = threads});
+    const FogGrid& fog = options.fog != nullptr ? *options.fog : frame.fog;
+    fog.apply(gbuffer, threads, true, radiance);
+    done("fog");
 }
 
 void shade_deferred(const SampleView& sample, DeferredFrame& frame) {
@@ -142,7 +150,8 @@ void shade_deferred(const SampleView& sample, DeferredFrame& frame) {
     const Stopwatch blending;
     for (std::size_t k = 0; k < layers->count() && !sample.control.stopped(); ++k) {
         layers->fill(sample, k, *blended->gbuffer, blended->radiance);
-        shade_gbuffer(data, sample.settings, {.time = sample.view.time, .background = false}, *blended);
+        shade_gbuffer(data, sample.settings,
+                      {.time = sample.view.time, .background = false, .fog = &frame.fog}, *blended);
         layers->add(k, blended->radiance, frame.radiance);
     }
     frame.seconds.emplace_back("blended surfaces", blending.seconds());

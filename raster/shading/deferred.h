@@ -1,6 +1,7 @@
 // Deferred shading of Shading::kLit: each stage is a function over the whole G-buffer, and adds one effect.
 #pragma once
 
+#include "raster/fog/fog_grid.h"
 #include "raster/gbuffer/gbuffer.h"
 #include "raster/geometry/geometry.h"
 #include "raster/geometry/tiles.h"
@@ -32,13 +33,14 @@ struct DeferredFrame {
     Planes3 radiance;
     DirectLight direct;
     GtaoImage occlusion;
+    FogGrid fog;
     std::vector<std::pair<std::string, double>> seconds; ///< wall-clock time of each stage, in order
 
     /// Sets the size and the projection. The contents are undefined.
     void start(const Scene& scene, const ScreenProjection& projection, int width, int height);
     std::size_t memory_bytes() const {
         return (gbuffer ? gbuffer->memory_bytes() : 0) + radiance.memory_bytes() + direct.memory_bytes() +
-               occlusion.memory_bytes();
+               occlusion.memory_bytes() + fog.memory_bytes();
     }
 };
 
@@ -48,7 +50,8 @@ struct ShadeOptions {
     float time = 0;         ///< of the shadows
     bool background = true; ///< else pixels without a surface stay black
     bool sparse = false;    ///< surfaces have too few neighbors to average shadows over
-    LightComponentImages* components = nullptr; ///< receives the parts of the radiance, if any
+    const FogGrid* fog = nullptr; ///< of the same view, or null to compute one
+    LightComponentImages* components = nullptr; ///< without fog: receives the parts of the radiance, if any
 };
 void shade_gbuffer(const RasterSceneData& data, const RasterSettings& settings, const ShadeOptions& options,
                    DeferredFrame& frame);

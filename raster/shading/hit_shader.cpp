@@ -10,6 +10,7 @@ namespace duet::raster {
 HitShader::HitShader(const RasterSceneData& data, const View& view, const RasterSettings& settings)
     : data_(data), settings_(settings), projection_(CameraModel(view).pinhole(), {}),
       time_(static_cast<float>(view.camera.shutter_open)) {
+    settings_.fog = false;
     frame_.start(data_.scene, projection_, view.width, view.height);
     frame_.gbuffer->position = Planes3(view.width, view.height);
     clear(*frame_.gbuffer, frame_.radiance);

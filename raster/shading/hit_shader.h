@@ -10,7 +10,7 @@ namespace duet::raster {
 
 /// Shades one hit per pixel as Shading::kLit shades the surfaces that it rasterizes. The rays may differ from pixel to
 /// pixel in their position on the pixel, the lens and the time. Effects in screen space take the lens center of the
-/// view as the viewer of all of them, at the time the shutter opens.
+/// view as the viewer of all of them, at the time the shutter opens. Media are left out.
 class HitShader {
 public:
     /// `prepared` must outlive this object. All pixels are background until they are set.

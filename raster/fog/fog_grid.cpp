@@ -1,0 +1,329 @@
+#include "raster/fog/fog_grid.h"
+
+#include "common/medium/phase_function.h"
+#include "raster/geometry/lane_math.h"
+#include "raster/lighting/background.h"
+#include "raster/lighting/light_set.h"
+#include "raster/shadows/space_shadows.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace duet::raster {
+namespace {
+
+using Vec3s = Vec3T<Floats>;
+using Color = RgbT<Floats>;
+using Lanes = xsimd::batch_bool<float>;
+constexpr int kBatch = static_cast<int>(Floats::size);
+const Floats kNone(0.0f), kOne(1.0f);
+
+/// Returns (1 − exp(−x)) / x for x ≥ 0.
+Floats mean_transmittance(const Floats& x) {
+    return xsimd::select(x > Floats(1e-4f), -xsimd::expm1(-x) / max(x, Floats(1e-4f)), kOne - x * Floats(0.5f));
+}
+Color mean_transmittance(const Color& depth) {
+    return {mean_transmittance(depth.r), mean_transmittance(depth.g), mean_transmittance(depth.b)};
+}
+
+Floats lane_offsets(float first, float step) { return Floats(first) + load(kLanesAsFloats, 0) * Floats(step); }
+
+} // namespace
+
+AmbientLight environment_in_fog(const RasterSceneData& data, const RasterSettings& settings,
+                                const ScreenProjection& projection) {
+    if (!shows_environment(data, settings)) return {};
+    return
+        [light = broadcast<Floats>(data.ambient), media = frame_media(data.scene.media, projection)](const Vec3s& p) {
+            Color sum(kNone);
+            for (const Vec3 axis : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)})
+                for (const Vec3 w : {axis, -axis})
+                    sum += transmittance(optical_depth<Floats>(media, p, broadcast<Floats>(w), Floats(kInfinity)));
+            return light * sum * Floats(1.0f / 6);
+        };
+}
+
+/// Represents the camera rays of a batch of pixels, up to the visible surfaces.
+struct FogGrid::PixelRays {
+    Vec3s origin, direction;
+    Floats distance; ///< infinite for the background
+
+    PixelRays(const GBuffer& gbuffer, int x, int y) {
+        const Vec3s p = gbuffer.points(x, y);
+        const Floats to_p = gbuffer.projection.distance(p);
+        direction = gbuffer.projection.to_viewer(p) * Floats(-1.0f);
+        origin = p - direction * to_p;
+        distance = xsimd::select(gbuffer.visible(x, y), to_p, Floats(kInfinity));
+    }
+};
+
+/// Represents the rays through the middles of a batch of columns of froxels.
+struct FogGrid::Columns {
+    Vec3s origin, direction;
+    std::vector<IntervalT<Floats>> inside; ///< where the rays are in each medium
+    Floats surface;                        ///< distance of the farthest surface in the columns themselves
+    float farthest = 0;                    ///< how far light is needed
+};
+
+FogGrid::Columns FogGrid::columns(int x, int y) const {
+    const auto pixel = [&](int i) { return static_cast<float>(i * side_); };
+    const Vec3s p = projection_->point(lane_offsets(pixel(x), pixel(1)), Floats(pixel(y)), kOne);
+    Columns result;
+    result.direction = projection_->to_viewer(p) * Floats(-1.0f);
+    result.origin = p - result.direction * projection_->distance(p);
+    for (const Medium& medium : media_)
+        result.inside.push_back(overlap(medium.box, result.origin, result.direction, Floats(kInfinity)));
+    result.surface = load(farthest_, x, y);
+    // Pixels interpolate between neighboring columns.
+    for (int row = std::max(y - 1, 0); row <= std::min(y + 1, rows_ - 1); ++row)
+        for (int i = std::max(x - 1, 0); i <= std::min(x + kBatch, columns_ - 1); ++i)
+            result.farthest = std::max(result.farthest, farthest_(i, row));
+    return result;
+}
+
+/// Finds the distances between which the view shows media, and divides them into slices: evenly up to what the camera
+/// looks at, and in proportion to the distance beyond.
+void FogGrid::find_distances(const GBuffer& gbuffer, const FogOptions& options) {
+    farthest_ = PlaneFloat(columns_, rows_);
+    parallel_for(static_cast<std::size_t>(rows_), options.threads, [&](std::size_t i) {
+        const int row = static_cast<int>(i), first = row * side_ - side_ / 2;
+        for (int y = std::max(first, 0); y < std::min(first + side_, gbuffer.height()); ++y)
+            for (int x = 0; x < gbuffer.width(); x += kBatch) {
+                alignas(64) std::array<float, kBatch> distances;
+                const Floats distance = PixelRays(gbuffer, x, y).distance;
+                const Lanes counts = options.background ? Lanes(true) : gbuffer.visible(x, y);
+                xsimd::select(counts, distance, kNone).store_aligned(distances.data());
+                for (int lane = 0; lane < std::min(kBatch, gbuffer.width() - x); ++lane) {
+                    float& most = farthest_((x + lane + side_ / 2) / side_, row);
+                    most = std::max(most, distances[static_cast<std::size_t>(lane)]);
+                }
+            }
+    });
+    float begin = kInfinity, end = 0;
+    for (int y = 0; y < rows_; ++y)
+        for (int x = 0; x < columns_; x += kBatch) {
+            const Columns some = columns(x, y);
+            for (const IntervalT<Floats>& inside : some.inside) {
+                const Lanes seen = (!inside.empty()) & (inside.begin < Floats(some.farthest));
+                if (lane_bits(seen) == 0) continue;
+                begin = std::min(begin, reduce_min(xsimd::select(seen, inside.begin, Floats(kInfinity))));
+                end = std::max(end, reduce_max(xsimd::select(seen, min(inside.end, Floats(some.farthest)), kNone)));
+            }
+        }
+    if (!(begin < end)) begin = end = 0;
+    if (end == kInfinity) { // of a medium without bounds, through which light comes no further than this
+        constexpr float kDepths = 12;
+        float least = kInfinity;
+        for (const Medium& medium : media_)
+            for (std::size_t c = 0; c < 3; ++c)
+                if (const float extinction = medium.scattering[c] + medium.absorption[c]; extinction > 0)
+                    least = std::min(least, extinction);
+        end = begin + kDepths / least;
+    }
+    end = std::min(end, 1e12f); // whose square is a float
+    nearest_ = begin;
+    const float range = std::log1p((end - begin) / scale_);
+    slices_per_log_ = range > 0 ? static_cast<float>(slices_) / range : 0;
+    distances_.resize(static_cast<std::size_t>(slices_) + 1);
+    for (std::size_t k = 0; k < distances_.size(); ++k)
+        distances_[k] = begin + scale_ * std::expm1(range * static_cast<float>(k) / static_cast<float>(slices_));
+}
+
+/// Computes the light of one batch of columns after another, on one thread.
+class FogGrid::Lighter {
+public:
+    Lighter(const FogGrid& grid, std::span<const FrameLight> lights, const LightSet& light_set,
+            const SpaceShadows* shadows, const AmbientLight& ambient)
+        : grid_(grid), lights_(lights), light_set_(light_set), shadows_(shadows), ambient_(ambient),
+          crossed_(grid.media_.size(), kNone) {}
+
+    void light_columns(int x, int y, Planes3& result) {
+        const Columns columns = grid_.columns(x, y);
+        Color sum(kNone), through(kOne);
+        result.set(x, grid_.row(y, 0), sum);
+        for (int k = 0; k < grid_.slices_; ++k) {
+            const auto slice = static_cast<std::size_t>(k);
+            const float begin = grid_.distances_[slice], end = grid_.distances_[slice + 1];
+            if (begin >= columns.farthest) break;
+            if (k % kClusterSlices == 0) find_lights(columns, k);
+            add_slice(columns, {begin, end}, sum, through);
+            result.set(x, grid_.row(y, k + 1), sum);
+        }
+    }
+
+private:
+    static constexpr int kClusterSlices = 8;
+    static constexpr std::size_t kMostLights = 16; ///< that stand for all that reach a cluster of froxels
+
+    /// Finds the lights that reach the slices from the k-th on, as for surfaces that face all ways.
+    void find_lights(const Columns& columns, int k) {
+        const auto first = static_cast<std::size_t>(k),
+                   last = std::min(first + kClusterSlices, static_cast<std::size_t>(grid_.slices_));
+        SurfaceBounds bounds{Vec3(kInfinity, kInfinity, kInfinity), {}, Vec3(-1, -1, -1), Vec3(1, 1, 1)};
+        bounds.p_high = -bounds.p_low;
+        for (const float distance : {grid_.distances_[first], grid_.distances_[last]}) {
+            const Vec3s p = columns.origin + columns.direction * Floats(distance);
+            bounds.p_low = min(bounds.p_low, Vec3(reduce_min(p.x), reduce_min(p.y), reduce_min(p.z)));
+            bounds.p_high = max(bounds.p_high, Vec3(reduce_max(p.x), reduce_max(p.y), reduce_max(p.z)));
+        }
+        light_set_.reach(bounds, 0, found_);
+        constexpr float kGoldenRatio = 0.618034f; // its multiples spread evenly
+        random_ += kGoldenRatio - (random_ + kGoldenRatio < 1 ? 0.0f : 1.0f);
+        light_set_.choose(found_, kMostLights, random_, near_);
+    }
+
+    /// Adds the light of a slice to the sum, and multiplies the transmittance before it by its own. Light that is
+    /// scattered evenly along the slice is attenuated in closed form (Hillaire 2015, "Physically Based and Unified
+    /// Volumetric Rendering in Frostbite", §5).
+    void add_slice(const Columns& columns, Interval slice, Color& sum, Color& through) {
+        const Floats begin(slice.begin), end(slice.end);
+        IntervalT<Floats> piece{end, begin}; // with media
+        Color depth(kNone), scattering(kNone), light(kNone);
+        for (std::size_t i = 0; i < crossed_.size(); ++i) {
+            const Medium& medium = grid_.media_[i];
+            const IntervalT<Floats> inside{max(columns.inside[i].begin, begin), min(columns.inside[i].end, end)};
+            const Floats length = crossed_[i] = max(inside.end - inside.begin, kNone);
+            const Lanes in = length > kNone;
+            if (lane_bits(in) == 0) continue;
+            piece.begin = xsimd::select(in, min(piece.begin, inside.begin), piece.begin);
+            piece.end = xsimd::select(in, max(piece.end, inside.end), piece.end);
+            depth += broadcast<Floats>(medium.scattering + medium.absorption) * length;
+            scattering += broadcast<Floats>(medium.scattering) * length;
+            light += broadcast<Floats>(medium.absorption * medium.radiance) * length;
+        }
+        const Lanes any = piece.begin < piece.end;
+        if (lane_bits(any) == 0) return;
+        if (lane_bits(max_component(scattering) > kNone) != 0) {
+            const Floats width = grid_.projection_->pixel_size(begin) * Floats(static_cast<float>(grid_.side_));
+            // Behind the surfaces, where pixels interpolate, there is as much light as on them.
+            piece = {min(xsimd::select(any, piece.begin, begin), columns.surface),
+                     min(xsimd::select(any, piece.end, end), columns.surface)};
+            const RayPieces rays{columns.origin, columns.direction, piece, width};
+            for (const WeightedLight& near : near_) add_light(lights_[near.index], near.weight, rays, light);
+            if (ambient_) light += scattering * ambient_(rays.p());
+        }
+        sum += through * light * mean_transmittance(depth);
+        through *= transmittance(depth);
+    }
+
+    void add_light(const FrameLight& light, float weight, const RayPieces& rays, Color& sum) const {
+        const Vec3s p = rays.p();
+        const LightDirection to = direction_to(light, p);
+        Color arriving = light_in_space(light, to, rays);
+        if (lane_bits(max_component(arriving) > kNone) == 0) return;
+        if (shadows_ != nullptr) arriving *= shadows_->visibility(light.index, p);
+        arriving *= transmittance(optical_depth<Floats>(grid_.media_, p, to.wi, to.distance)) * Floats(weight);
+        Color scattered(kNone);
+        for (std::size_t i = 0; i < crossed_.size(); ++i) {
+            const Medium& medium = grid_.media_[i];
+            if (is_black(medium.scattering)) continue;
+            scattered +=
+                broadcast<Floats>(medium.scattering) * (crossed_[i] * phase(rays.direction, to.wi, medium.asymmetry));
+        }
+        sum += arriving * scattered;
+    }
+
+    const FogGrid& grid_;
+    std::span<const FrameLight> lights_;
+    const LightSet& light_set_;
+    const SpaceShadows* shadows_;
+    const AmbientLight& ambient_;
+    std::vector<Floats, xsimd::aligned_allocator<Floats>> crossed_; ///< meters of each medium in the slice
+    LightsOfCluster found_;
+    std::vector<WeightedLight> near_;
+    float random_ = 0;
+};
+
+void FogGrid::compute(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
+                      const AmbientLight& ambient, const FogOptions& options) {
+    media_.clear();
+    if (!settings.fog) return;
+    projection_ = gbuffer.projection;
+    media_ = frame_media(data.scene.media, *projection_);
+    if (media_.empty()) return;
+    side_ = options.side, slices_ = options.slices;
+    const auto count = [&](int pixels) { return (pixels + side_ - 2) / side_ + 1; }; // so that pixels lie between them
+    columns_ = count(gbuffer.width()), rows_ = count(gbuffer.height());
+    const Camera& camera = data.scene.camera;
+    scale_ = static_cast<float>(std::max(length(camera.look_at - camera.eye), 1e-6));
+    find_distances(gbuffer, options);
+    light_.set_size(columns_, rows_ * (slices_ + 1));
+    std::vector<FrameLight> lights;
+    if (settings.components.direct) lights = frame_lights(data.scene.lights, *projection_);
+    const LightSet light_set(lights, nullptr);
+    std::optional<SpaceShadows> shadows;
+    if (settings.shadows && data.soft_shadows) shadows.emplace(data, projection_->eye(), options.time);
+    parallel_for(static_cast<std::size_t>(rows_), options.threads, [&](std::size_t y) {
+        Lighter lighter(*this, lights, light_set, shadows ? &*shadows : nullptr, ambient);
+        for (int x = 0; x < columns_; x += kBatch) lighter.light_columns(x, static_cast<int>(y), light_);
+    });
+}
+
+/// Returns the light that arrives from before the surfaces. The slice in which they are counts as if it scattered light
+/// evenly.
+Color FogGrid::light_before(int x, int y, const PixelRays& rays) const {
+    const Floats distance = min(rays.distance, Floats(distances_.back()));
+    const Floats slice =
+        xsimd::log1p(max(distance - Floats(nearest_), kNone) * Floats(1 / scale_)) * Floats(slices_per_log_);
+    const Ints k = truncated(min(slice, Floats(static_cast<float>(slices_ - 1))));
+    const Floats begin = gather(distances_.data(), k), end = gather(distances_.data() + 1, k);
+    const Floats length = max(end - begin, Floats(1e-15f)), within = clamp(distance - begin, kNone, length);
+    const Vec3s entry = rays.origin + rays.direction * begin;
+    const Color whole = optical_depth<Floats>(media_, entry, rays.direction, length),
+                part = optical_depth<Floats>(media_, entry, rays.direction, within);
+    const auto fraction = [&](const Floats& all, const Floats& some) {
+        const Floats scattered = some * mean_transmittance(some) / max(all * mean_transmittance(all), Floats(1e-12f));
+        return xsimd::select(all > Floats(1e-6f), scattered, within / length);
+    };
+    return interpolate(x, y, k, {fraction(whole.r, part.r), fraction(whole.g, part.g), fraction(whole.b, part.b)});
+}
+
+/// Interpolates between the rays of the four nearest columns, and linearly between both ends of each slice.
+Color FogGrid::interpolate(int x, int y, const Ints& slices, const Color& within) const {
+    const float per_pixel = 1 / static_cast<float>(side_);
+    const Floats across = lane_offsets(static_cast<float>(x), 1) * Floats(per_pixel);
+    const Floats left = min(xsimd::floor(across), Floats(static_cast<float>(std::max(columns_ - 2, 0)))),
+                 fx = across - left;
+    const int top = std::min(y / side_, std::max(rows_ - 2, 0)), right = columns_ > 1 ? 1 : 0;
+    const float below = static_cast<float>(y) * per_pixel - static_cast<float>(top);
+    const Ints at = slices * Ints(light_.x.stride()) + truncated(left);
+    Color result(kNone);
+    for (int j = 0; j < std::min(rows_, 2); ++j) {
+        const auto channel = [&](const PlaneFloat& plane, const Floats& fz) {
+            const auto at_end = [&](int ends) {
+                const float* from = plane.row(row(top + j, ends));
+                return lerp(gather(from, at), gather(from + right, at), fx);
+            };
+            return lerp(at_end(0), at_end(1), fz);
+        };
+        result += Color(channel(light_.x, within.r), channel(light_.y, within.g), channel(light_.z, within.b)) *
+                  Floats(j == 0 ? 1 - below : below);
+    }
+    return result;
+}
+
+Planes3 FogGrid::haze(const GBuffer& gbuffer, int threads) const {
+    std::vector<Medium> scattering = media_;
+    for (Medium& medium : scattering) medium.absorption = Rgb();
+    Planes3 result(gbuffer.width(), gbuffer.height());
+    for_each_batch(gbuffer.width(), gbuffer.height(), threads, [&](int x, int y) {
+        const PixelRays rays(gbuffer, x, y);
+        const auto depth = [&](std::span<const Medium> media) {
+            return optical_depth<Floats>(media, rays.origin, rays.direction, min(rays.distance, Floats(1e20f)));
+        };
+        result.set(x, y, depth(scattering) * mean_transmittance(depth(media_)));
+    });
+    return result;
+}
+
+void FogGrid::apply(const GBuffer& gbuffer, int threads, bool scattered, Planes3& radiance) const {
+    for_each_batch(gbuffer.width(), gbuffer.height(), threads, [&](int x, int y) {
+        const PixelRays rays(gbuffer, x, y);
+        Color sum = radiance.color(x, y) *
+                    transmittance(optical_depth<Floats>(media_, rays.origin, rays.direction, rays.distance));
+        if (scattered) sum += light_before(x, y, rays);
+        radiance.set(x, y, sum);
+    });
+}
+
+} // namespace duet::raster

@@ -1,0 +1,69 @@
+// Fog in real time: the light that media scatter towards the viewer is computed in froxels, cells of a grid that is
+// aligned with the view, and summed from front to back (Wronski 2014, "Volumetric Fog: Unified Compute Shader Based
+// Solution to Atmospheric Scattering").
+#pragma once
+
+#include "raster/fog/light_in_space.h"
+#include "raster/gbuffer/gbuffer.h"
+#include "raster/raster_scene.h"
+
+#include <functional>
+
+namespace duet::raster {
+
+/// Returns the mean radiance that arrives from all directions, apart from Scene::lights, at points relative to the eye.
+/// It stands for all light that is scattered more than once.
+using AmbientLight = std::function<RgbT<Floats>(const Vec3T<Floats>& p)>;
+
+/// Returns the mean radiance of the environment, attenuated by the media as along the six axes. It is empty if there is
+/// no such light.
+AmbientLight environment_in_fog(const RasterSceneData& data, const RasterSettings& settings,
+                                const ScreenProjection& projection);
+
+struct FogOptions {
+    float time = 0;         ///< of the shadows
+    bool background = true; ///< else there is fog only in front of surfaces
+    int side = 8;           ///< pixels of a froxel
+    int slices = 64;        ///< froxels along each ray
+    int threads = 0;        ///< 0 stands for all
+};
+
+/// Holds the light that the media of one view scatter and emit, for the rays through the middles of its froxels, of
+/// which one passes through the first pixel. Slices
+/// lie between surfaces of equal distance from the eye, so a distance means the same for all rays of a froxel.
+class FogGrid {
+public:
+    /// Computes the light of the scene's media in front of the G-buffer's surfaces. Memory of an earlier frame is
+    /// reused. `ambient` may be empty.
+    void compute(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
+                 const AmbientLight& ambient, const FogOptions& options);
+
+    /// Multiplies the radiance of the surfaces and of the background by the transmittance of the media before them. It
+    /// is exact in every pixel. With `scattered`, adds what the media scatter and emit.
+    void apply(const GBuffer& gbuffer, int threads, bool scattered, Planes3& radiance) const;
+    /// Returns, for each pixel, the fraction of light that fills the media evenly which they scatter to the viewer. It
+    /// is exact where the media scatter the same fraction of the light that they stop.
+    Planes3 haze(const GBuffer& gbuffer, int threads) const;
+    std::size_t memory_bytes() const { return light_.memory_bytes(); }
+
+private:
+    struct PixelRays;
+    struct Columns;
+    class Lighter;
+
+    void find_distances(const GBuffer& gbuffer, const FogOptions& options);
+    Columns columns(int x, int y) const;
+    RgbT<Floats> light_before(int x, int y, const PixelRays& rays) const;
+    RgbT<Floats> interpolate(int x, int y, const Ints& slices, const RgbT<Floats>& within) const;
+    int row(int y, int slice) const { return y * (slices_ + 1) + slice; }
+
+    std::vector<Medium> media_; ///< relative to the eye
+    std::optional<ScreenProjection> projection_;
+    int side_ = 8, slices_ = 0, columns_ = 0, rows_ = 0;
+    PlaneFloat farthest_;          ///< distance of the farthest surface in a froxel's column of pixels
+    std::vector<float> distances_; ///< of the slices' ends, from the nearest
+    float nearest_ = 0, scale_ = 1, slices_per_log_ = 0;
+    Planes3 light_; ///< that arrives from before each slice's end; row(y, slice) holds a row of froxels
+};
+
+} // namespace duet::raster
