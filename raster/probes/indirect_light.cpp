@@ -32,9 +32,10 @@ void add_reflected(const RasterSettings& settings, const GBuffer& gbuffer, Plane
 AmbientLight ambient_light(const RasterSceneData& data, const RasterSettings& settings,
                            const ScreenProjection& projection) {
     if (!settings.components.environment) return {};
-    if (!data.irradiance_probes || !settings.indirect_light) return environment_in_fog(data, settings, projection);
-    return [&probes = *data.irradiance_probes, eye = projection.eye()](const Vec3T<Floats>& p) {
-        return probes.mean_radiance(eye, p);
+    const AmbientLight sky = environment_in_fog(data, settings, projection);
+    if (!data.irradiance_probes || !settings.indirect_light) return sky;
+    return [&probes = *data.irradiance_probes, eye = projection.eye(), sky](const Vec3T<Floats>& p) {
+        return probes.mean_radiance(eye, p, sky);
     };
 }
 

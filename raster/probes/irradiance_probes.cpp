@@ -112,11 +112,15 @@ void IrradianceProbes::find_sky(const RasterSceneData& data, const RasterSetting
     openness_ = all > 0 ? clamp(8 * seen / all - 1, 0.0f, 1.0f) : 0;
 }
 
-/// `cells` is the distance of points from the grid.
+/// Returns how much of the light is the sky's at a distance from the grid in cells.
+Floats IrradianceProbes::sky_share(const Floats& cells) {
+    constexpr float kNear = 0.5f, kFar = 3; // the region ends half a cell beyond its outermost probes
+    return clamp((cells - Floats(kNear)) * Floats(1 / (kFar - kNear)), Floats(0.0f), Floats(1.0f));
+}
+
 RgbT<Floats> IrradianceProbes::faded_to_sky(const RgbT<Floats>& irradiance, const std::array<Floats, 9>& basis,
                                             const Floats& cells) const {
-    constexpr float kNear = 0.5f, kFar = 3; // the region ends half a cell beyond its outermost probes
-    const Floats fade = clamp((cells - Floats(kNear)) * Floats(1 / (kFar - kNear)), Floats(0.0f), Floats(openness_));
+    const Floats fade = min(sky_share(cells), Floats(openness_));
     if (!xsimd::any(fade > Floats(0.0f))) return irradiance;
     return irradiance + (irradiance_at(sky_, basis) - irradiance) * fade;
 }
@@ -147,7 +151,7 @@ IrradianceHarmonics IrradianceProbes::gather(const ProbeCapture& capture, int bo
     const ProbeCapture::Face& first = capture.faces().front();
     const bool hazy = bounce > 0 && !first.haze.empty();
     const Vec3s center{Floats(0.0f), Floats(0.0f), Floats(0.0f)};
-    const RgbT<Floats> around = hazy ? mean_radiance(first.gbuffer.projection.eye(), center) : RgbT<Floats>();
+    const RgbT<Floats> around = hazy ? mean_radiance(first.gbuffer.projection.eye(), center, {}) : RgbT<Floats>();
     for_each_pixel(kBatch, [&](const ProbeCapture::Pixel& p) {
         const ProbeCapture::Face& face = capture.faces()[p.face];
         RgbT<Floats> light = face.direct.color(p.x, p.y);
@@ -238,7 +242,7 @@ template <typename Cells, typename Use> void for_each_cell(const Cells& cells, s
     }
 }
 
-RgbT<Floats> IrradianceProbes::mean_radiance(const Vec3d& eye, const Vec3s& p) const {
+RgbT<Floats> IrradianceProbes::mean_radiance(const Vec3d& eye, const Vec3s& p, const AmbientLight& sky) const {
     const Place place = place_of(eye, p);
     RgbT<Floats> result(Floats(0.0f));
     for_each_cell(place.cells, lane_bits(Mask(true)), [&](std::int32_t first, const Mask& own) {
@@ -250,10 +254,11 @@ RgbT<Floats> IrradianceProbes::mean_radiance(const Vec3d& eye, const Vec3s& p) c
         }
         result = blend(own, sum, result);
     });
-    // The first harmonic of the irradiance is π times the mean radiance.
-    std::array<Floats, 9> constant;
-    constant.fill(Floats(0.0f)), constant[0] = Floats(1.0f);
-    return faded_to_sky(result, constant, place.beyond) * Floats(kInvPi);
+    result *= Floats(kInvPi); // the first harmonic of the irradiance is π times the mean radiance
+    const Floats share = sky_share(place.beyond);
+    if (!xsimd::any(share > Floats(0.0f))) return result;
+    const RgbT<Floats> far = sky ? sky(p) * Floats(openness_) : RgbT<Floats>(Floats(0.0f));
+    return result + (far - result) * share;
 }
 
 RgbT<Floats> IrradianceProbes::irradiance(const Vec3d& eye, const Vec3s& p, const Vec3s& n, const Mask& mask) const {

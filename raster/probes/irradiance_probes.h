@@ -22,8 +22,9 @@ public:
     /// `mask` leaves out.
     RgbT<Floats> irradiance(const Vec3d& eye, const Vec3T<Floats>& p, const Vec3T<Floats>& n,
                             const xsimd::batch_bool<float>& mask) const;
-    /// Returns the mean radiance from all directions at points in space. Walls do not stop it between two probes.
-    RgbT<Floats> mean_radiance(const Vec3d& eye, const Vec3T<Floats>& p) const;
+    /// Returns the mean radiance from all directions at points in space. Walls do not stop it between two probes. Far
+    /// from the probes it is that of the sky, as far as they see it; `sky` may be empty.
+    RgbT<Floats> mean_radiance(const Vec3d& eye, const Vec3T<Floats>& p, const AmbientLight& sky) const;
     /// Returns the distance between neighboring probes, in meters: the largest of the three axes.
     float spacing() const;
     std::size_t memory_bytes() const;
@@ -47,6 +48,7 @@ private:
     void fill_solids();
     void find_sky(const RasterSceneData& data, const RasterSettings& settings,
                   const std::vector<std::unique_ptr<ProbeCapture>>& captures);
+    static Floats sky_share(const Floats& cells);
     RgbT<Floats> faded_to_sky(const RgbT<Floats>& irradiance, const std::array<Floats, 9>& basis,
                               const Floats& cells) const;
     struct Place;
