@@ -8,10 +8,10 @@
 #include "compare/report/output.h"
 #include "compare/report/report_json.h"
 #include "compare/report/report_page.h"
+#include "compare/report/text.h"
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -99,15 +99,7 @@ void check_limits(const std::vector<Limit>& limits, bool variances) {
 
 // The table ----------------------------------------------------------------------------------------------------------
 
-void print_row(std::ostream& out, const std::string& name, const std::string& value, const std::string& meaning) {
-    out << std::left << std::setw(22) << name << std::right << std::setw(12) << value << "  " << meaning << '\n';
-}
-std::string text_of(double value) {
-    if (std::isnan(value)) return "none";
-    std::ostringstream out;
-    out << std::setprecision(6) << value;
-    return out.str();
-}
+std::string text_of(double value) { return std::isnan(value) ? "none" : significant(value, 6); }
 
 void print_channels(std::ostream& out, const char* name, Rgbd c) {
     out << "  " << name << ": r " << text_of(c.r) << ", g " << text_of(c.g) << ", b " << text_of(c.b) << '\n';
@@ -138,7 +130,7 @@ void print_table(std::ostream& out, const ImageMetrics& metrics, const ComparedI
                 : "stored (sRGB-encoded) values; of relmse, smape and mean_signed_error the linear ones\n");
     for (const MetricValue& metric : metric_values(metrics)) {
         if (!metrics.z && metric.name.rfind("z_", 0) == 0) continue;
-        print_row(out, metric.name, text_of(metric.value), metric.meaning);
+        print_cells(out, {-22, 12, 2, 0}, {metric.name, text_of(metric.value), "", metric.meaning});
     }
     print_channels(out, "mean signed error", m.mean_signed_error);
     if (m.pixels > 0) out << "  worst pixel: (" << m.worst_x << ", " << m.worst_y << ")\n";

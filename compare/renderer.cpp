@@ -81,10 +81,4 @@ RenderFunction raytrace_hits(const Scene& scene, const ComparisonSettings& setti
 
 View scene_view(const Scene& scene) { return {scene.camera, scene.width, scene.height}; }
 
-std::string paragraph(const std::vector<std::string>& sentences) {
-    std::string text;
-    for (const std::string& sentence : sentences) text += (text.empty() ? "" : " ") + sentence;
-    return text;
-}
-
 } // namespace duet::compare

@@ -37,7 +37,4 @@ RenderFunction raytrace_hits(const Scene& scene, const ComparisonSettings& setti
 /// Returns the view of the scene's camera, in the scene's image size.
 View scene_view(const Scene& scene);
 
-/// Joins the sentences (a rendering's approximations) with spaces.
-std::string paragraph(const std::vector<std::string>& sentences);
-
 } // namespace duet::compare

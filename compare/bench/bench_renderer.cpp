@@ -2,6 +2,7 @@
 
 #include "common/system/stopwatch.h"
 #include "compare/renderer.h"
+#include "compare/report/text.h"
 #include "raster/render.h"
 #include "raytrace/render.h"
 
@@ -51,7 +52,7 @@ BenchRenderer raster_bench_renderer(const Scene& scene, const View& view, const 
     settings.threads = choice.threads;
     settings.samples_per_pixel = *std::max_element(choice.spps.begin(), choice.spps.end());
     const raster::RasterScene prepared = raster::prepare(scene, settings);
-    return {"raster", "", paragraph(raster::approximations(prepared, settings)), choice.spps,
+    return {"raster", "", joined(raster::approximations(prepared, settings), " "), choice.spps,
             [prepared, view, settings](int spp, std::uint64_t seed, Control& control) {
                 raster::RasterSettings s = settings;
                 s.samples_per_pixel = spp;
@@ -83,17 +84,11 @@ BenchRenderer path_tracer_bench_renderer(const raytrace::PathTracerScene& prepar
 constexpr std::string_view kTechniques[] = {"raster", "path", kAdaptive, kNoRoulette, "naive", "direct", "unshadowed"};
 constexpr std::string_view kSamplers[] = {"sobol", "stratified", "independent"};
 
-template <typename Names> std::string listed(const Names& names) {
-    std::string text;
-    for (const std::string_view name : names) text += (text.empty() ? "" : ", ") + std::string(name);
-    return text;
-}
-
 template <typename Names>
 void check_names(const char* option, const std::vector<std::string>& found, const Names& known) {
     for (const std::string& name : found)
         if (std::find(std::begin(known), std::end(known), name) == std::end(known))
-            throw Error(message(option, ": found ", name, ", expected one or more of ", listed(known)));
+            throw Error(message(option, ": found ", name, ", expected one or more of ", joined(known)));
 }
 
 } // namespace

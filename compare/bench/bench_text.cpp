@@ -1,9 +1,8 @@
 #include "compare/bench/bench_report.h"
 
-#include "common/program/program.h"
+#include "compare/report/text.h"
 
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 namespace duet::compare {
@@ -11,12 +10,6 @@ namespace duet::compare {
 namespace {
 
 using nlohmann::json;
-
-template <typename... Values> std::string formatted(const char* format, Values... values) {
-    char text[256];
-    std::snprintf(text, sizeof text, format, values...);
-    return text;
-}
 
 /// Returns "0.0123 ± 4 %", with the upper half-width of the 95 % confidence band.
 std::string with_band(const Estimate& e) {
@@ -42,17 +35,12 @@ std::string dominance_text(const std::optional<Dominance>& d) {
 }
 
 std::string verdicts(const BaselineRow& row) {
-    std::string text;
-    const auto say = [&](bool is, const char* what) {
-        if (!is) return;
-        if (!text.empty()) text += ", ";
-        text += what;
-    };
-    say(row.slower, "SLOWER");
-    say(row.less_accurate, "LESS ACCURATE");
-    say(row.faster, "faster");
-    say(row.more_accurate, "more accurate");
-    return text;
+    std::vector<const char*> found;
+    if (row.slower) found.push_back("SLOWER");
+    if (row.less_accurate) found.push_back("LESS ACCURATE");
+    if (row.faster) found.push_back("faster");
+    if (row.more_accurate) found.push_back("more accurate");
+    return joined(found);
 }
 
 void print_check(std::ostream& out, const std::string& estimator, const IndependentCheck& c) {

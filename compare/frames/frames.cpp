@@ -8,12 +8,11 @@
 #include "common/system/file.h"
 #include "compare/frames/cpu_affinity.h"
 #include "compare/frames/lit_frames.h"
+#include "compare/report/text.h"
 
 #include <algorithm>
-#include <iomanip>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 namespace duet::compare {
 
@@ -56,38 +55,28 @@ json row_json(const MeshRows& mesh, const FrameRow& row) {
 std::string difference_text(const FrameRow& row) {
     if (!row.difference) return "";
     const FrameDifference& d = *row.difference;
-    std::ostringstream text;
-    text << std::setprecision(2) << "coverage " << 100 * d.coverage << " %, mean " << d.mean;
-    if (row.work == FrameWork::kPhong) text << ", FLIP " << d.flip;
-    return text.str() + (d.same() ? "" : " NOT THE SAME PICTURE");
+    std::string text = "coverage " + significant(100 * d.coverage, 2) + " %, mean " + significant(d.mean, 2);
+    if (row.work == FrameWork::kPhong) text += ", FLIP " + significant(d.flip, 2);
+    return text + (d.same() ? "" : " NOT THE SAME PICTURE");
 }
 
 void print_table(std::ostream& out, const FramesOptions& options, const std::vector<MeshRows>& meshes) {
     out << options.settings.width << "x" << options.settings.height << " pixels, milliseconds a frame (medians of "
         << options.settings.repeats << " repeats in turns); ratio: the peer's time over ours\n";
-    const auto line = [&](const std::vector<std::pair<std::string, int>>& cells, const std::string& rest) {
-        for (const auto& [text, width] : cells)
-            out << (width < 0 ? std::left : std::right) << std::setw(std::abs(width)) << text;
-        out << "  " << rest << '\n';
-    };
-    const auto row_line = [&](const std::string& mesh, const std::vector<std::string>& cells, const std::string& rest) {
-        const int widths[] = {-7, -7, 8, 9, 9, 9, 8, 8, 8, 8};
-        std::vector<std::pair<std::string, int>> all{{mesh, -26}};
-        for (std::size_t i = 0; i < cells.size(); ++i) all.emplace_back(cells[i], widths[i]);
-        line(all, rest);
-    };
-    row_line("mesh", {"view", "work", "threads", "covered", "ours", "peer", "min", "median", "max", "scaling"},
-             "difference of the images");
+    const std::vector<int> widths{-26, -7, -7, 8, 9, 9, 9, 8, 8, 8, 8, 2, 0};
+    print_cells(out, widths,
+                {"mesh", "view", "work", "threads", "covered", "ours", "peer", "min", "median", "max", "scaling", "",
+                 "difference of the images"});
     for (const MeshRows& mesh : meshes)
         for (const FrameRow& row : mesh.rows) {
             const bool peer = row.difference.has_value();
             const auto ratio = [&](double value) { return peer ? fixed(value, 2) : "-"; };
             const double times = scaling(mesh, row);
-            row_line(mesh.mesh + " " + std::to_string(mesh.triangles),
-                     {name(row.view), name(row.work), std::to_string(row.threads), fixed(100 * row.covered, 1) + " %",
-                      milliseconds(row.ours), peer ? milliseconds(row.peer) : "-", ratio(row.ratio.min),
-                      ratio(row.ratio.median), ratio(row.ratio.max), times > 0 ? fixed(times, 2) : "-"},
-                     difference_text(row));
+            print_cells(out, widths,
+                        {mesh.mesh + " " + std::to_string(mesh.triangles), name(row.view), name(row.work),
+                         std::to_string(row.threads), fixed(100 * row.covered, 1) + " %", milliseconds(row.ours),
+                         peer ? milliseconds(row.peer) : "-", ratio(row.ratio.min), ratio(row.ratio.median),
+                         ratio(row.ratio.max), times > 0 ? fixed(times, 2) : "-", "", difference_text(row)});
         }
     for (const MeshRows& mesh : meshes)
         for (const FrameRow& row : mesh.rows)

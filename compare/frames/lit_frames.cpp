@@ -3,8 +3,8 @@
 #include "common/scene/scene.h"
 #include "common/system/stopwatch.h"
 #include "compare/frames/cpu_affinity.h"
+#include "compare/report/text.h"
 
-#include <iomanip>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -75,27 +75,22 @@ LitScene measure_lit_frames(const std::filesystem::path& path, const std::vector
 }
 
 void print_lit_frames(std::ostream& out, const std::vector<LitScene>& scenes, const FrameSettings& settings) {
-    constexpr int kName = 16, kColumn = 9;
+    const std::vector<int> widths{-16, 9, 9, 9, 9};
     out << "Lit frames of " << settings.width << "x" << settings.height << " pixels, one sample a pixel: milliseconds ("
-        << "medians of " << settings.repeats << ")\n"
-        << std::left << std::setw(kName) << "scene" << std::right;
-    for (const char* column : {"threads", "prepare", "frame", "scaling"}) out << std::setw(kColumn) << column;
-    out << '\n';
+        << "medians of " << settings.repeats << ")\n";
+    print_cells(out, widths, {"scene", "threads", "prepare", "frame", "scaling"});
     for (const LitScene& scene : scenes)
         for (const LitRow& row : scene.rows)
-            out << std::left << std::setw(kName) << scene.name << std::right << std::setw(kColumn) << row.threads
-                << std::setw(kColumn) << milliseconds(scene.prepare) << std::setw(kColumn) << milliseconds(row.frame)
-                << std::setw(kColumn) << scaling(scene, row) << '\n';
+            print_cells(out, widths,
+                        {scene.name, std::to_string(row.threads), milliseconds(scene.prepare), milliseconds(row.frame),
+                         scaling(scene, row)});
     for (const LitScene& scene : scenes) {
         const LitRow& row = scene.rows.back();
-        out << scene.name << ", " << row.threads << (row.threads == 1 ? " thread:" : " threads:");
-        const char* separator = " ";
-        for (const auto& [name, seconds] : row.stages) {
-            if (seconds < 5e-5) continue;
-            out << separator << name << ' ' << milliseconds(seconds);
-            separator = ", ";
-        }
-        out << '\n';
+        std::vector<std::string> stages;
+        for (const auto& [name, seconds] : row.stages)
+            if (seconds >= 5e-5) stages.push_back(name + ' ' + milliseconds(seconds));
+        out << scene.name << ", " << row.threads << (row.threads == 1 ? " thread: " : " threads: ") << joined(stages)
+            << '\n';
     }
 }
 

@@ -9,8 +9,6 @@
 #include <cmath>
 #include <ctime>
 #include <functional>
-#include <iomanip>
-#include <sstream>
 
 namespace duet::compare {
 namespace {
@@ -121,14 +119,6 @@ ImageRgb encoded_values(const Image<Rgba8>& image) {
         result[i] = {value(image[i].r), value(image[i].g), value(image[i].b)};
     return result;
 }
-
-std::string fixed(double value, int digits) {
-    std::ostringstream text;
-    text << std::fixed << std::setprecision(digits) << value;
-    return text.str();
-}
-
-std::string milliseconds(double seconds) { return fixed(1000 * seconds, seconds < 0.01 ? 2 : 1); }
 
 double median(std::vector<double> values) {
     if (values.empty()) return 0;

@@ -63,9 +63,6 @@ double median(std::vector<double> values);
 /// Converts 8-bit values to fractions of 255.
 ImageRgb encoded_values(const Image<Rgba8>& image);
 
-std::string fixed(double value, int digits); ///< prints this number of digits after the point
-std::string milliseconds(double seconds);
-
 /// Measures the rows of one mesh, view and thread count, one per work in `works`. `prepared` must be prepared
 /// from `scene`. Makes fewer repeats if `stop` is set.
 std::vector<FrameRow> measure_frames(const Scene& scene, const raster::RasterScene& prepared, FrameView view,

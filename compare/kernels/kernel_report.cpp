@@ -1,11 +1,10 @@
 #include "compare/kernels/kernel_report.h"
 
 #include "common/system/error.h"
+#include "compare/report/text.h"
 
 #include <algorithm>
 #include <array>
-#include <iomanip>
-#include <iostream>
 #include <nlohmann/json.hpp>
 
 namespace duet::compare {
@@ -20,20 +19,13 @@ bool is_rate(const KernelRow& row) { return row.work != "build" && row.work != "
 bool as_rendered(const KernelRow& row) { return row.work != "camera"; }
 
 std::string figure(const KernelRow& row, double value) {
-    std::ostringstream out;
-    if (row.work == "memory")
-        out << std::fixed << std::setprecision(1) << value << " B";
-    else if (row.work == "build")
-        out << std::fixed << std::setprecision(1) << 1000 * value << " ms";
-    else
-        out << std::fixed << std::setprecision(2) << value;
-    return out.str();
+    if (row.work == "memory") return fixed(value, 1) + " B";
+    if (row.work == "build") return fixed(1000 * value, 1) + " ms";
+    return fixed(value, 2);
 }
 
 std::string ratio_text(const MedianRange& ratio) {
-    std::ostringstream out;
-    out << std::fixed << std::setprecision(2) << ratio.min << " - " << ratio.median << " - " << ratio.max;
-    return out.str();
+    return fixed(ratio.min, 2) + " - " + fixed(ratio.median, 2) + " - " + fixed(ratio.max, 2);
 }
 
 /// Formats 1234567 as "1,234,567".
@@ -116,27 +108,22 @@ std::vector<const KernelRow*> rows_to_explain(const KernelResults& table) {
 void print_differences(std::ostream& out, const KernelResults& table) {
     const std::vector<const KernelRow*> rows = rows_to_explain(table);
     if (rows.empty()) return;
-    const auto line = [&](const std::string& work, const std::array<std::string, 9>& cells, const std::string& name) {
-        out << "  " << std::left << std::setw(12) << work << std::right;
-        constexpr std::array<int, 9> kWidths{11, 8, 8, 10, 10, 11, 11, 10, 10};
-        for (std::size_t i = 0; i < cells.size(); ++i) out << std::setw(kWidths[i]) << cells[i];
-        out << "  " << name << '\n';
-    };
+    const std::vector<int> widths{2, -12, 11, 8, 8, 10, 10, 11, 11, 10, 10, 2, 0};
     out << "  where both differ: ties, outlines and ends within rounding; edge faults and wrong answers of each; rays "
            "lost "
            "from the closed room\n";
-    line("work", {"rays", "ties", "edges", "our e.f.", "its e.f.", "our wrong", "its wrong", "we lose", "it loses"},
-         "the peer's setting with the most");
+    print_cells(out, widths,
+                {"", "work", "rays", "ties", "edges", "our e.f.", "its e.f.", "our wrong", "its wrong", "we lose",
+                 "it loses", "", "the peer's setting with the most"});
     for (const KernelRow* row : rows) {
         const Mismatches m = row->mismatches.value_or(Mismatches{});
         const Leaks leaks = row->leaks.value_or(Leaks{});
         const auto if_peer = [&](std::int64_t n) { return row->mismatches ? with_separators(n) : "-"; };
         const auto if_closed = [&](std::int64_t n) { return row->leaks ? with_separators(n) : "-"; };
-        line(row->work + (m.unexplained > 0 ? " !" : ""),
-             {if_peer(m.rays), if_peer(m.tie), if_peer(m.edge), if_peer(m.ours.edge), if_peer(m.peer.edge),
-              if_peer(m.ours.wrong), if_peer(m.peer.wrong), if_closed(leaks.ours),
-              row->mismatches ? if_closed(leaks.peer) : "-"},
-             row->peer_name);
+        print_cells(out, widths,
+                    {"", row->work + (m.unexplained > 0 ? " !" : ""), if_peer(m.rays), if_peer(m.tie), if_peer(m.edge),
+                     if_peer(m.ours.edge), if_peer(m.peer.edge), if_peer(m.ours.wrong), if_peer(m.peer.wrong),
+                     if_closed(leaks.ours), row->mismatches ? if_closed(leaks.peer) : "-", "", row->peer_name});
     }
 }
 
@@ -153,9 +140,9 @@ void print_checks(std::ostream& out, const KernelResults& table) {
     out << "  " << with_separators(table.watertight.front().faults.rays)
         << " rays aimed at points, edges and vertices from within, each judged (lost, edge faults, wrong):\n";
     for (const KernelResults::Aimed& aimed : table.watertight)
-        out << "    " << std::left << std::setw(32) << aimed.kernel << std::right << std::setw(10)
-            << with_separators(aimed.misses) << std::setw(10) << with_separators(aimed.faults.edge) << std::setw(10)
-            << with_separators(aimed.faults.wrong) << '\n';
+        print_cells(out, {4, -32, 10, 10, 10},
+                    {"", aimed.kernel, with_separators(aimed.misses), with_separators(aimed.faults.edge),
+                     with_separators(aimed.faults.wrong)});
 }
 
 } // namespace
@@ -209,23 +196,22 @@ void print_table(std::ostream& out, const KernelResults& table) {
         << " triangles, " << table.width << "x" << table.height << " camera rays";
     if (table.omitted_spheres > 0) out << ", " << table.omitted_spheres << " spheres left out";
     out << "; million rays a second\n";
-    const auto line = [&](const std::string& work, const std::string& threads, const std::string& ours,
-                          const std::string& peer, const std::string& ratio, const std::string& repeats,
-                          const std::string& verdict_text, const std::string& name) {
-        out << "  " << std::left << std::setw(12) << work << std::right << std::setw(8) << threads << std::setw(11)
-            << ours << std::setw(11) << peer << "  " << std::left << std::setw(21) << ratio << std::right
-            << std::setw(7) << repeats << "  " << std::left << std::setw(9) << verdict_text << name << '\n';
-    };
-    line("work", "threads", "ours", "peer", "min - median - max", "repeats", "ours is", "the peer's best");
+    const std::vector<int> widths{2, -12, 8, 11, 11, 2, -21, 7, 2, -9, 0};
+    print_cells(out, widths,
+                {"", "work", "threads", "ours", "peer", "", "min - median - max", "repeats", "", "ours is",
+                 "the peer's best"});
     for (const KernelRow& row : table.rows) {
         const std::string threads = row.work == "memory" ? "" : std::to_string(row.threads);
         const std::string work = row.work + (is_rate(row) && !as_rendered(row) ? " *" : "");
         const bool timed = row.work != "memory";
         const std::string repeats = timed ? std::to_string(row.repeats) : "";
-        if (row.peer_name.empty()) line(work, threads, figure(row, row.ours), "-", "", repeats, "", "");
+        const std::string ours = figure(row, row.ours);
+        if (row.peer_name.empty())
+            print_cells(out, widths, {"", work, threads, ours, "-", "", "", repeats, "", "", ""});
         if (row.best)
-            line(work, threads, figure(row, row.ours), figure(row, row.peer), ratio_text(row.ratio), repeats,
-                 timed ? verdict(row.ratio, row.repeats) : "", row.peer_name);
+            print_cells(out, widths,
+                        {"", work, threads, ours, figure(row, row.peer), "", ratio_text(row.ratio), repeats, "",
+                         timed ? verdict(row.ratio, row.repeats) : "", row.peer_name});
     }
     if (std::ranges::any_of(table.rows, [](const KernelRow& row) { return is_rate(row) && !as_rendered(row); }))
         out << "  * one by one, for comparison with other kernels: the path tracer traces camera rays in bulk\n";

@@ -6,6 +6,7 @@
 #include "common/system/stopwatch.h"
 #include "compare/kernels/measure_kernels.h"
 #include "compare/peers/embree.h"
+#include "compare/report/text.h"
 
 #include <algorithm>
 #include <iostream>
@@ -21,16 +22,10 @@ constexpr const char* kEmbreeMissing =
     "no peer: this program was built without Embree. Install it (Debian, Ubuntu: apt install libembree-dev), then "
     "configure and build again";
 
-template <typename List> std::string listed(const List& names) {
-    std::string text;
-    for (const auto& name : names) text += (text.empty() ? "" : ", ") + std::string(name);
-    return text;
-}
-
 std::vector<std::string> chosen_works(const std::vector<std::string>& works) {
     for (const std::string& work : works)
         if (std::ranges::find(kWorks, work) == kWorks.end())
-            throw Error("--work: found " + work + ", expected some of " + listed(kWorks));
+            throw Error("--work: found " + work + ", expected some of " + joined(kWorks));
     return works.empty() ? kWorks : works;
 }
 
@@ -47,7 +42,7 @@ std::vector<EmbreeQuality> chosen_peers(const std::vector<std::string>& names) {
     for (const std::string& name : names) {
         const auto found = std::ranges::find(known, name);
         if (found == known.end())
-            throw Error("--peers: found " + name + ", expected none, or some of " + listed(known));
+            throw Error("--peers: found " + name + ", expected none, or some of " + joined(known));
         chosen.push_back(all[static_cast<std::size_t>(found - known.begin())]);
     }
     return names.empty() ? all : chosen;

@@ -4,11 +4,10 @@
 #include "common/system/parallel.h"
 #include "compare/ladder/code_lines.h"
 #include "compare/report/report_json.h"
+#include "compare/report/text.h"
 
 #include <cmath>
-#include <iomanip>
 #include <nlohmann/json.hpp>
-#include <ostream>
 
 namespace duet::compare {
 
@@ -78,16 +77,12 @@ json rung_json(const LadderResult& result, std::size_t k) {
 }
 
 std::string percent(double part) {
-    std::ostringstream text;
-    text << std::fixed << std::setprecision(2) << (std::abs(part) < 5e-5 ? 0 : 100 * part) << " %"; // avoids "-0.00"
-    return text.str();
+    return fixed(std::abs(part) < 5e-5 ? 0 : 100 * part, 2) + " %"; // avoids "-0.00"
 }
 
 std::string error_text(const MeasuredQuantity& q) {
     if (q.hits) return message(q.hits->pixels - q.hits->same, " of ", q.hits->pixels);
-    std::ostringstream text;
-    text << std::setprecision(4) << q.error.rmse;
-    return text.str();
+    return significant(q.error.rmse, 4);
 }
 
 int lines_of(std::size_t k, std::string_view side) {
@@ -97,17 +92,17 @@ int lines_of(std::size_t k, std::string_view side) {
     return lines;
 }
 
+const std::vector<int> kRungWidths{-18, 16, 12, 12, 10, 10, 10};
+
 /// Prints one row of the second table: a quantity, or that it is missing. Only a rung's first row has its lines
 /// of code.
 void print_row(std::ostream& out, std::size_t k, bool first, const MeasuredQuantity* q) {
-    out << "  " << k + 1 << ' ' << std::left << std::setw(14) << (q ? q->name : kRungNames[k].id) << std::right
-        << std::setw(16) << (q ? error_text(*q) : "-") << std::setw(12)
-        << (q ? format_duration(q->raster.seconds) : "-") << std::setw(12)
-        << (q ? format_duration(q->raytrace.seconds) : "-");
-    if (first)
-        out << std::setw(10) << lines_of(k, "raster") << std::setw(10) << lines_of(k, "raytrace") << std::setw(10)
-            << lines_of(k, "both");
-    out << '\n';
+    std::vector<std::string> cells{message("  ", k + 1, ' ', q ? q->name : kRungNames[k].id),
+                                   q ? error_text(*q) : "-", q ? format_duration(q->raster.seconds) : "-",
+                                   q ? format_duration(q->raytrace.seconds) : "-"};
+    for (const char* const side : {"raster", "raytrace", "both"})
+        if (first) cells.push_back(std::to_string(lines_of(k, side)));
+    print_cells(out, kRungWidths, cells);
 }
 
 void print_rung(std::ostream& out, const LadderResult& result, std::size_t k) {
@@ -123,14 +118,14 @@ void print_shares(std::ostream& out, const LadderResult& result) {
         out << "  nowhere: the images are equal but for rounding\n";
         return;
     }
-    out << "  " << std::left << std::setw(40) << "cause" << std::right << std::setw(10) << "share" << std::setw(14)
-        << "largest in" << '\n';
+    const std::vector<int> widths{-42, 10, 14};
+    print_cells(out, widths, {"  cause", "share", "largest in"});
     for (std::size_t i = 0; i < kCauseCount; ++i)
-        out << "  " << (i == kNoise ? std::string("- ") : message(i + 1, ' ')) << std::left << std::setw(38)
-            << cause_title(i) << std::right << std::setw(10) << percent(result.shares.share[i]) << std::setw(14)
-            << percent(result.map.pixels[i]) << '\n';
-    out << "  sum of shares: " << std::fixed << std::setprecision(14) << result.shares.sum << std::defaultfloat
-        << "; something to be seen in " << percent(result.map.visible) << " of the pixels\n";
+        print_cells(out, widths,
+                    {(i == kNoise ? "  - " : message("  ", i + 1, ' ')) + cause_title(i),
+                     percent(result.shares.share[i]), percent(result.map.pixels[i])});
+    out << "  sum of shares: " << fixed(result.shares.sum, 14) << "; something to be seen in "
+        << percent(result.map.visible) << " of the pixels\n";
 }
 
 } // namespace
@@ -163,11 +158,8 @@ json ladder_json(const LadderResult& result) {
 void print_ladder(std::ostream& out, const LadderResult& result) {
     print_shares(out, result);
     out << "rung by rung, each quantity rendered by itself (of hits: pixels that differ); lines of code, shared ones "
-           "last:\n"
-        << "  " << std::left << std::setw(16) << "quantity" << std::right << std::setw(16) << "rmse";
-    for (const char* const column : {"raster", "raytrace"}) out << std::setw(12) << column;
-    for (const char* const column : {"raster", "raytrace", "both"}) out << std::setw(10) << column;
-    out << '\n';
+           "last:\n";
+    print_cells(out, kRungWidths, {"  quantity", "rmse", "raster", "raytrace", "raster", "raytrace", "both"});
     for (std::size_t k = 0; k < kRungCount; ++k) print_rung(out, result, k);
     if (result.images.invalid_samples > 0)
         out << result.images.invalid_samples << " samples were NaN, infinite or negative, and were dropped\n";

@@ -1,5 +1,7 @@
 #include "compare/ladder/rungs.h"
 
+#include "compare/report/text.h"
+
 namespace duet::compare {
 
 namespace {
@@ -107,7 +109,7 @@ std::array<RungPlan, kRungCount> plan_rungs(const Scene& scene, const PreparedPa
     const RungPlan shadows{{light_renderers("shadows", pair, kLights, Integrator::kLights, false)},
                            "The same light, times the part that shadow maps let pass.",
                            "Light and BSDF samples with shadow rays, combined by multiple importance sampling.",
-                           paragraph(raster::approximations(pair.raster, raster_lights))};
+                           joined(raster::approximations(pair.raster, raster_lights), " ")};
     PreparedPair sky = pair; // renders without light between surfaces
     sky.raster_settings.indirect_light = false;
     const RungPlan environment{

@@ -1,5 +1,8 @@
 #include "compare/metrics/limits.h"
 
+#include "common/system/error.h"
+#include "compare/report/text.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -16,9 +19,9 @@ const MetricValue* find(const std::vector<MetricValue>& list, const std::string&
 } // namespace
 
 std::string metric_names() {
-    std::string names;
-    for (const MetricValue& metric : metric_values({})) names += (names.empty() ? "" : ", ") + metric.name;
-    return names;
+    std::vector<std::string> names;
+    for (const MetricValue& metric : metric_values({})) names.push_back(metric.name);
+    return joined(names);
 }
 
 Limit parse_limit(const std::string& text) {

@@ -2,11 +2,10 @@
 
 #include "common/program/program.h"
 #include "common/program/statistics.h"
+#include "compare/report/text.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <iomanip>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -25,14 +24,14 @@ std::string full_name(const SkipCase& skip) { return skip.pipeline + "/" + skip.
 
 std::vector<SkipCase> chosen(std::vector<SkipCase> all, const std::vector<std::string>& only) {
     if (only.empty()) return all;
-    std::string known;
-    for (const SkipCase& skip : all) known += (known.empty() ? "" : ", ") + full_name(skip);
+    std::vector<std::string> known;
+    for (const SkipCase& skip : all) known.push_back(full_name(skip));
     const auto meant = [](const SkipCase& skip, const std::string& name) {
         return name == skip.name || name == full_name(skip);
     };
     for (const std::string& name : only)
         if (std::none_of(all.begin(), all.end(), [&](const SkipCase& skip) { return meant(skip, name); }))
-            throw Error(message("--only: found ", name, ", expected one of ", known));
+            throw Error(message("--only: found ", name, ", expected one of ", joined(known)));
     all.erase(std::remove_if(all.begin(), all.end(),
                              [&](const SkipCase& skip) {
                                  return std::none_of(only.begin(), only.end(),
@@ -55,11 +54,7 @@ double largest_bias(const BiasTest& test) {
     return std::max({std::abs(bias.r), std::abs(bias.g), std::abs(bias.b)});
 }
 
-std::string percent(double share) {
-    std::ostringstream out;
-    out << std::setprecision(2) << 100 * share << " %";
-    return out.str();
-}
+std::string percent(double share) { return significant(100 * share, 2) + " %"; }
 
 /// Returns what was proved, or why nothing was.
 std::string verdict(const SkipMeasurement& m, double wanted) {
@@ -67,7 +62,7 @@ std::string verdict(const SkipMeasurement& m, double wanted) {
     if (!m.bias) return message("NOT THE SAME: ", m.pixels_differ, " pixels of ", m.image_pairs, " images differ");
     const BiasTest& test = *m.bias;
     const std::string found =
-        message(percent(largest_bias(test)), " in ", test.pairs(), " pairs, p = ", std::setprecision(2), test.p());
+        message(percent(largest_bias(test)), " in ", test.pairs(), " pairs, p = ", significant(test.p(), 2));
     if (test.p() < kFalseAlarmProbability) return "BIASED by " + found;
     if (!std::isfinite(test.detectable()))
         return message("NOT PROVED: ", test.pairs(),
@@ -123,33 +118,24 @@ json report_json(const SkipOptions& options, const View& view, const std::vector
 }
 
 void print_table(std::ostream& out, const SkipOptions& options, const View& view, const std::vector<Row>& rows) {
-    const auto milliseconds = [](double seconds) {
-        std::ostringstream text;
-        text << std::fixed << std::setprecision(seconds < 0.01 ? 2 : 1) << 1000 * seconds;
-        return text.str();
-    };
-    const auto line = [&](const std::string& name, const std::array<std::string, 4>& numbers, const std::string& rest) {
-        out << std::left << std::setw(27) << name << std::right;
-        for (const std::string& number : numbers) out << std::setw(9) << number;
-        out << "  " << rest << '\n';
-    };
+    const std::vector<int> widths{-27, 9, 9, 9, 9, 2, 0};
     const auto saved = [](double with, double without) {
         return message(std::lround(100 * (1 - with / without)), " %");
     };
     out << "medians of " << options.measure.repeats << " images each way of " << view.width << "x" << view.height
         << " pixels, in turns, and what is saved by medians and by minima\n";
-    line("skip", {"with ms", "without", "saved", "by min"}, "proof; what is left out (why)");
+    print_cells(out, widths, {"skip", "with ms", "without", "saved", "by min", "", "proof; what is left out (why)"});
     for (const Row& row : rows) {
         const SkipMeasurement& m = row.measured;
-        line(full_name(row.skip),
-             {milliseconds(m.with.median), milliseconds(m.without.median), saved(m.with.median, m.without.median),
-              saved(m.with.min, m.without.min)},
-             verdict(m, options.measure.bias) + "; " + row.skip.omitted +
-                 (m.reason.empty() ? "" : " (" + m.reason + ")") +
-                 (m.rays_saved > 0 ? message(", ", m.rays_saved, " rays") : ""));
+        print_cells(out, widths,
+                    {full_name(row.skip), milliseconds(m.with.median), milliseconds(m.without.median),
+                     saved(m.with.median, m.without.median), saved(m.with.min, m.without.min), "",
+                     verdict(m, options.measure.bias) + "; " + row.skip.omitted +
+                         (m.reason.empty() ? "" : " (" + m.reason + ")") +
+                         (m.rays_saved > 0 ? message(", ", m.rays_saved, " rays") : "")});
     }
     for (const MissingSkip& skip : missing_skips())
-        line(skip.pipeline + "/-", {"-", "-", "-", "-"}, skip.name + ": not built");
+        print_cells(out, widths, {skip.pipeline + "/-", "-", "-", "-", "-", "", skip.name + ": not built"});
 }
 
 } // namespace

@@ -3,10 +3,10 @@
 #include "common/program/program.h"
 #include "common/program/statistics.h"
 #include "compare/bench/render_reference.h"
+#include "compare/report/text.h"
 #include "raytrace/render.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
@@ -84,11 +84,7 @@ json as_json(const Row& row, const StopOptions& options) {
 }
 
 /// Returns "0.95", or "-" if the ratio is not finite.
-std::string ratio_text(double ratio) {
-    std::array<char, 16> text{};
-    std::snprintf(text.data(), text.size(), "%.2f", ratio);
-    return std::isfinite(ratio) ? text.data() : "-";
-}
+std::string ratio_text(double ratio) { return std::isfinite(ratio) ? fixed(ratio, 2) : "-"; }
 
 void print_head(bool times) {
     std::printf("%-24s %9s  %9s  %9s  %16s  %8s%s\n", "", "size", "error got", "samples", "adaptive / even", "seconds",

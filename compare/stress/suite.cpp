@@ -4,12 +4,12 @@
 #include "common/program/statistics.h"
 #include "common/system/error.h"
 #include "common/system/stopwatch.h"
+#include "compare/report/text.h"
 #include "compare/stress/stress.h"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <iomanip>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -19,51 +19,41 @@ namespace {
 
 using nlohmann::json;
 
-std::string readable(double value) {
-    std::ostringstream out;
-    out << std::setprecision(3) << value;
-    return out.str();
-}
+std::string readable(double value) { return significant(value, 3); }
 
 /// Prints the terminal's table; its column widths fit the selected names.
 class Table {
 public:
     Table(const std::vector<StressTest>& tests, bool visible) : visible_(visible) {
         for (const StressTest& test : tests) {
-            name_ = std::max(name_, test.name.size());
-            bound_ = std::max(bound_, bound_text(test).size());
+            name_ = std::max(name_, static_cast<int>(test.name.size()));
+            bound_ = std::max(bound_, static_cast<int>(bound_text(test).size()));
         }
     }
 
     void head() const {
-        row({"", "test", "trials", "failures", "worst", "bound", "books' failures", "worst",
+        row({"", "test", "trials", "failures", "worst", "", "bound", "books' failures", "worst", "",
              "source of the bound; the books' way"});
     }
     void add(const StressTest& test, const StressResult& result) const {
         row({result.failed() ? "FAILED" : "ok", std::string(test.name), message(result.trials),
-             message(result.library.failures), readable(result.library.worst), bound_text(test),
+             message(result.library.failures), readable(result.library.worst), "", bound_text(test),
              result.naive ? message(result.naive->failures) : "", result.naive ? readable(result.naive->worst) : "",
-             std::string(test.source) + (test.naive.empty() ? "" : ". Books: " + std::string(test.naive))});
+             "", std::string(test.source) + (test.naive.empty() ? "" : ". Books: " + std::string(test.naive))});
     }
 
 private:
     static std::string bound_text(const StressTest& test) {
         return readable(test.bound) + " " + std::string(test.unit);
     }
-    struct Row {
-        std::string verdict, name, trials, failures, worst, bound, naive_failures, naive_worst, source;
-    };
-    void row(const Row& r) const {
+    void row(const std::vector<std::string>& cells) const {
         if (!visible_) return;
-        std::cout << std::left << std::setw(7) << r.verdict << std::setw(static_cast<int>(name_)) << r.name
-                  << std::right << std::setw(9) << r.trials << std::setw(9) << r.failures << std::setw(10) << r.worst
-                  << "  " << std::left << std::setw(static_cast<int>(bound_)) << r.bound << std::right << std::setw(16)
-                  << r.naive_failures << std::setw(10) << r.naive_worst << "  " << r.source << '\n'
-                  << std::flush;
+        print_cells(std::cout, {-7, -name_, 9, 9, 10, 2, -bound_, 16, 10, 2, 0}, cells);
+        std::cout.flush();
     }
 
     bool visible_;
-    std::size_t name_ = 4, bound_ = 5;
+    int name_ = 4, bound_ = 5; ///< widths
 };
 
 /// Prints what is needed to reproduce a failure.
