@@ -1,28 +1,18 @@
 #include "compare/bench/bench_renderer.h"
 
-#include "common/system/stopwatch.h"
 #include "compare/renderer.h"
 #include "compare/report/text.h"
+#include "compare/timing.h"
 #include "raster/render.h"
 #include "raytrace/render.h"
 
 #include <algorithm>
 #include <memory>
 #include <optional>
-#include <sys/resource.h>
 
 namespace duet::compare {
 
 namespace {
-
-double cpu_seconds_so_far() {
-    rusage usage{};
-    ::getrusage(RUSAGE_SELF, &usage);
-    const auto seconds = [](const timeval& t) {
-        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-    };
-    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
 
 /// This is the path tracer with adaptive sampling.
 constexpr std::string_view kAdaptive = "adaptive";
@@ -97,13 +87,13 @@ TimedImage time_render(const std::function<ImageRgb()>& render, const Control& c
     TimedImage trial;
     int times = 0;
     const Stopwatch watch;
-    const double cpu = cpu_seconds_so_far();
+    const double cpu = processor_seconds();
     do {
         trial.image = render();
         ++times;
     } while (watch.seconds() < kMinTimingSeconds && !control.stopped());
     trial.seconds = watch.seconds() / times;
-    trial.cpu_seconds = (cpu_seconds_so_far() - cpu) / times;
+    trial.cpu_seconds = (processor_seconds() - cpu) / times;
     return trial;
 }
 

@@ -1,8 +1,8 @@
 #include "compare/bench/estimate.h"
 
 #include "common/vec/scalar.h"
+#include "compare/timing.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -97,12 +97,10 @@ Estimate mean_of(const std::vector<double>& values) {
 
 Estimate median_of(std::vector<double> values) {
     if (values.empty()) return {std::numeric_limits<double>::quiet_NaN(), 0, 1};
-    std::sort(values.begin(), values.end());
-    const std::size_t n = values.size();
-    const double median = n % 2 == 1 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2;
+    const double middle = median(values);
     for (double& v : values) v = std::log(v);
-    const double error = moments(values).deviation / std::sqrt(static_cast<double>(n));
-    return {median, std::sqrt(kPiDouble / 2) * error, dof_of(n)};
+    const double error = moments(values).deviation / std::sqrt(static_cast<double>(values.size()));
+    return {middle, std::sqrt(kPiDouble / 2) * error, dof_of(values.size())};
 }
 
 Estimate efficiency_of(const Estimate& mse, const Estimate& seconds) {

@@ -1,9 +1,9 @@
 #include "compare/frames/lit_frames.h"
 
 #include "common/scene/scene.h"
-#include "common/system/stopwatch.h"
 #include "compare/frames/cpu_affinity.h"
 #include "compare/report/text.h"
+#include "compare/timing.h"
 
 #include <map>
 #include <nlohmann/json.hpp>
@@ -22,7 +22,7 @@ LitRow measure_row(const raster::RasterScene& prepared, const View& view, int th
                    Rendering& image) {
     const CpuAffinity pinned(threads);
     const raster::RasterSettings lit = lit_settings(threads);
-    const FrameClock clock(settings);
+    const WorkStopwatch clock(settings.processor_time);
     Control control;
     raster::render(prepared, view, lit, control, image); // touches the memory
     std::vector<double> frames;
@@ -61,7 +61,7 @@ LitScene measure_lit_frames(const std::filesystem::path& path, const std::vector
     const Scene scene = load_scene(path);
     LitScene result;
     result.name = path.stem().string();
-    const FrameClock clock(settings);
+    const WorkStopwatch clock(settings.processor_time);
     const auto prepared = [&] {
         const CpuAffinity pinned(threads.back());
         return raster::prepare(scene, lit_settings(threads.back()));

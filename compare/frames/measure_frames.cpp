@@ -1,13 +1,12 @@
 #include "compare/frames/measure_frames.h"
 
 #include "common/image/srgb.h"
-#include "common/system/stopwatch.h"
 #include "compare/frames/cpu_affinity.h"
 #include "compare/metrics/flip.h"
+#include "compare/timing.h"
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <functional>
 
 namespace duet::compare {
@@ -53,16 +52,9 @@ FrameDifference difference(const ImageFloat& ours, const ImageFloat& peer) {
     return {mismatched_fraction(ours, peer), common > 0 ? sum / static_cast<double>(common) : 0, 0};
 }
 
-/// Returns the CPU time that all threads of this process have used.
-double processor_seconds() {
-    timespec time{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
 /// Draws frames for the duration of a burst and returns the seconds per frame.
 double time_burst(const std::function<void()>& draw, const FrameSettings& settings) {
-    const FrameClock clock(settings);
+    const WorkStopwatch clock(settings.processor_time);
     const Stopwatch watch;
     int frames = 0;
     do {
@@ -107,24 +99,12 @@ void compare_images_of_frame(FrameRow& row, const Rendering& ours, const ImageFl
 
 } // namespace
 
-FrameClock::FrameClock(const FrameSettings& settings)
-    : processor_time_(settings.processor_time), start_(processor_time_ ? processor_seconds() : 0) {}
-
-double FrameClock::seconds() const { return processor_time_ ? processor_seconds() - start_ : watch_.seconds(); }
-
 ImageRgb encoded_values(const Image<Rgba8>& image) {
     ImageRgb result(image.width(), image.height());
     const auto value = [](std::uint8_t code) { return static_cast<float>(code) / 255; };
     for (std::size_t i = 0; i < result.size(); ++i)
         result[i] = {value(image[i].r), value(image[i].g), value(image[i].b)};
     return result;
-}
-
-double median(std::vector<double> values) {
-    if (values.empty()) return 0;
-    std::sort(values.begin(), values.end());
-    const std::size_t middle = values.size() / 2;
-    return values.size() % 2 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
 }
 
 // Coverage may differ where an edge passes close to a sample. Both snap vertices to a grid of 1/256 pixel, but

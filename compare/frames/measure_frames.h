@@ -3,7 +3,6 @@
 
 #include "compare/frames/frame_scene.h"
 #include "compare/frames/llvmpipe.h"
-#include "common/system/stopwatch.h"
 #include "raster/render.h"
 
 #include <atomic>
@@ -44,21 +43,6 @@ struct FrameSettings {
     bool peer = true;      ///< measure the peer, if it is built
     const std::atomic<bool>* stop = nullptr;
 };
-
-/// Reads the clock that the settings choose: wall-clock time, or the CPU time of all threads of this process.
-class FrameClock {
-public:
-    explicit FrameClock(const FrameSettings& settings);
-    double seconds() const; ///< since construction
-
-private:
-    bool processor_time_;
-    double start_;
-    Stopwatch watch_;
-};
-
-/// Returns the median; 0 for no values.
-double median(std::vector<double> values);
 
 /// Converts 8-bit values to fractions of 255.
 ImageRgb encoded_values(const Image<Rgba8>& image);

@@ -76,7 +76,7 @@ RaySubset choose_ray_subset(std::size_t rays, double rate, double seconds) {
 
 double trace_seconds(const Tracer& tracer, const RaySubset& subset, int threads,
                      std::vector<RayResultBlock>& ray_results) {
-    const WorkStopwatch watch(threads);
+    const WorkStopwatch watch = work_stopwatch(threads);
     for (int pass = 0; pass < subset.passes; ++pass)
         parallel_for(subset.groups.size(), threads, [&](std::size_t i) {
             const std::size_t first = subset.groups[i] * RaySubset::kGroup;

@@ -2,10 +2,9 @@
 #pragma once
 
 #include "common/system/control.h"
-#include "common/system/stopwatch.h"
 #include "compare/kernels/tracer.h"
+#include "compare/timing.h"
 
-#include <ctime>
 #include <functional>
 #include <string>
 #include <vector>
@@ -21,20 +20,8 @@ MedianRange median_range(std::vector<double> values);
 /// Does the work once and returns the seconds it took.
 using TimedWork = std::function<double()>;
 
-/// Measures the time of work on `threads` threads: the CPU time of a single thread, which other programs
-/// disturb much less; the wall-clock time of several threads.
-class WorkStopwatch {
-public:
-    explicit WorkStopwatch(int threads) : single_threaded_(threads == 1), begin_(std::clock()) {}
-    double seconds() const {
-        return single_threaded_ ? static_cast<double>(std::clock() - begin_) / CLOCKS_PER_SEC : watch_.seconds();
-    }
-
-private:
-    bool single_threaded_;
-    std::clock_t begin_; ///< CPU time of the process, whose other threads sleep
-    Stopwatch watch_;
-};
+/// Returns a stopwatch for work on `threads` threads: CPU time for a single thread, wall-clock time for several.
+inline WorkStopwatch work_stopwatch(int threads) { return WorkStopwatch(threads == 1); }
 
 struct PairedTiming {
     MedianRange ratio;           ///< peer's seconds / ours, for measurements adjacent in time: above 1, Duet is faster
@@ -68,7 +55,7 @@ struct RaySubset {
 /// Returns the subset of a set of `rays` rays for a tracer that traces `rate` rays per second, to last `seconds`.
 RaySubset choose_ray_subset(std::size_t rays, double rate, double seconds);
 
-/// Returns the seconds (WorkStopwatch) to trace the subset on `threads` threads. `ray_results` has one element per
+/// Returns the seconds (work_stopwatch) to trace the subset on `threads` threads. `ray_results` has one element per
 /// block of the whole set.
 double trace_seconds(const Tracer& tracer, const RaySubset& subset, int threads,
                      std::vector<RayResultBlock>& ray_results);

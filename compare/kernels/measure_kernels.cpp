@@ -97,7 +97,7 @@ private:
     void measure_builds(int threads) {
         const Control control = steps_.next();
         const TimedWork ours = [&] {
-            const WorkStopwatch watch(threads);
+            const WorkStopwatch watch = work_stopwatch(threads);
             const raytrace::Accelerator built(*scene_.scene, threads);
             return watch.seconds();
         };
@@ -105,7 +105,7 @@ private:
         std::vector<TimedWork> peers;
         for (const EmbreeQuality& quality : settings_.peers)
             peers.push_back([&devices, quality, threads] {
-                const WorkStopwatch watch(threads);
+                const WorkStopwatch watch = work_stopwatch(threads);
                 const EmbreeScene built(devices.of(quality), quality);
                 return watch.seconds();
             });

@@ -1,7 +1,7 @@
 #include "compare/skip/measure_skip.h"
 
 #include "common/image/bitwise_equal.h"
-#include "common/system/stopwatch.h"
+#include "compare/timing.h"
 
 #include <algorithm>
 
@@ -22,10 +22,8 @@ Rgbd mean_color(const ImageRgb& image) {
     return sum / static_cast<double>(image.size());
 }
 
-SkipMeasurement::Seconds summary(std::vector<double> seconds) {
-    std::sort(seconds.begin(), seconds.end());
-    const std::size_t n = seconds.size();
-    return {(seconds[(n - 1) / 2] + seconds[n / 2]) / 2, seconds.front()};
+SkipMeasurement::Seconds summary(const std::vector<double>& seconds) {
+    return {median(seconds), *std::min_element(seconds.begin(), seconds.end())};
 }
 
 std::int64_t rays(const Rendering& rendering) {

@@ -3,6 +3,7 @@
 
 #include "common/system/stopwatch.h"
 #include "compare/bench/measure.h"
+#include "compare/timing.h"
 #include "raytrace/sample_schedule.h"
 
 #include <algorithm>
@@ -106,9 +107,7 @@ template <typename Figure> double mean(const std::vector<StopTrial>& trials, Fig
 double StopResult::median_error() const {
     std::vector<double> errors;
     for (const StopTrial& trial : trials) errors.push_back(trial.relmse);
-    std::sort(errors.begin(), errors.end());
-    const std::size_t n = errors.size();
-    return n == 0 ? 0 : (errors[(n - 1) / 2] + errors[n / 2]) / 2;
+    return median(std::move(errors));
 }
 
 double StopResult::mean_samples() const {
