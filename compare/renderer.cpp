@@ -1,54 +1,19 @@
 #include "compare/renderer.h"
 
 #include "common/system/stopwatch.h"
-#include "raster/render.h"
-#include "raytrace/render.h"
+
+#include <algorithm>
+#include <cmath>
 
 namespace duet::compare {
 
 namespace {
 
-/// Returns the settings reduced to one sample per pixel and the hit AOV alone.
-template <typename Settings> Settings hits_only(Settings settings) {
+/// Reduces the settings to one sample per pixel and the hit AOV alone.
+template <typename Settings> void keep_hits_only(Settings& settings) {
     settings.samples_per_pixel = 1;
     settings.aovs = AovSet{};
     settings.aovs.hit = true;
-    return settings;
-}
-
-raster::RasterSettings raster_settings(const ComparisonSettings& common) {
-    raster::RasterSettings settings;
-    settings.samples_per_pixel = common.raster_spp;
-    settings.threads = common.threads;
-    settings.seed = common.seed;
-    return settings;
-}
-raster::RasterSettings hit_settings(const raster::RasterSettings& settings) {
-    raster::RasterSettings hits = hits_only(settings);
-    hits.shading = raster::Shading::kNormal; // cheapest shading: only the hits are used
-    return hits;
-}
-
-raytrace::PathTracerSettings path_tracer_settings(const ComparisonSettings& common) {
-    raytrace::PathTracerSettings settings;
-    settings.samples_per_pixel = common.raytrace_spp;
-    settings.max_depth = common.max_depth;
-    settings.threads = common.threads;
-    settings.seed = common.seed;
-    return settings;
-}
-raytrace::PathTracerSettings hit_settings(const raytrace::PathTracerSettings& settings) {
-    raytrace::PathTracerSettings hits = hits_only(settings);
-    hits.sampler = SamplerKind::kCenter;
-    hits.integrator = raytrace::Integrator::kNormal;
-    return hits;
-}
-
-template <typename Prepared, typename Settings>
-RenderFunction render_function(const Prepared& prepared, const Settings& settings) {
-    return [prepared, settings](const View& view, Control& control) {
-        return render(prepared, view, settings, control);
-    };
 }
 
 template <typename Settings>
@@ -65,6 +30,36 @@ template <typename Settings> RenderFunction hits(const Scene& scene, const Setti
 
 } // namespace
 
+raster::RasterSettings raster_settings(const ComparisonSettings& common) {
+    raster::RasterSettings settings;
+    settings.samples_per_pixel = common.raster_spp;
+    settings.threads = common.threads;
+    settings.seed = common.seed;
+    return settings;
+}
+
+raytrace::PathTracerSettings path_tracer_settings(const ComparisonSettings& common) {
+    raytrace::PathTracerSettings settings;
+    settings.samples_per_pixel = common.raytrace_spp;
+    settings.max_depth = common.max_depth;
+    settings.threads = common.threads;
+    settings.seed = common.seed;
+    return settings;
+}
+
+raster::RasterSettings hit_settings(raster::RasterSettings settings) {
+    keep_hits_only(settings);
+    settings.shading = raster::Shading::kDepth;
+    return settings;
+}
+
+raytrace::PathTracerSettings hit_settings(raytrace::PathTracerSettings settings) {
+    keep_hits_only(settings);
+    settings.sampler = SamplerKind::kCenter;
+    settings.integrator = raytrace::Integrator::kNormal;
+    return settings;
+}
+
 Renderer raster_renderer(const Scene& scene, const ComparisonSettings& settings) {
     return renderer("raster", scene, raster_settings(settings));
 }
@@ -80,5 +75,11 @@ RenderFunction raytrace_hits(const Scene& scene, const ComparisonSettings& setti
 }
 
 View scene_view(const Scene& scene) { return {scene.camera, scene.width, scene.height}; }
+
+View scene_view(const Scene& scene, ImageSize size, double scale) {
+    if (size.width > 0) return {scene.camera, size.width, size.height};
+    const auto scaled = [&](int pixels) { return std::max(1, static_cast<int>(std::lround(pixels * scale))); };
+    return {scene.camera, scaled(scene.width), scaled(scene.height)};
+}
 
 } // namespace duet::compare

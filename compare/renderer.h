@@ -4,6 +4,8 @@
 #include "common/program/render_program.h"
 #include "common/rendering.h"
 #include "common/scene/scene.h"
+#include "raster/render.h"
+#include "raytrace/render.h"
 
 #include <string>
 #include <vector>
@@ -30,11 +32,28 @@ struct Renderer {
 Renderer raster_renderer(const Scene& scene, const ComparisonSettings& settings);
 Renderer raytrace_renderer(const Scene& scene, const ComparisonSettings& settings);
 
+/// Returns a pipeline's settings of the full image.
+raster::RasterSettings raster_settings(const ComparisonSettings& settings);
+raytrace::PathTracerSettings path_tracer_settings(const ComparisonSettings& settings);
+/// Returns the settings for Rendering::hit alone: one ray per pixel, and the cheapest shading.
+raster::RasterSettings hit_settings(raster::RasterSettings settings);
+raytrace::PathTracerSettings hit_settings(raytrace::PathTracerSettings settings);
+
+/// Returns a function that renders the prepared scene of either pipeline.
+template <typename Prepared, typename Settings>
+RenderFunction render_function(const Prepared& prepared, const Settings& settings) {
+    return [prepared, settings](const View& view, Control& control) {
+        return render(prepared, view, settings, control);
+    };
+}
+
 /// Returns the Renderer::render_hits of each pipeline alone, and prepares no shading.
 RenderFunction raster_hits(const Scene& scene, const ComparisonSettings& settings);
 RenderFunction raytrace_hits(const Scene& scene, const ComparisonSettings& settings);
 
 /// Returns the view of the scene's camera, in the scene's image size.
 View scene_view(const Scene& scene);
+/// Returns the view of the scene's camera in the given size or, for 0 × 0, in the scene's size times `scale`.
+View scene_view(const Scene& scene, ImageSize size, double scale);
 
 } // namespace duet::compare

@@ -9,6 +9,7 @@
 #include "compare/bench/bench_report.h"
 #include "compare/bench/render_reference.h"
 #include "compare/peers/cycles.h"
+#include "compare/renderer.h"
 #include "compare/report/output.h"
 
 #include <algorithm>
@@ -39,12 +40,9 @@ json read_baseline(const fs::path& path) {
     return report;
 }
 
-/// Returns the requested size, or one of the scene's aspect ratio for which a trial takes seconds instead of minutes.
-View view_of(const Scene& scene, ImageSize size) {
-    if (size.width > 0) return {scene.camera, size.width, size.height};
-    const double scale = std::min(1.0, 256 / std::sqrt(static_cast<double>(scene.width) * scene.height));
-    const auto side = [&](int pixels) { return std::max(1, static_cast<int>(std::lround(pixels * scale))); };
-    return {scene.camera, side(scene.width), side(scene.height)};
+/// Returns the scale at which a trial takes seconds instead of minutes.
+double bench_scale(const Scene& scene) {
+    return std::min(1.0, 256 / std::sqrt(static_cast<double>(scene.width) * scene.height));
 }
 
 int threads_of(const BenchOptions& options) {
@@ -56,7 +54,7 @@ class SceneBench {
 public:
     SceneBench(const BenchOptions& options, const fs::path& path, const InterruptFlag& interrupt)
         : options_(options), interrupt_(interrupt), scene_(load_scene(path, options.size)),
-          view_(view_of(scene_, options.size)), counted_(counted_pixels(options.excluded, view_.width, view_.height)) {
+          view_(scene_view(scene_, options.size, bench_scale(scene_))), counted_(counted_pixels(options.excluded, view_.width, view_.height)) {
         result_.scene = path.string();
         result_.scene_hash = hash_scene_files(scene_);
         result_.width = view_.width;

@@ -26,7 +26,7 @@ void limit_memory(int mebibytes) {
 }
 
 /// A scene that was loaded can be rendered, so an error is a failure.
-CheckResult check_loaded(const Scene& scene, const CheckSettings& settings) {
+CheckResult check_loaded(const Scene& scene, const ComparisonSettings& settings) {
     try {
         return check_scene(scene, settings);
     } catch (const Error& error) {

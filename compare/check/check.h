@@ -12,7 +12,7 @@ namespace duet::compare {
 struct CheckOptions {
     std::vector<std::string> scenes; ///< scene files; "-" stands for the names on standard input, one a line
     ImageSize size{0, 0}; ///< image size; 0 × 0: the scene's
-    CheckSettings settings;
+    ComparisonSettings settings{.raster_spp = 1, .raytrace_spp = 4};
     int memory_limit = 0; ///< address space of this program in MiB; 0: not limited
 };
 

@@ -3,9 +3,6 @@
 #include "common/image/bitwise_equal.h"
 #include "common/system/error.h"
 #include "compare/hits/hit_agreement.h"
-#include "compare/renderer.h"
-#include "raster/render.h"
-#include "raytrace/render.h"
 
 namespace duet::compare {
 
@@ -42,7 +39,7 @@ CheckResult check_samples(const std::string& pipeline, const Rendering& renderin
     return image.empty() ? CheckResult{} : CheckResult{pipeline + ": invalid pixel", "of the " + image + " image"};
 }
 
-CheckResult check_hits(const Scene& scene, const View& view, const CheckSettings& settings) {
+CheckResult check_hits(const Scene& scene, const View& view, const ComparisonSettings& settings) {
     Control control;
     const ComparisonSettings common{.threads = 1, .seed = settings.seed};
     const Image<Hit> raster = raster_hits(scene, common)(view, control).hit;
@@ -79,19 +76,13 @@ bool same_bits(const Rendering& a, const Rendering& b) {
            bitwise_equal(a.variance, b.variance) && bitwise_equal(a.samples, b.samples);
 }
 
-CheckResult check_scene(const Scene& scene, const CheckSettings& settings) {
+CheckResult check_scene(const Scene& scene, const ComparisonSettings& settings) {
     const View view = scene_view(scene);
     CheckResult result = check_hits(scene, view, settings);
     if (result.failed()) return result;
-    raster::RasterSettings raster;
-    raster.samples_per_pixel = settings.raster_spp;
-    raster.seed = settings.seed;
-    result = check_rendering("raster", scene, view, raster);
+    result = check_rendering("raster", scene, view, raster_settings(settings));
     if (result.failed()) return result;
-    raytrace::PathTracerSettings raytrace;
-    raytrace.samples_per_pixel = settings.raytrace_spp;
-    raytrace.seed = settings.seed;
-    return check_rendering("raytrace", scene, view, raytrace);
+    return check_rendering("raytrace", scene, view, path_tracer_settings(settings));
 }
 
 } // namespace duet::compare

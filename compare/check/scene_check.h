@@ -1,18 +1,11 @@
 // This header declares what must hold for the renderings of any valid scene.
 #pragma once
 
-#include "common/rendering.h"
-#include "common/scene/scene.h"
+#include "compare/renderer.h"
 
-#include <cstdint>
 #include <string>
 
 namespace duet::compare {
-
-struct CheckSettings {
-    int raster_spp = 1, raytrace_spp = 4;
-    std::uint64_t seed = 0;
-};
 
 /// Says which requirement a scene fails first. Both texts are empty if it fails none.
 struct CheckResult {
@@ -26,7 +19,7 @@ struct CheckResult {
 /// - distances to the same primitive agree within kDepthTolerance;
 /// - no sample is NaN, infinite or negative, nor is any pixel of an auxiliary image NaN;
 /// - one and three threads give the same bits, in the image and in all auxiliary images.
-CheckResult check_scene(const Scene& scene, const CheckSettings& settings);
+CheckResult check_scene(const Scene& scene, const ComparisonSettings& settings);
 
 /// Returns whether the images and all auxiliary images of two renderings are equal in every bit.
 bool same_bits(const Rendering& a, const Rendering& b);

@@ -6,14 +6,6 @@ namespace duet::compare {
 
 namespace {
 
-RenderFunction render_function(const raster::RasterScene& prepared, const raster::RasterSettings& settings) {
-    return [=](const View& view, Control& control) { return raster::render(prepared, view, settings, control); };
-}
-RenderFunction render_function(const raytrace::PathTracerScene& prepared,
-                               const raytrace::PathTracerSettings& settings) {
-    return [=](const View& view, Control& control) { return raytrace::render(prepared, view, settings, control); };
-}
-
 RungRenderers make_renderers(std::string name, const PreparedPair& pair, const raster::RasterSettings& raster,
                              const raytrace::PathTracerSettings& raytrace) {
     return {std::move(name), render_function(pair.raster, raster), render_function(pair.raytrace, raytrace),
@@ -21,16 +13,7 @@ RungRenderers make_renderers(std::string name, const PreparedPair& pair, const r
 }
 
 RungRenderers hit_renderers(const PreparedPair& pair) {
-    raster::RasterSettings raster = pair.raster_settings;
-    raster.samples_per_pixel = 1;
-    raster.shading = raster::Shading::kDepth; // cheapest shading: only the hits are used
-    raster.aovs.hit = true;
-    raytrace::PathTracerSettings raytrace = pair.raytrace_settings;
-    raytrace.samples_per_pixel = 1;
-    raytrace.sampler = SamplerKind::kCenter;
-    raytrace.integrator = raytrace::Integrator::kNormal;
-    raytrace.aovs.hit = true;
-    return make_renderers("hits", pair, raster, raytrace);
+    return make_renderers("hits", pair, hit_settings(pair.raster_settings), hit_settings(pair.raytrace_settings));
 }
 
 RungRenderers surface_renderers(const char* name, const PreparedPair& pair, raster::Shading shading,
@@ -73,14 +56,10 @@ constexpr const char* kNoLights = "The scene has no light but, perhaps, its envi
 } // namespace
 
 PreparedPair prepare_pair(const Scene& scene, const ComparisonSettings& common) {
-    raster::RasterSettings raster;
-    raster.samples_per_pixel = common.raster_spp;
-    raytrace::PathTracerSettings raytrace;
-    raytrace.samples_per_pixel = common.raytrace_spp + common.raytrace_spp % 2; // two halves
+    const raster::RasterSettings raster = raster_settings(common);
+    raytrace::PathTracerSettings raytrace = path_tracer_settings(common);
+    raytrace.samples_per_pixel += raytrace.samples_per_pixel % 2; // two halves
     raytrace.aovs.variance = true; // makes the halves replicates
-    raytrace.max_depth = common.max_depth;
-    raster.threads = raytrace.threads = common.threads;
-    raster.seed = raytrace.seed = common.seed;
     return {raster::prepare(scene, raster), raster, raytrace::prepare(scene, raytrace), raytrace};
 }
 

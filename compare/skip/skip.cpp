@@ -41,14 +41,6 @@ std::vector<SkipCase> chosen(std::vector<SkipCase> all, const std::vector<std::s
     return all;
 }
 
-View view_of(const Scene& scene, ImageSize size) {
-    constexpr double kLongerSide = 128;
-    const double scale = kLongerSide / std::max(scene.width, scene.height);
-    const auto pixels = [&](int n) { return std::max(1, static_cast<int>(std::lround(n * scale))); };
-    return {scene.camera, size.width > 0 ? size.width : pixels(scene.width),
-            size.height > 0 ? size.height : pixels(scene.height)};
-}
-
 double largest_bias(const BiasTest& test) {
     const Rgbd bias = test.bias();
     return std::max({std::abs(bias.r), std::abs(bias.g), std::abs(bias.b)});
@@ -144,7 +136,8 @@ int skip(const SkipOptions& options) {
     check_json_path(options.stats);
     const InterruptFlag interrupt;
     const Scene scene = load_scene(options.scene);
-    const View view = view_of(scene, options.size);
+    constexpr double kLongerSide = 128;
+    const View view = scene_view(scene, options.size, kLongerSide / std::max(scene.width, scene.height));
     const std::vector<SkipCase> cases = chosen(skip_cases(scene, options.settings), options.only);
     std::vector<Row> rows;
     {

@@ -11,7 +11,7 @@ namespace duet::compare {
 struct SkipOptions {
     std::filesystem::path scene;
     ImageSize size{0, 0}; ///< 0 × 0: the scene's aspect ratio, with a longer side of 128 pixels
-    SkipSettings settings;
+    ComparisonSettings settings{.raster_spp = 4, .raytrace_spp = 4};
     SkipMeasureSettings measure;
     std::vector<std::string> only; ///< PIPELINE/NAME, or NAME for both pipelines; empty: all
     std::string stats;             ///< file for the results as JSON; "-" for standard output; empty: none

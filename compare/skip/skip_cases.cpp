@@ -77,16 +77,11 @@ void add_cases(std::vector<SkipCase>& cases, const char* pipeline, const SkipSwi
 
 } // namespace
 
-std::vector<SkipCase> skip_cases(const Scene& scene, const SkipSettings& settings) {
+std::vector<SkipCase> skip_cases(const Scene& scene, const ComparisonSettings& settings) {
     std::vector<SkipCase> cases;
-    raster::RasterSettings raster;
-    raster.samples_per_pixel = settings.raster_spp;
-    raster.threads = settings.threads;
+    const raster::RasterSettings raster = raster_settings(settings);
     add_cases(cases, "raster", kRaster, raster::prepare(scene, raster), raster);
-
-    raytrace::PathTracerSettings raytrace;
-    raytrace.samples_per_pixel = settings.raytrace_spp;
-    raytrace.threads = settings.threads;
+    const raytrace::PathTracerSettings raytrace = path_tracer_settings(settings);
     const raytrace::PathTracerScene prepared = raytrace::prepare(scene, raytrace);
     add_cases(cases, "raytrace", kRaytrace, prepared, raytrace);
     constexpr SkipSwitch kRoulette{"russian_roulette", nullptr, "most of the dim paths", "", SkipProof::kNoBias};

@@ -1,10 +1,7 @@
 // The skips of both pipelines, each as a case that can be rendered with and without the skip.
 #pragma once
 
-#include "common/camera/camera.h"
-#include "common/rendering.h"
-#include "common/scene/scene.h"
-#include "common/system/control.h"
+#include "compare/renderer.h"
 
 #include <functional>
 #include <string>
@@ -33,13 +30,8 @@ struct MissingSkip {
     std::string pipeline, name;
 };
 
-struct SkipSettings {
-    int raster_spp = 4, raytrace_spp = 4;
-    int threads = 0; ///< 0: all hardware threads
-};
-
 /// Returns all skips of both pipelines, in order, for one scene, which must outlive them.
-std::vector<SkipCase> skip_cases(const Scene& scene, const SkipSettings& settings);
+std::vector<SkipCase> skip_cases(const Scene& scene, const ComparisonSettings& settings);
 /// Returns what is not implemented: occluded triangles and tiles, converged pixels.
 std::vector<MissingSkip> missing_skips();
 

@@ -3,6 +3,7 @@
 #include "common/program/program.h"
 #include "common/program/statistics.h"
 #include "compare/bench/render_reference.h"
+#include "compare/renderer.h"
 #include "compare/report/text.h"
 #include "raytrace/render.h"
 
@@ -17,13 +18,6 @@ namespace duet::compare {
 namespace {
 
 using nlohmann::json;
-
-View view_of(const Scene& scene, ImageSize size) {
-    if (size.width > 0) return {scene.camera, size.width, size.height};
-    const double scale = std::min(1.0, 96.0 / std::max(scene.width, scene.height));
-    const auto side = [&](int pixels) { return std::max(1, static_cast<int>(std::lround(pixels * scale))); };
-    return {scene.camera, side(scene.width), side(scene.height)};
-}
 
 /// The time that deviates most from the requested one, as their ratio, and whether any time is out of tolerance.
 struct WorstTime {
@@ -110,7 +104,8 @@ void print_row(const Row& row, const StopOptions& options) {
 std::optional<Row> measured(const StopOptions& options, const std::filesystem::path& path,
                             const InterruptFlag& interrupt) {
     const Scene scene = load_scene(path);
-    Row row{path.filename().string(), view_of(scene, options.size), {}, 0, {}};
+    const double scale = std::min(1.0, 96.0 / std::max(scene.width, scene.height));
+    Row row{path.filename().string(), scene_view(scene, options.size, scale), {}, 0, {}};
     const auto with_bar = [&](const char* what, const auto& work) {
         ProgressBar bar(scene.path.stem().string() + what, options.quiet);
         Control control{&interrupt.flag(), [&](double fraction) { bar.update(fraction); }};

@@ -89,7 +89,7 @@ TEST_SUITE("unit") {
         for (const char* const name : {"cornell", "everything", "spheres", "amphora", "furnace"}) {
             const Scene scene = load_scene(kModels / (std::string(name) + ".json"));
             const View view{scene.camera, 40, 30};
-            for (const SkipCase& skip : skip_cases(scene, {2, 2, 0})) {
+            for (const SkipCase& skip : skip_cases(scene, {2, 2})) {
                 if (skip.proof != SkipProof::kSameBits) continue;
                 CAPTURE(name);
                 CAPTURE(skip.pipeline);
@@ -108,7 +108,7 @@ TEST_SUITE("unit") {
         Control control;
         for (const char* const name : {"frustum", "back_faces", "subpixel", "degenerate"}) {
             CAPTURE(name);
-            const SkipCase skip = find_case(skip_cases(scene, {}), "raster", name);
+            const SkipCase skip = find_case(skip_cases(scene, {4, 4}), "raster", name);
             const std::int64_t without = count_of(skip.render(view, 0, false, control), skip.statistic);
             CHECK(count_of(skip.render(view, 0, true, control), skip.statistic) > without);
             // Clipping removes some triangles, too.
@@ -116,7 +116,7 @@ TEST_SUITE("unit") {
             if (skip.proof == SkipProof::kSameBits) CHECK(measured(skip, view, quick()).pixels_differ == 0);
         }
         for (const char* const name : {"lens", "motion"}) { // one pass for all samples, or one pass per sample
-            const SkipCase skip = find_case(skip_cases(scene, {}), "raster", name);
+            const SkipCase skip = find_case(skip_cases(scene, {4, 4}), "raster", name);
             CHECK(skip.render(view, 0, true, control).statistics.passes == 1);
             CHECK(skip.render(view, 0, false, control).statistics.passes == 4);
         }
@@ -126,7 +126,7 @@ TEST_SUITE("unit") {
         const Scene cornell = load_scene(kModels / "cornell.json");
         const View view{cornell.camera, 24, 24};
         for (const char* const name : {"shadow_rays", "russian_roulette"})
-            CHECK(measured(find_case(skip_cases(cornell, {}), "raytrace", name), view,
+            CHECK(measured(find_case(skip_cases(cornell, {4, 4}), "raytrace", name), view,
                            [] {
                                SkipMeasureSettings options = quick();
                                options.budget = 0;
@@ -152,7 +152,7 @@ TEST_SUITE("unit") {
         const Scene scene = load_scene(kModels / "cornell.json");
         const View view{scene.camera, 16, 16};
         const SkipCase wrong =
-            planted(find_case(skip_cases(scene, {1, 1, 0}), "raytrace", "lens"), [](ImageRgb& radiance) {
+            planted(find_case(skip_cases(scene, {1, 1}), "raytrace", "lens"), [](ImageRgb& radiance) {
                 float& value = radiance(7, 11).g;
                 value = std::bit_cast<float>(std::bit_cast<std::uint32_t>(value) ^ 1u);
             });
@@ -199,7 +199,7 @@ TEST_SUITE("unit") {
         const Scene scene = load_scene(kModels / "cornell.json");
         SkipMeasureSettings options = quick();
         options.budget = 0;
-        const SkipMeasurement m = measured(find_case(skip_cases(scene, {1, 1, 0}), "raytrace", "russian_roulette"),
+        const SkipMeasurement m = measured(find_case(skip_cases(scene, {1, 1}), "raytrace", "russian_roulette"),
                                            {scene.camera, 16, 16}, options);
         CHECK(m.pixels_differ > 0);
         CHECK_FALSE(m.proved);
@@ -285,7 +285,7 @@ TEST_SUITE("statistical") {
     // A false alarm has odds of 0.01 for each of the two unbiased cases; the seeds are fixed.
     TEST_CASE("Russian roulette and culled back faces are proved, with a planted bias of 0.3 % they are found out") {
         const Scene cornell = load_scene(kModels / "cornell.json");
-        const SkipCase roulette = find_case(skip_cases(cornell, {1, 4, 0}), "raytrace", "russian_roulette");
+        const SkipCase roulette = find_case(skip_cases(cornell, {1, 4}), "raytrace", "russian_roulette");
         SkipMeasureSettings options = quick();
         options.bias = 0.003;
         options.seed = 7000;
@@ -305,7 +305,7 @@ TEST_SUITE("statistical") {
         CHECK(wrong.bias->bias().g == doctest::Approx(-0.003).epsilon(0.5));
 
         const Scene scene = tori();
-        const SkipCase back_faces = find_case(skip_cases(scene, {1, 1, 0}), "raster", "back_faces");
+        const SkipCase back_faces = find_case(skip_cases(scene, {1, 1}), "raster", "back_faces");
         const SkipMeasurement faces = measured(back_faces, {scene.camera, 240, 180}, options);
         CHECK(faces.proved);
         MESSAGE("back faces: ", faces.pixels_differ, " pixels of ", faces.image_pairs, " images differ");
