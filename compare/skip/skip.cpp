@@ -32,12 +32,9 @@ std::vector<SkipCase> chosen(std::vector<SkipCase> all, const std::vector<std::s
     for (const std::string& name : only)
         if (std::none_of(all.begin(), all.end(), [&](const SkipCase& skip) { return meant(skip, name); }))
             throw Error(message("--only: found ", name, ", expected one of ", joined(known)));
-    all.erase(std::remove_if(all.begin(), all.end(),
-                             [&](const SkipCase& skip) {
-                                 return std::none_of(only.begin(), only.end(),
-                                                     [&](const std::string& name) { return meant(skip, name); });
-                             }),
-              all.end());
+    std::erase_if(all, [&](const SkipCase& skip) {
+        return std::none_of(only.begin(), only.end(), [&](const std::string& name) { return meant(skip, name); });
+    });
     return all;
 }
 
@@ -95,18 +92,15 @@ json row_json(const Row& row) {
 }
 
 json report_json(const SkipOptions& options, const View& view, const std::vector<Row>& rows) {
-    json list = json::array(), missing = json::array();
+    json list = json::array();
     for (const Row& row : rows) list.push_back(row_json(row));
-    for (const MissingSkip& skip : missing_skips())
-        missing.push_back({{"pipeline", skip.pipeline}, {"name", skip.name}});
     return {{"scene", options.scene.string()},
             {"width", view.width},
             {"height", view.height},
             {"raster_samples_per_pixel", options.settings.raster_spp},
             {"raytrace_samples_per_pixel", options.settings.raytrace_spp},
             {"repeats", options.measure.repeats},
-            {"skips", list},
-            {"not_built", missing}};
+            {"skips", list}};
 }
 
 void print_table(std::ostream& out, const SkipOptions& options, const View& view, const std::vector<Row>& rows) {
@@ -126,8 +120,6 @@ void print_table(std::ostream& out, const SkipOptions& options, const View& view
                          (m.reason.empty() ? "" : " (" + m.reason + ")") +
                          (m.rays_saved > 0 ? message(", ", m.rays_saved, " rays") : "")});
     }
-    for (const MissingSkip& skip : missing_skips())
-        print_cells(out, widths, {skip.pipeline + "/-", "-", "-", "-", "-", "", skip.name + ": not built"});
 }
 
 } // namespace

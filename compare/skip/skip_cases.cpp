@@ -90,8 +90,4 @@ std::vector<SkipCase> skip_cases(const Scene& scene, const ComparisonSettings& s
     return cases;
 }
 
-std::vector<MissingSkip> missing_skips() {
-    return {{"raster", "occluded triangles, tiles by hierarchical depth"}, {"raytrace", "converged pixels"}};
-}
-
 } // namespace duet::compare

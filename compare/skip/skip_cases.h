@@ -25,14 +25,6 @@ struct SkipCase {
     std::function<Rendering(const View& view, std::uint64_t seed, bool with, Control& control)> render;
 };
 
-/// A skip of the design that a pipeline does not implement.
-struct MissingSkip {
-    std::string pipeline, name;
-};
-
 /// Returns all skips of both pipelines, in order, for one scene, which must outlive them.
 std::vector<SkipCase> skip_cases(const Scene& scene, const ComparisonSettings& settings);
-/// Returns what is not implemented: occluded triangles and tiles, converged pixels.
-std::vector<MissingSkip> missing_skips();
-
 } // namespace duet::compare
