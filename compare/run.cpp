@@ -36,7 +36,7 @@ std::optional<RendererResult> run_renderer(const Renderer& renderer, const View&
                                            const InterruptFlag& interrupt) {
     RendererResult side;
     ProgressBar bar(renderer.name, options.quiet);
-    Control control{&interrupt.flag(), [&](double fraction) { bar.update(fraction); }};
+    Control control = bar.control(interrupt);
     Stopwatch watch;
     side.rendering = renderer.render_image(view, control);
     side.context.render_seconds = watch.lap();

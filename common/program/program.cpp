@@ -105,6 +105,12 @@ void ProgressBar::update(double fraction) {
     std::fflush(stderr);
 }
 
+Control ProgressBar::control(const InterruptFlag& interrupt, std::size_t step, std::size_t steps) {
+    return {&interrupt.flag(), [this, step, steps](double fraction) {
+                update((static_cast<double>(step) + fraction) / static_cast<double>(steps));
+            }};
+}
+
 void ProgressBar::finish() {
     if (visible_ && last_drawn_ >= 0) std::fputs("\r\033[K", stderr);
     last_drawn_ = -1;

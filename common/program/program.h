@@ -1,6 +1,8 @@
 // This file holds what all programs of the project share: exit codes, interruption and progress.
 #pragma once
 
+#include "common/system/control.h"
+
 #include <atomic>
 #include <functional>
 #include <string>
@@ -40,6 +42,8 @@ public:
 
     /// Redraws the line, at most ten times a second. fraction is in [0, 1].
     void update(double fraction);
+    /// Returns a control that updates the bar during step `step` of `steps` equal ones, and that `interrupt` stops.
+    Control control(const InterruptFlag& interrupt, std::size_t step = 0, std::size_t steps = 1);
     /// Erases the line.
     void finish();
 

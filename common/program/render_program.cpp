@@ -64,10 +64,7 @@ void check_output(const Options& options) {
     check_writable_image(options.output);
     if (options.ascii && std::filesystem::path(options.output).extension() != ".ppm")
         throw Error(message("--ascii: only a .ppm can be written as text, found ", options.output));
-    if (!options.stats.empty() && options.stats != "-") {
-        const std::filesystem::path folder = std::filesystem::absolute(options.stats).parent_path();
-        if (!std::filesystem::is_directory(folder)) throw Error(message("--stats: no folder ", folder.string()));
-    }
+    check_json_path(options.stats);
 }
 
 // Returns a hint at the command that logs the first invalid sample, or nothing where there is none.
@@ -122,7 +119,7 @@ int render_all(const RenderProgram& program, const Options& options) {
         const View view{options.orbit > 0 ? orbited(scene.camera, frame, frames) : scene.camera, context.width,
                         context.height};
         const std::string output = options.orbit > 0 ? frame_path(options.output, frame) : options.output;
-        Control control{&interrupt.flag(), [&](double fraction) { bar.update((frame + fraction) / frames); }};
+        Control control = bar.control(interrupt, static_cast<std::size_t>(frame), static_cast<std::size_t>(frames));
         watch.restart();
         const Rendering rendering = render(view, control);
         context.render_seconds = watch.lap();

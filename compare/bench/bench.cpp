@@ -81,7 +81,7 @@ private:
 
     CachedReference reference(const std::string& estimator, int spp) const {
         ProgressBar bar(label("reference by ") + estimator, options_.quiet);
-        Control control{&interrupt_.flag(), [&](double fraction) { bar.update(fraction); }};
+        Control control = bar.control(interrupt_);
         return reference_by(estimator, scene_, view_, reference_settings(spp), control);
     }
 
@@ -100,7 +100,7 @@ private:
 
     CachedReference peer_reference() const {
         ProgressBar bar(label("reference by Cycles"), options_.quiet);
-        Control control{&interrupt_.flag(), [&](double fraction) { bar.update(fraction); }};
+        Control control = bar.control(interrupt_);
         Control silent{&interrupt_.flag(), {}};
         const auto render = [&](int spp, std::uint64_t seed) { return peer_->unbiased_image(spp, seed, silent); };
         return reference_by_seeds({"cycles", kCyclesExportVersion, peer_->program(silent)}, scene_, view_,
@@ -112,7 +112,7 @@ private:
         if (peer_)
             for (BenchRenderer& c : cycles_renderers(peer_, options_.choice.spps)) renderers.push_back(std::move(c));
         ProgressBar bar(label("measuring"), options_.quiet);
-        Control control{&interrupt_.flag(), [&](double fraction) { bar.update(fraction); }};
+        Control control = bar.control(interrupt_);
         result_.rows = measure(renderers, result_.reference.reference, counted_, options_.measure, control);
         mark_best_settings(result_.rows, options_.peer);
         widen_efficiency(result_.rows, options_.drift, processor_share(result_.rows, threads_of(options_)));

@@ -109,9 +109,7 @@ int kernels(const KernelsOptions& options) {
     std::vector<KernelResults> tables;
     ProgressBar bar("kernels", options.quiet);
     for (std::size_t i = 0; i < cases.size(); ++i) {
-        const Control control{&interrupt.flag(), [&](double part) {
-                                  bar.update((static_cast<double>(i) + part) / static_cast<double>(cases.size()));
-                              }};
+        const Control control = bar.control(interrupt, i, cases.size());
         const KernelScene scene = load_kernel_scene(cases[i].file, cases[i].arrangement);
         tables.push_back(measure_kernels(scene, settings, control));
         if (interrupt.raised()) return kExitInterrupted;

@@ -3,6 +3,7 @@
 #include "common/system/parallel.h"
 #include "compare/kernels/ray_sets.h"
 #include "compare/kernels/watertight.h"
+#include "compare/progress.h"
 
 #include <algorithm>
 #include <memory>
@@ -16,22 +17,6 @@ namespace {
 
 constexpr std::size_t kMaxCheckedRays = 20'000; ///< number of Duet's results to each kind of ray that are judged
 constexpr double kBuildLimit = 40; ///< time limit for the builds with one thread count, as a multiple of `seconds`
-
-/// Divides the progress of one scene into equal steps.
-class ProgressSteps {
-public:
-    ProgressSteps(const Control& whole, std::size_t count) : whole_(whole), share_(1 / static_cast<double>(count)) {}
-    /// Returns the control of the next step.
-    Control next() {
-        const double begin = done_;
-        done_ += share_;
-        return {whole_.stop, [this, begin](double part) { whole_.report(begin + part * share_); }};
-    }
-
-private:
-    const Control& whole_;
-    double share_, done_ = 0;
-};
 
 /// The Embree devices that the settings require.
 class Devices {
@@ -63,7 +48,7 @@ class SceneMeasurement {
 public:
     SceneMeasurement(const KernelScene& scene, const KernelSettings& settings, const Control& control)
         : scene_(scene), settings_(settings), control_(control), oracle_(*scene.scene),
-          steps_(control, thread_counts().size() * settings.works.size() + 2) {
+          steps_(control, static_cast<double>(thread_counts().size() * settings.works.size() + 2)) {
         table_.mesh = scene.mesh;
         table_.scene = name_of(scene.arrangement);
         table_.triangles = scene.triangle_count();

@@ -6,6 +6,7 @@
 #include "common/system/file.h"
 #include "common/system/stopwatch.h"
 #include "compare/ladder/ladder_report.h"
+#include "compare/progress.h"
 #include "compare/report/false_color.h"
 #include "compare/report/output.h"
 
@@ -18,25 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// This is one progress bar for several tasks. The fraction of each is proportional to its cost.
-class Tasks {
-public:
-    Tasks(double cost, bool quiet, const InterruptFlag& interrupt)
-        : bar_("ladder", quiet), interrupt_(interrupt), cost_(cost) {}
-
-    Control next(double cost) {
-        const double begin = begun_;
-        begun_ += cost;
-        return {&interrupt_.flag(),
-                [this, begin, cost](double fraction) { bar_.update((begin + fraction * cost) / cost_); }};
-    }
-
-private:
-    ProgressBar bar_;
-    const InterruptFlag& interrupt_;
-    double cost_, begun_ = 0;
-};
-
 /// Renders and measures everything. After an interrupt signal, the result is incomplete and must not be used.
 LadderResult measure_ladder(const Scene& scene, const View& view, const LadderOptions& options,
                             const InterruptFlag& interrupt) {
@@ -44,11 +26,13 @@ LadderResult measure_ladder(const Scene& scene, const View& view, const LadderOp
     const PreparedPair pair = prepare_pair(scene, options.settings);
     LadderResult result{scene, view, options.settings, plan_rungs(scene, pair), {}, {}, {}, {}, {}, 0};
     const double evaluation_cost = 1.5 * pair.raytrace_settings.samples_per_pixel;
-    Tasks tasks(measuring_cost(result.plan) + evaluation_cost, options.quiet, interrupt);
+    ProgressBar bar("ladder", options.quiet);
+    const Control whole = bar.control(interrupt);
+    ProgressSteps steps(whole, measuring_cost(result.plan) + evaluation_cost);
     result.rungs = measure_rungs(scene, view, result.plan, options.settings.threads,
-                                 [&](double cost) { return tasks.next(cost); });
+                                 [&](double cost) { return steps.next(cost); });
     const MeasuredQuantity& everything = result.rungs.back().front();
-    Control control = tasks.next(evaluation_cost);
+    Control control = steps.next(evaluation_cost);
     result.images = evaluate_ladder(everything.raster.image, pair, view, control);
     if (control.stopped()) return result;
     result.metrics =

@@ -135,9 +135,7 @@ int skip(const SkipOptions& options) {
     {
         ProgressBar bar("skips", options.quiet);
         for (std::size_t i = 0; i < cases.size(); ++i) {
-            Control control{&interrupt.flag(), [&](double fraction) {
-                                bar.update((static_cast<double>(i) + fraction) / static_cast<double>(cases.size()));
-                            }};
+            Control control = bar.control(interrupt, i, cases.size());
             rows.push_back({cases[i], measure_skip(cases[i], view, options.measure, control)});
             if (interrupt.raised()) return kExitInterrupted;
         }

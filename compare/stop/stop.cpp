@@ -108,7 +108,7 @@ std::optional<Row> measured(const StopOptions& options, const std::filesystem::p
     Row row{path.filename().string(), scene_view(scene, options.size, scale), {}, 0, {}};
     const auto with_bar = [&](const char* what, const auto& work) {
         ProgressBar bar(scene.path.stem().string() + what, options.quiet);
-        Control control{&interrupt.flag(), [&](double fraction) { bar.update(fraction); }};
+        Control control = bar.control(interrupt);
         return work(control);
     };
     const CachedReference cached = with_bar(": reference", [&](Control& control) {

@@ -118,10 +118,8 @@ int stress(const StressOptions& options) {
     std::size_t failed = 0;
     ProgressBar bar("stress", options.quiet);
     for (std::size_t i = 0; i < tests.size(); ++i) {
-        const auto whole = [&](double part) {
-            bar.update((static_cast<double>(i) + part) / static_cast<double>(tests.size()));
-        };
-        const StressSetting setting{options.seed, options.factor, options.threads, {&interrupt.flag(), whole}};
+        const StressSetting setting{options.seed, options.factor, options.threads,
+                                    bar.control(interrupt, i, tests.size())};
         const StressResult result = tests[i].run(tests[i], setting);
         bar.finish();
         if (interrupt.raised()) return kExitInterrupted;
