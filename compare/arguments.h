@@ -3,6 +3,8 @@
 
 #include "common/program/command_line.h"
 
+#include <memory>
+
 namespace duet::compare {
 
 void add_run(CommandLine& program);
@@ -15,6 +17,13 @@ void add_kernels(CommandLine& program);
 void add_frames(CommandLine& program);
 void add_stress(CommandLine& program);
 void add_check(CommandLine& program);
+
+/// Sets what a subcommand runs. Returns the options that it runs with, for the arguments to be written to.
+template <typename Options> Options& set_action(CommandLine& subcommand, int (*action)(const Options&)) {
+    const auto options = std::make_shared<Options>();
+    subcommand.set_action([options, action] { return action(*options); });
+    return *options;
+}
 
 /// Text appended to each subcommand's --help.
 inline constexpr const char* kExitCodes =

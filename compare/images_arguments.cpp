@@ -3,14 +3,11 @@
 #include "compare/images.h"
 #include "compare/metrics/limits.h"
 
-#include <memory>
-
 namespace duet::compare {
 
 void add_images(CommandLine& program) {
     CommandLine& images = program.add_subcommand("images", "Compare two image files");
-    const auto all = std::make_shared<ImagesOptions>();
-    ImagesOptions& options = *all;
+    ImagesOptions& options = set_action(images, compare::compare_images);
     images.add("A", options.a, "An image (PNG, JPEG, TGA, PPM, PFM, HDR, EXR)").required();
     images.add("B", options.reference, "The reference, of the same size").required();
     images
@@ -35,7 +32,6 @@ void add_images(CommandLine& program) {
         "\n\nExample:\n  compare images out/raster.png out/raytrace.png --fail-above rmse=0.1 --fail-above ssim=0.8\n"
         "  compare images before.exr after.exr -o out\nthen open out/index.html in a browser." +
         kExitCodes);
-    images.set_action([all] { return compare::compare_images(*all); });
 }
 
 } // namespace duet::compare

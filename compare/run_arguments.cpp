@@ -3,15 +3,12 @@
 #include "compare/arguments.h"
 #include "compare/run.h"
 
-#include <memory>
-
 namespace duet::compare {
 
 void add_run(CommandLine& program) {
     CommandLine& run = program.add_subcommand(
         "run", "Render a scene with the rasterizer and the path tracer, and report what differs");
-    const auto all = std::make_shared<RunOptions>();
-    RunOptions& options = *all;
+    RunOptions& options = set_action(run, compare::run);
     ComparisonSettings& settings = options.settings;
     run.add("SCENE", options.scene, "A scene file (.json) or a bare mesh (.obj: framed, on a ground under a sky)")
         .required();
@@ -31,7 +28,6 @@ void add_run(CommandLine& program) {
     run.set_footer(std::string("Example:\n  compare run models/cornell.json -o out --size 512x512 --spp 256\n"
                                "then open out/index.html in a browser.") +
                    kExitCodes);
-    run.set_action([all] { return compare::run(*all); });
 }
 
 } // namespace duet::compare

@@ -3,15 +3,12 @@
 #include "compare/arguments.h"
 #include "compare/bench/bench.h"
 
-#include <memory>
-
 namespace duet::compare {
 
 void add_bench(CommandLine& program) {
     CommandLine& bench =
         program.add_subcommand("bench", "Measure run time against error: techniques, samplers, samples");
-    const auto all = std::make_shared<BenchOptions>();
-    BenchOptions& options = *all;
+    BenchOptions& options = set_action(bench, compare::bench);
     bench.add("SCENE", options.scenes, "Scene files (.json) or bare meshes (.obj)").required();
     bench.add("-o,--output", options.folder,
               "The folder for index.html, report.json, bench.csv and a plot of each scene, SCENE.svg");
@@ -70,7 +67,6 @@ void add_bench(CommandLine& program) {
     bench.set_footer(std::string("Example:\n  compare bench models/cornell.json models/furnace.json -o out --exclude "
                                  "0.35,0.05,0.65,0.2\nthen open out/index.html in a browser.") +
                      kExitCodes);
-    bench.set_action([all] { return compare::bench(*all); });
 }
 
 } // namespace duet::compare

@@ -2,16 +2,13 @@
 #include "compare/arguments.h"
 #include "compare/check/check.h"
 
-#include <memory>
-
 namespace duet::compare {
 
 void add_check(CommandLine& program) {
     CommandLine& check = program.add_subcommand(
         "check", "Check that scenes render soundly both ways: explained hits, valid samples, the same bits for any "
                  "number of threads");
-    const auto all = std::make_shared<CheckOptions>();
-    CheckOptions& options = *all;
+    CheckOptions& options = set_action(check, compare::check);
     check.add("SCENE", options.scenes, "Scene files (.json) or bare meshes (.obj); -: the names on standard input, "
                                        "one a line")
         .required();
@@ -26,7 +23,6 @@ void add_check(CommandLine& program) {
     check.set_footer(std::string("Prints one JSON object a line for each scene.\n\n"
                                  "Example:\n  compare check models/*.json --size 64x48") +
                      kExitCodes);
-    check.set_action([all] { return compare::check(*all); });
 }
 
 } // namespace duet::compare

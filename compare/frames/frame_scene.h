@@ -1,6 +1,7 @@
 // The scene that `compare frames` draws: a mesh under one light, seen whole or close up.
 #pragma once
 
+#include "common/program/command_line.h"
 #include "common/scene/scene.h"
 
 #include <filesystem>
@@ -18,6 +19,6 @@ const char* name(FrameView view);
 /// normals are computed if the file has none. If `texture` is not empty, that image is the base color, sampled
 /// by the mesh's texture coordinates. Throws Error as load_scene does, and for a file that is not a mesh.
 Scene frame_scene(const std::filesystem::path& mesh, const std::filesystem::path& texture = {});
-View frame_view(const Scene& scene, FrameView view, int width, int height);
+View frame_view(const Scene& scene, FrameView view, ImageSize size);
 
 } // namespace duet::compare

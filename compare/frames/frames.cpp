@@ -61,7 +61,7 @@ std::string difference_text(const FrameRow& row) {
 }
 
 void print_table(std::ostream& out, const FramesOptions& options, const std::vector<MeshRows>& meshes) {
-    out << options.settings.width << "x" << options.settings.height << " pixels, milliseconds a frame (medians of "
+    out << options.settings.size.width << "x" << options.settings.size.height << " pixels, milliseconds a frame (medians of "
         << options.settings.repeats << " repeats in turns); ratio: the peer's time over ours\n";
     const std::vector<int> widths{-26, -7, -7, 8, 9, 9, 9, 8, 8, 8, 8, 2, 0};
     print_cells(out, widths,
@@ -141,6 +141,7 @@ int frames(const FramesOptions& options) {
     const InterruptFlag interrupt;
     FrameSettings settings = options.settings;
     settings.stop = &interrupt.flag();
+    settings.no_peer |= !options.texture.empty(); // it has no textures
     const std::vector<int> threads = thread_counts(options);
     if (!options.folder.empty()) std::filesystem::create_directories(options.folder);
     std::vector<MeshRows> meshes;
@@ -183,8 +184,8 @@ int frames(const FramesOptions& options) {
     if (!options.stats.empty())
         write_json(options.stats, {{"program", "compare frames"},
                                    {"version", DUET_VERSION},
-                                   {"width", options.settings.width},
-                                   {"height", options.settings.height},
+                                   {"width", options.settings.size.width},
+                                   {"height", options.settings.size.height},
                                    {"repeats", options.settings.repeats},
                                    {"rows", rows},
                                    {"lit", lit}});

@@ -22,8 +22,8 @@ struct FramesOptions {
 };
 
 /// Prints a table of the meshes' rows, and one of the scenes'. Returns 1 if the rasterizer's image and the peer's
-/// differ, 130 after an interrupt signal. Throws Error for a file that cannot be used, and if the peer is requested
-/// (settings.peer) and built but cannot run.
+/// differ, 130 after an interrupt signal. Throws Error for a file that cannot be used, and if the peer is built and
+/// requested (unless settings.no_peer) but cannot run.
 int frames(const FramesOptions& options);
 
 } // namespace duet::compare

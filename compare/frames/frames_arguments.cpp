@@ -5,7 +5,6 @@
 #include "compare/frames/frames.h"
 
 #include <algorithm>
-#include <memory>
 
 namespace duet::compare {
 
@@ -31,10 +30,7 @@ std::vector<Value> parse_names(const char* option, const std::vector<std::string
 void add_frames(CommandLine& program) {
     CommandLine& frames =
         program.add_subcommand("frames", "Measure the rasterizer's frames a second, beside Mesa's llvmpipe");
-    const auto all = std::make_shared<FramesOptions>();
-    const auto size = std::make_shared<ImageSize>(ImageSize{0, 0});
-    const auto no_peer = std::make_shared<bool>(false);
-    FramesOptions& options = *all;
+    FramesOptions& options = set_action(frames, compare::frames);
     frames.add("FILE", options.files, "Meshes (.obj), or scene files (.json) for lit frames").required();
     frames
         .add_parsed(
@@ -58,7 +54,7 @@ void add_frames(CommandLine& program) {
         .add("--threads", options.threads, "Numbers of threads, each bound to as many processors (default: 1 and all)")
         .comma_separated()
         .range(1, 1024);
-    frames.add("--size", *size, "Image size WIDTHxHEIGHT (default 1920x1080)");
+    frames.add("--size", options.settings.size, "Image size WIDTHxHEIGHT (default 1920x1080)");
     frames.add("--repeats", options.settings.repeats, "Repeats of each row, ours and the peer's in turns (default 9)")
         .range(1, 10000);
     frames.add_flag("--processor-time", options.settings.processor_time,
@@ -66,7 +62,7 @@ void add_frames(CommandLine& program) {
     frames.add("--texture", options.texture,
                "An image for base color, by the meshes' texture coordinates (default: gray); the rasterizer alone is "
                "measured with it");
-    frames.add_flag("--no-peer", *no_peer, "Measure the rasterizer alone");
+    frames.add_flag("--no-peer", options.settings.no_peer, "Measure the rasterizer alone");
     frames.add("-o,--output", options.folder, "A folder for the images");
     frames.add("--stats", options.stats, "Write the rows as JSON to this file (-: standard output)");
     frames.add_flag("--quiet", options.quiet, "No table, no progress bar");
@@ -80,14 +76,6 @@ void add_frames(CommandLine& program) {
                     "Examples:\n  compare frames models/generated/octopus.obj --threads 1 --view close\n"
                     "  compare frames models/cornell.json models/demo.json") +
         kExitCodes);
-    frames.set_action([all, size, no_peer] {
-        if (size->width > 0) {
-            all->settings.width = size->width;
-            all->settings.height = size->height;
-        }
-        all->settings.peer = !*no_peer && all->texture.empty();
-        return compare::frames(*all);
-    });
 }
 
 } // namespace duet::compare

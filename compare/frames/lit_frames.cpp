@@ -67,7 +67,7 @@ LitScene measure_lit_frames(const std::filesystem::path& path, const std::vector
         return raster::prepare(scene, lit_settings(threads.back()));
     }();
     result.prepare = clock.seconds();
-    const View view{scene.camera, settings.width, settings.height};
+    const View view{scene.camera, settings.size.width, settings.size.height};
     Rendering image;
     for (const int count : threads) result.rows.push_back(measure_row(prepared, view, count, settings, image));
     result.image = encoded_values(image.srgb);
@@ -76,7 +76,7 @@ LitScene measure_lit_frames(const std::filesystem::path& path, const std::vector
 
 void print_lit_frames(std::ostream& out, const std::vector<LitScene>& scenes, const FrameSettings& settings) {
     const std::vector<int> widths{-16, 9, 9, 9, 9};
-    out << "Lit frames of " << settings.width << "x" << settings.height << " pixels, one sample a pixel: milliseconds ("
+    out << "Lit frames of " << settings.size.width << "x" << settings.size.height << " pixels, one sample a pixel: milliseconds ("
         << "medians of " << settings.repeats << ")\n";
     print_cells(out, widths, {"scene", "threads", "prepare", "frame", "scaling"});
     for (const LitScene& scene : scenes)

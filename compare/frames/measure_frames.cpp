@@ -116,9 +116,9 @@ bool FrameDifference::same() const { return coverage < 2e-3 && mean < 2e-3 && fl
 std::vector<FrameRow> measure_frames(const Scene& scene, const raster::RasterScene& prepared, FrameView frame_kind,
                                      int threads, const std::vector<FrameWork>& works, const FrameSettings& settings) {
     const CpuAffinity pinned(threads);
-    const View view = frame_view(scene, frame_kind, settings.width, settings.height);
+    const View view = frame_view(scene, frame_kind, settings.size);
     std::optional<LlvmpipeRenderer> peer;
-    if (settings.peer && LlvmpipeRenderer::built()) peer.emplace(scene, view, threads);
+    if (!settings.no_peer && LlvmpipeRenderer::built()) peer.emplace(scene, view, threads);
     Control control;
     Rendering depth, image;
     raster::render(prepared, view, settings_for(FrameWork::kDepth, threads), control, depth);

@@ -36,11 +36,11 @@ struct FrameRow {
 };
 
 struct FrameSettings {
-    int width = 1920, height = 1080;
+    ImageSize size{1920, 1080};
     int repeats = 9;
     double burst_seconds = 0.03; ///< minimum duration in seconds of each renderer's frames in a repeat
     bool processor_time = false; ///< measure CPU time over all processors instead of wall-clock time
-    bool peer = true;      ///< measure the peer, if it is built
+    bool no_peer = false;        ///< measure Duet alone
     const std::atomic<bool>* stop = nullptr;
 };
 

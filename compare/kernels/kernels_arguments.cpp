@@ -4,15 +4,12 @@
 #include "compare/kernels/kernels.h"
 #include "compare/kernels/measure_kernels.h"
 
-#include <memory>
-
 namespace duet::compare {
 
 void add_kernels(CommandLine& program) {
     CommandLine& kernels = program.add_subcommand(
         "kernels", "How fast rays are traced and hierarchies built, beside Embree on the same triangles and rays");
-    const auto all = std::make_shared<KernelsOptions>();
-    KernelsOptions& options = *all;
+    KernelsOptions& options = set_action(kernels, compare::kernels);
     kernels.add("MESH", options.meshes, "Bare meshes (.obj), or scene files (.json), which are measured as they are")
         .required();
     kernels
@@ -56,7 +53,6 @@ void add_kernels(CommandLine& program) {
                     "answers is wrong by the double-precision judge, or a ray of ours slips through an edge "
                     "or leaks out of a closed room or mesh.") +
         kExitCodes);
-    kernels.set_action([all] { return compare::kernels(*all); });
 }
 
 } // namespace duet::compare

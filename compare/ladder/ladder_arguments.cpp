@@ -3,15 +3,12 @@
 #include "compare/arguments.h"
 #include "compare/ladder/ladder.h"
 
-#include <memory>
-
 namespace duet::compare {
 
 void add_ladder(CommandLine& program) {
     CommandLine& ladder = program.add_subcommand(
         "ladder", "Both pipelines side by side, rung by rung, and where the difference of their images comes from");
-    const auto all = std::make_shared<LadderOptions>();
-    LadderOptions& options = *all;
+    LadderOptions& options = set_action(ladder, compare::ladder);
     ComparisonSettings& settings = options.settings;
     ladder.add("SCENE", options.scene, "A scene file (.json) or a bare mesh (.obj)").required();
     ladder.add("-o,--output", options.folder, "The folder for index.html, report.json and the images").required();
@@ -32,7 +29,6 @@ void add_ladder(CommandLine& program) {
     ladder.set_footer(std::string("Example:\n  compare ladder models/cornell.json -o out --spp 256\n"
                                   "then open out/index.html in a browser.") +
                       kExitCodes);
-    ladder.set_action([all] { return compare::ladder(*all); });
 }
 
 } // namespace duet::compare

@@ -3,16 +3,13 @@
 #include "compare/arguments.h"
 #include "compare/skip/skip.h"
 
-#include <memory>
-
 namespace duet::compare {
 
 void add_skip(CommandLine& program) {
     CommandLine& skip = program.add_subcommand(
         "skip",
         "Switch each skip of both pipelines off in turn: the time it saves, and proof that the image is the same");
-    const auto all = std::make_shared<SkipOptions>();
-    SkipOptions& options = *all;
+    SkipOptions& options = set_action(skip, compare::skip);
     skip.add("SCENE", options.scene, "A scene file (.json) or a bare mesh (.obj)").required();
     skip.add("--size", options.size,
              "Image size WIDTHxHEIGHT (default: the scene's shape, its longer side 128 pixels)");
@@ -35,7 +32,6 @@ void add_skip(CommandLine& program) {
                                 "A skip is proved where all images have the same bits with and without it, or where no "
                                 "bias is found by a test that would find one of 0.1 %; else the exit code is 1.") +
                     kExitCodes);
-    skip.set_action([all] { return compare::skip(*all); });
 }
 
 } // namespace duet::compare

@@ -2,16 +2,13 @@
 #include "compare/arguments.h"
 #include "compare/stop/stop.h"
 
-#include <memory>
-
 namespace duet::compare {
 
 void add_stop(CommandLine& program) {
     CommandLine& stop = program.add_subcommand(
         "stop", "Whether `raytrace --error` and `--time` end where they are told to, and what adaptive sampling is "
                 "worth");
-    const auto all = std::make_shared<StopOptions>();
-    StopOptions& options = *all;
+    StopOptions& options = set_action(stop, compare::stop);
     stop.add("SCENE", options.scenes, "Scene files (.json) or bare meshes (.obj)").required();
     stop.add("--error", options.settings.error, "The relMSE to ask for (default 0.001)").positive();
     stop.add("--time", options.settings.time, "Also ask for renders of so many seconds").positive();
@@ -33,7 +30,6 @@ void add_stop(CommandLine& program) {
             "scene "
             "with mirrors or glass and lights has caustics, and its error is reported only.") +
         kExitCodes);
-    stop.set_action([all] { return compare::stop(*all); });
 }
 
 } // namespace duet::compare

@@ -2,15 +2,12 @@
 #include "compare/arguments.h"
 #include "compare/stress/suite.h"
 
-#include <memory>
-
 namespace duet::compare {
 
 void add_stress(CommandLine& program) {
     CommandLine& stress = program.add_subcommand(
         "stress", "Test the numerics of both pipelines, and show what the books' way would have done");
-    const auto all = std::make_shared<StressOptions>();
-    StressOptions& options = *all;
+    StressOptions& options = set_action(stress, compare::stress);
     stress.add("--trials", options.factor, "Times the default number of trials (default 1: about a minute)")
         .number_range(1e-6, 1e6, "a number from 1e-6 to 1e6");
     stress.add("--only", options.only,
@@ -22,7 +19,6 @@ void add_stress(CommandLine& program) {
     stress.add("--stats", options.stats, "Write the rows as JSON to this file (-: standard output)");
     stress.add_flag("--quiet", options.quiet, "No table, no progress bar; failures are still explained");
     stress.set_footer(std::string("Example:\n  compare stress --only intersection --trials 10") + kExitCodes);
-    stress.set_action([all] { return compare::stress(*all); });
 }
 
 } // namespace duet::compare

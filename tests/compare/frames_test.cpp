@@ -22,7 +22,7 @@ const fs::path kScene = fs::path(DUET_SOURCE_DIR) / "models/cornell.json";
 bool has_peer(const Scene& scene) {
     if (!LlvmpipeRenderer::built()) return false;
     try {
-        const LlvmpipeRenderer peer(scene, frame_view(scene, FrameView::kWhole, 16, 16), 1);
+        const LlvmpipeRenderer peer(scene, frame_view(scene, FrameView::kWhole, {16, 16}), 1);
         return true;
     } catch (const Error&) {
         return false;
@@ -40,7 +40,7 @@ TEST_SUITE("unit") {
         const raster::RasterScene prepared = raster::prepare(scene, settings);
         Control control;
         const auto seen = [&](FrameView kind) {
-            const View view = frame_view(scene, kind, 160, 90);
+            const View view = frame_view(scene, kind, {160, 90});
             const ImageFloat reversed_depth = raster::render(prepared, view, settings, control).reversed_depth;
             int inside = 0, border = 0;
             for (int y = 0; y < 90; ++y)
@@ -63,8 +63,7 @@ TEST_SUITE("unit") {
             return;
         }
         FrameSettings settings;
-        settings.width = 320;
-        settings.height = 180;
+        settings.size = {320, 180};
         settings.repeats = 1;
         settings.burst_seconds = 1e-4;
         const raster::RasterScene prepared = raster::prepare(scene, {});
@@ -98,11 +97,10 @@ TEST_SUITE("unit") {
         options.files = {kMesh, kScene};
         options.views = {FrameView::kWhole};
         options.threads = {1};
-        options.settings.width = 64;
-        options.settings.height = 48;
+        options.settings.size = {64, 48};
         options.settings.repeats = 2;
         options.settings.burst_seconds = 1e-4;
-        options.settings.peer = false;
+        options.settings.no_peer = true;
         options.folder = folder;
         options.stats = (folder / "rows.json").string();
         options.quiet = true;
