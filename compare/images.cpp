@@ -47,19 +47,6 @@ std::int64_t transparent_pixels(const StoredImage& file) {
     return count;
 }
 
-/// Returns variance.R, variance.G and variance.B as `--aov variance` writes them; empty unless all three are present.
-ImageRgb variance_channels(const ExrFile& file) {
-    ImageRgb image(file.width, file.height);
-    for (std::size_t c = 0; c < 3; ++c) {
-        const std::string name = std::string("variance.") + "RGB"[c];
-        const auto channel = std::find_if(file.channels.begin(), file.channels.end(),
-                                          [&](const ExrChannel& ch) { return ch.name == name && !ch.floats.empty(); });
-        if (channel == file.channels.end()) return {};
-        for (std::size_t i = 0; i < image.size(); ++i) image[i][c] = channel->floats[i];
-    }
-    return image;
-}
-
 ComparedImage read_compared_image(const fs::path& path, bool decode) {
     const StoredImage file = read_stored_image(path);
     ComparedImage image{stored_values(file), {}, file.encoding, transparent_pixels(file)};
@@ -67,7 +54,7 @@ ComparedImage read_compared_image(const fs::path& path, bool decode) {
         image.values = decoded(image.values);
         image.encoding = Encoding::kLinear;
     }
-    if (lower_case_extension(path) == ".exr") image.variance = variance_channels(read_exr(path));
+    if (lower_case_extension(path) == ".exr") image.variance = rgb_image("variance.", read_exr(path));
     return image;
 }
 

@@ -85,6 +85,16 @@ std::vector<ExrChannel> rgb_channels(const std::string& prefix, const ImageRgb& 
     return channels;
 }
 
+ImageRgb rgb_image(const std::string& prefix, const ExrFile& file) {
+    ImageRgb image(file.width, file.height);
+    for (std::size_t c = 0; c < 3; ++c) {
+        const auto channel = std::ranges::find(file.channels, prefix + "RGB"[c], &ExrChannel::name);
+        if (channel == file.channels.end() || channel->floats.size() != image.size()) return {};
+        for (std::size_t i = 0; i < image.size(); ++i) image[i][c] = channel->floats[i];
+    }
+    return image;
+}
+
 StoredImage read_stored_image(const fs::path& path) {
     const std::string bytes = read_file(path);
     return decode_image({path.string(), bytes}, lower_case_extension(path));

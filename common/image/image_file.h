@@ -42,5 +42,7 @@ void write_exr(const std::filesystem::path& path, int width, int height, const s
 /// Reads all channels of an EXR file. Throws an Error if the file cannot be read or is malformed, has several parts or
 /// deep pixels, or has a subsampled channel.
 ExrFile read_exr(const std::filesystem::path& path);
+/// Returns the image of the three channels that rgb_channels names so; empty if one of them is missing.
+ImageRgb rgb_image(const std::string& prefix, const ExrFile& file);
 
 } // namespace duet

@@ -54,7 +54,8 @@ class SceneBench {
 public:
     SceneBench(const BenchOptions& options, const fs::path& path, const InterruptFlag& interrupt)
         : options_(options), interrupt_(interrupt), scene_(load_scene(path, options.size)),
-          view_(scene_view(scene_, options.size, bench_scale(scene_))), counted_(counted_pixels(options.excluded, view_.width, view_.height)) {
+          view_(scene_view(scene_, options.size, bench_scale(scene_))),
+          counted_(counted_pixels(options.excluded, view_.width, view_.height)) {
         result_.scene = path.string();
         result_.scene_hash = hash_scene_files(scene_);
         result_.width = view_.width;

@@ -2,8 +2,8 @@
 #include "raytrace/render.h"
 
 #include "common/system/parallel.h"
+#include "compare/report/report_json.h"
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace duet::compare {
@@ -12,15 +12,12 @@ namespace {
 
 using nlohmann::json;
 
-// JSON has neither infinity nor NaN. Both become null.
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
-
 json estimate_json(const Estimate& e) {
-    return {{"value", number(e.value)},
-            {"low", number(e.low())},
-            {"high", number(e.high())},
-            {"relative_error", number(e.relative_error)},
-            {"dof", number(e.dof)}};
+    return {{"value", number_json(e.value)},
+            {"low", number_json(e.low())},
+            {"high", number_json(e.high())},
+            {"relative_error", number_json(e.relative_error)},
+            {"dof", number_json(e.dof)}};
 }
 
 json trials_json(const std::vector<TrialResult>& trials) {
@@ -29,10 +26,10 @@ json trials_json(const std::vector<TrialResult>& trials) {
         list.push_back({{"seed", t.seed},
                         {"seconds", t.seconds},
                         {"cpu_seconds", t.cpu_seconds},
-                        {"mse", number(t.whole.mse)},
-                        {"relmse", number(t.whole.relmse)},
-                        {"rest_mse", number(t.rest.mse)},
-                        {"rest_relmse", number(t.rest.relmse)}});
+                        {"mse", number_json(t.whole.mse)},
+                        {"relmse", number_json(t.whole.relmse)},
+                        {"rest_mse", number_json(t.rest.mse)},
+                        {"rest_relmse", number_json(t.rest.relmse)}});
     return list;
 }
 
@@ -52,10 +49,10 @@ json row_json(const SceneResult& result, const Measurement& m, bool with_rest) {
                 {"seconds", estimate_json(m.seconds)},
                 {"efficiency", estimate_json(m.efficiency)},
                 {"relmse_efficiency", estimate_json(m.relmse_efficiency)},
-                {"variance", number(m.variance)},
+                {"variance", number_json(m.variance)},
                 {"dominates", dominance_json(dominance(result.rows, m))},
-                {"bias_share", number(m.bias_share())},
-                {"reference_share", number(m.reference_share)},
+                {"bias_share", number_json(m.bias_share())},
+                {"reference_share", number_json(m.reference_share)},
                 {"trials", trials_json(m.trials)}};
     if (with_rest)
         row["rest"] = {{"mse", estimate_json(m.rest_mse)},
@@ -69,7 +66,7 @@ json reference_json(const CachedReference& r) {
     return {{"estimator", r.estimator},
             {"file", r.file.string()},
             {"rendered", r.rendered},
-            {"mse", number(r.reference.mse())}};
+            {"mse", number_json(r.reference.mse())}};
 }
 
 json check_json(const IndependentCheck& c) {
@@ -77,17 +74,16 @@ json check_json(const IndependentCheck& c) {
     return {{"other", reference_json(c.other)},
             {"approximations", c.approximations},
             {"tests", check.tests},
-            {"worst_z", number(check.worst_z)},
-            {"dof", number(check.worst_dof)},
-            {"p_value", number(check.p_value)},
+            {"worst_z", number_json(check.worst_z)},
+            {"dof", number_json(check.worst_dof)},
+            {"p_value", number_json(check.p_value)},
             {"significance", BiasCheck::kSignificance},
             {"consistent", check.consistent()},
             {"failed", c.failed()},
             {"block", {check.block_x, check.block_y, check.block_size}},
             {"channel", check.channel},
-            {"relative_bias",
-             {number(check.relative_bias.r), number(check.relative_bias.g), number(check.relative_bias.b)}},
-            {"detectable", number(check.detectable)}};
+            {"relative_bias", channels_json(check.relative_bias)},
+            {"detectable", number_json(check.detectable)}};
 }
 
 json equal_time_json(const EqualTimeRow& row) {
@@ -106,8 +102,8 @@ json scene_json(const SceneResult& result, bool with_rest) {
     for (const EqualTimeRow& row : result.equal_times) equal_times.push_back(equal_time_json(row));
     return {{"scene", result.scene}, {"equal_times", equal_times},  {"hash", result.scene_hash},
             {"width", result.width}, {"height", result.height},     {"reference", reference_json(result.reference)},
-            {"checks", checks},      {"no_naive", result.no_naive}, {"processor_share", number(result.processor_share)},
-            {"rows", rows}};
+            {"checks", checks},      {"no_naive", result.no_naive}, {"rows", rows},
+            {"processor_share", number_json(result.processor_share)}};
 }
 
 json excluded_json(const std::vector<ExcludedRectangle>& rectangles) {

@@ -15,19 +15,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kKeyAttribute = "duet:reference";
 
-/// Returns the image made of three channels of a file; empty if one is missing.
-ImageRgb image(const ExrFile& file, const std::string& prefix) {
-    ImageRgb image(file.width, file.height);
-    constexpr const char* kChannels[] = {"R", "G", "B"};
-    for (std::size_t c = 0; c < 3; ++c) {
-        const auto channel = std::find_if(file.channels.begin(), file.channels.end(),
-                                          [&](const ExrChannel& e) { return e.name == prefix + kChannels[c]; });
-        if (channel == file.channels.end() || channel->floats.size() != image.size()) return {};
-        for (std::size_t i = 0; i < image.size(); ++i) image[i][c] = channel->floats[i];
-    }
-    return image;
-}
-
 } // namespace
 
 double Reference::mse() const {
@@ -65,7 +52,7 @@ std::optional<Reference> ReferenceCache::find(const std::string& scene_name, con
         const bool same = std::any_of(file.attributes.begin(), file.attributes.end(), [&](const ExrAttribute& a) {
             return a.name == kKeyAttribute && a.value == key.text();
         });
-        Reference reference{image(file, ""), image(file, "variance.")};
+        Reference reference{rgb_image("", file), rgb_image("variance.", file)};
         if (!same || reference.mean.empty() || reference.variance.empty()) return std::nullopt;
         if (file.width != key.width || file.height != key.height) return std::nullopt;
         return reference;

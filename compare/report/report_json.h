@@ -10,6 +10,10 @@
 
 namespace duet::compare {
 
+/// Returns the number, or null for infinity and NaN, which JSON does not have.
+nlohmann::json number_json(double value);
+nlohmann::json channels_json(Rgbd color);
+
 /// Returns the metrics by name; a value that is infinite or NaN becomes null. Keys: mse, rmse, mae, psnr (null
 /// for equal images), relmse, relmse_trimmed, smape, mean_signed_error [r, g, b], worst, worst_pixel [x, y],
 /// ssim; flip (the mean), flip_… (weighted_median, first_quartile, third_quartile, min, max; for linear images

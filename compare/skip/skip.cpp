@@ -2,6 +2,7 @@
 
 #include "common/program/program.h"
 #include "common/program/statistics.h"
+#include "compare/report/report_json.h"
 #include "compare/report/text.h"
 
 #include <algorithm>
@@ -82,10 +83,9 @@ json row_json(const Row& row) {
                    {"proved", m.proved}};
     if (m.bias) {
         const Rgbd bias = m.bias->bias();
-        const double detectable = m.bias->detectable();
         result["bias"] = {{"pairs", m.bias->pairs()},
                           {"bias", {bias.r, bias.g, bias.b}},
-                          {"detectable", std::isfinite(detectable) ? json(detectable) : json(nullptr)},
+                          {"detectable", number_json(m.bias->detectable())},
                           {"p", m.bias->p()}};
     }
     return result;
