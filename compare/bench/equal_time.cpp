@@ -10,17 +10,19 @@ namespace duet::compare {
 namespace {
 
 struct Point {
-    double log_seconds = 0, log_error = 0;
     Estimate seconds, error;
 };
 
-/// Interpolates between two measurements. `t` in [0, 1] is the position in the logarithm of time.
-Estimate interpolate(const Point& a, const Point& b, double t) {
-    const double slope = (b.log_error - a.log_error) / (b.log_seconds - a.log_seconds);
+/// Returns the slope of the line through two points in the logarithms of both coordinates.
+double log_slope(double x0, double y0, double x1, double y1) { return std::log(y1 / y0) / std::log(x1 / x0); }
+
+/// Interpolates between two measurements, linearly in the logarithms of time and error.
+Estimate interpolate(const Point& a, const Point& b, double seconds) {
+    const double slope = log_slope(a.seconds.value, a.error.value, b.seconds.value, b.error.value);
     const auto uncertainty = [&](const Point& p) {
         return std::hypot(p.error.relative_error, slope * p.seconds.relative_error);
     };
-    return {std::exp(std::lerp(a.log_error, b.log_error, t)), std::max(uncertainty(a), uncertainty(b)),
+    return {a.error.value * std::pow(seconds / a.seconds.value, slope), std::max(uncertainty(a), uncertainty(b)),
             std::min(std::min(a.error.dof, b.error.dof), std::min(a.seconds.dof, b.seconds.dof))};
 }
 
@@ -32,16 +34,13 @@ std::optional<Estimate> error_at(const std::vector<Measurement>& rows, const std
     for (const Measurement& m : rows) {
         if (m.technique != technique || (sampler && m.sampler != *sampler) || !m.counted) continue;
         const Estimate& error = rest ? m.rest_mse : m.mse;
-        if (!(error.value > 0) || !(m.seconds.value > 0)) continue;
-        points.push_back({std::log(m.seconds.value), std::log(error.value), m.seconds, error});
+        if (error.value > 0 && m.seconds.value > 0) points.push_back({m.seconds, error});
     }
-    std::sort(points.begin(), points.end(),
-              [](const Point& a, const Point& b) { return a.log_seconds < b.log_seconds; });
-    const double at = std::log(seconds);
+    const auto time = [](const Point& p) { return p.seconds.value; };
+    std::ranges::sort(points, {}, time);
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
         const Point &a = points[i], &b = points[i + 1];
-        if (at >= a.log_seconds && at <= b.log_seconds && a.log_seconds < b.log_seconds)
-            return interpolate(a, b, (at - a.log_seconds) / (b.log_seconds - a.log_seconds));
+        if (seconds >= time(a) && seconds <= time(b) && time(a) < time(b)) return interpolate(a, b, seconds);
     }
     return std::nullopt;
 }
@@ -89,8 +88,8 @@ Dominance time_to_reach(double relmse, const std::vector<const Measurement*>& ro
     for (std::size_t i = 0; i + 1 < rows.size(); ++i) {
         const Measurement &a = *rows[i], &b = *rows[i + 1];
         if (relmse < b.relmse.value) continue;
-        const double t = std::log(a.relmse.value / relmse) / std::log(a.relmse.value / b.relmse.value);
-        return {estimate(a.seconds.value * std::pow(b.seconds.value / a.seconds.value, t), b), false};
+        const double slope = log_slope(a.relmse.value, a.seconds.value, b.relmse.value, b.seconds.value);
+        return {estimate(a.seconds.value * std::pow(relmse / a.relmse.value, slope), b), false};
     }
     const Measurement& last = *rows.back();
     return {estimate(last.seconds.value * last.relmse.value / relmse, last), false};

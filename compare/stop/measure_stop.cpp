@@ -96,10 +96,16 @@ private:
     std::optional<raytrace::PathTracerScene> prepared_;
 };
 
-template <typename Figure> double mean(const std::vector<StopTrial>& trials, Figure figure) {
+double mean(const std::vector<StopTrial>& trials, double StopTrial::*figure) {
     double sum = 0;
-    for (const StopTrial& trial : trials) sum += figure(trial);
+    for (const StopTrial& trial : trials) sum += trial.*figure;
     return trials.empty() ? 0 : sum / static_cast<double>(trials.size());
+}
+
+/// Returns adaptive over uniform sampling in a squared error × seconds.
+double cost_ratio(const std::vector<StopTrial>& trials, double StopTrial::*adaptive, double StopTrial::*uniform) {
+    return mean(trials, adaptive) * mean(trials, &StopTrial::seconds) /
+           (mean(trials, uniform) * mean(trials, &StopTrial::uniform_seconds));
 }
 
 } // namespace
@@ -110,9 +116,7 @@ double StopResult::median_error() const {
     return median(std::move(errors));
 }
 
-double StopResult::mean_samples() const {
-    return mean(trials, [](const StopTrial& t) { return t.samples; });
-}
+double StopResult::mean_samples() const { return mean(trials, &StopTrial::samples); }
 
 bool StopResult::stopped_at_minimum() const {
     const auto least = std::count_if(trials.begin(), trials.end(),
@@ -121,18 +125,10 @@ bool StopResult::stopped_at_minimum() const {
 }
 
 double StopResult::cost_ratio_relmse() const {
-    return mean(trials, [](const StopTrial& t) { return t.relmse; }) *
-           mean(trials, [](const StopTrial& t) { return t.seconds; }) /
-           (mean(trials, [](const StopTrial& t) { return t.uniform_relmse; }) *
-            mean(trials, [](const StopTrial& t) { return t.uniform_seconds; }));
+    return cost_ratio(trials, &StopTrial::relmse, &StopTrial::uniform_relmse);
 }
 
-double StopResult::cost_ratio_mse() const {
-    return mean(trials, [](const StopTrial& t) { return t.mse; }) *
-           mean(trials, [](const StopTrial& t) { return t.seconds; }) /
-           (mean(trials, [](const StopTrial& t) { return t.uniform_mse; }) *
-            mean(trials, [](const StopTrial& t) { return t.uniform_seconds; }));
-}
+double StopResult::cost_ratio_mse() const { return cost_ratio(trials, &StopTrial::mse, &StopTrial::uniform_mse); }
 
 bool has_caustics(const Scene& scene) { return scene.needs.specular && !scene.lights.empty(); }
 
