@@ -11,16 +11,6 @@ namespace duet::compare {
 
 namespace {
 
-Object object_of(std::uint32_t shape, const Mat4& to_world) {
-    Object object;
-    object.shape = shape;
-    object.materials = {0};
-    object.to_world = object.to_world_end = to_world;
-    object.to_object = Mat4(inverse_affine(Mat4d(to_world)));
-    object.identity = to_world == Mat4();
-    return object;
-}
-
 Scene finished(std::vector<Shape> shapes, std::vector<Object> objects) {
     Scene scene;
     scene.materials = {Diffuse{}};
@@ -32,6 +22,16 @@ Scene finished(std::vector<Shape> shapes, std::vector<Object> objects) {
 }
 
 } // namespace
+
+Object object_of(std::uint32_t shape, const Mat4& to_world) {
+    Object object;
+    object.shape = shape;
+    object.materials = {0};
+    object.to_world = object.to_world_end = to_world;
+    object.to_object = Mat4(inverse_affine(Mat4d(to_world)));
+    object.identity = to_world == Mat4();
+    return object;
+}
 
 Scene make_scene(std::vector<Shape> shapes) {
     std::vector<Object> objects;

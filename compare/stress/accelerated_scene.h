@@ -13,6 +13,9 @@ namespace duet::compare {
 Scene make_scene(std::vector<Shape> shapes);
 Scene make_scene(Shape shape, const std::vector<Mat4>& placements);
 
+/// Returns an object of a shape and a material, at rest.
+Object object_of(std::uint32_t shape, const Mat4& to_world);
+
 /// Owns a scene at a stable address, with the path tracer's accelerator.
 struct AcceleratedScene {
     explicit AcceleratedScene(Scene scene_)

@@ -1,5 +1,7 @@
 #include "compare/stress/random_scene.h"
 
+#include "compare/stress/accelerated_scene.h"
+
 #include <cmath>
 
 namespace duet::compare {
@@ -7,15 +9,9 @@ namespace duet::compare {
 namespace {
 
 /// Adds a shape with its object-to-world transform.
-void add(Scene& scene, Shape shape, const Mat4& to_world, std::uint32_t material = 0) {
-    Object object;
-    object.shape = static_cast<std::uint32_t>(scene.shapes.size());
-    object.materials = {material};
-    object.to_world = object.to_world_end = to_world;
-    object.to_object = Mat4(inverse_affine(Mat4d(to_world)));
-    object.identity = to_world == Mat4();
+void add(Scene& scene, Shape shape, const Mat4& to_world) {
+    scene.objects.push_back(object_of(static_cast<std::uint32_t>(scene.shapes.size()), to_world));
     scene.shapes.push_back(std::move(shape));
-    scene.objects.push_back(std::move(object));
 }
 
 Mesh soup(TrialRandom& random) {
@@ -93,11 +89,8 @@ void add_contents(Scene& scene, TrialRandom& random, const SceneContents& conten
     }
     const std::size_t count = contents.instances ? scene.objects.size() : 0;
     for (std::size_t i = 0; i < count; ++i) {
-        Object object = scene.objects[i];
-        object.to_world = object.to_world_end = placed * translation(random.vector() * 2.0f) * random_stretch(random);
-        object.to_object = Mat4(inverse_affine(Mat4d(object.to_world)));
-        object.identity = false;
-        scene.objects.push_back(object);
+        const Mat4 moved = placed * translation(random.vector() * 2.0f) * random_stretch(random);
+        scene.objects.push_back(object_of(scene.objects[i].shape, moved));
     }
 }
 
