@@ -81,33 +81,31 @@ Image<int> count_naive(const Mesh& floor, const TrialView& v) {
 
 } // namespace
 
-StressResult clipped_floor(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        TrialRandom& random = trial.random;
-        TrialView v = random_view(random, kSide);
-        v.view.camera.look_at = v.view.camera.look_at - v.view.camera.eye;
-        v.view.camera.eye = {0, 0, 0};
-        v.pinhole = CameraModel(v.view).pinhole();
-        const float height = static_cast<float>(v.pinhole.near) * random.log_uniform(0.1f, 1000);
-        const float extent = height * random.log_uniform(10, 1e5f);
-        const Mesh floor = random_floor(random, height, extent);
-        const Square square(v.pinhole, height, extent);
-        const Image<int> count = count_library(floor, v), naive = count_naive(floor, v);
-        int wrong = 0, naive_wrong = 0;
-        v.window.for_each([&](int x, int y) {
-            const std::optional<bool> seen = square.sees(v.window.offset.position(x, y));
-            const int column = x - v.window.rect.x0, row = y - v.window.rect.y0;
-            if (!seen) return;
-            // Each fold adds two covering triangles, so the count is odd where the square is visible.
-            wrong += (count(column, row) % 2 != 0) != *seen;
-            naive_wrong += (naive(column, row) % 2 != 0) != *seen;
-        });
-        trial.note("floor ", exact(height), " below the eye, to ", exact(extent), " on all sides; looking along ",
-                   exact(Vec3(v.pinhole.forward)), ", near ", v.pinhole.near, ", ", v.view.width, "x", v.view.height,
-                   " pixels from (", v.window.rect.x0, ", ", v.window.rect.y0, ")");
-        trial.record(wrong);
-        trial.record_naive(naive_wrong);
+void clipped_floor(Trial& trial) {
+    TrialRandom& random = trial.random;
+    TrialView v = random_view(random, kSide);
+    v.view.camera.look_at = v.view.camera.look_at - v.view.camera.eye;
+    v.view.camera.eye = {0, 0, 0};
+    v.pinhole = CameraModel(v.view).pinhole();
+    const float height = static_cast<float>(v.pinhole.near) * random.log_uniform(0.1f, 1000);
+    const float extent = height * random.log_uniform(10, 1e5f);
+    const Mesh floor = random_floor(random, height, extent);
+    const Square square(v.pinhole, height, extent);
+    const Image<int> count = count_library(floor, v), naive = count_naive(floor, v);
+    int wrong = 0, naive_wrong = 0;
+    v.window.for_each([&](int x, int y) {
+        const std::optional<bool> seen = square.sees(v.window.offset.position(x, y));
+        const int column = x - v.window.rect.x0, row = y - v.window.rect.y0;
+        if (!seen) return;
+        // Each fold adds two covering triangles, so the count is odd where the square is visible.
+        wrong += (count(column, row) % 2 != 0) != *seen;
+        naive_wrong += (naive(column, row) % 2 != 0) != *seen;
     });
+    trial.note("floor ", exact(height), " below the eye, to ", exact(extent), " on all sides; looking along ",
+               exact(Vec3(v.pinhole.forward)), ", near ", v.pinhole.near, ", ", v.view.width, "x", v.view.height,
+               " pixels from (", v.window.rect.x0, ", ", v.window.rect.y0, ")");
+    trial.record(wrong);
+    trial.record_naive(naive_wrong);
 }
 
 } // namespace duet::compare

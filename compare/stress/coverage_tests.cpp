@@ -27,25 +27,23 @@ void note_window(Trial& trial, const Window& window) {
                window.rect.x0, ", ", window.rect.y0, ")");
 }
 
-StressResult exact_integers(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        const Window window = random_window(trial.random, kSide);
-        const auto kind = static_cast<std::uint32_t>(trial.number() % kTriangleKinds);
-        const GridTriangle triangle = random_triangle(trial.random, window, kind);
-        CoverageProbe probe(window);
-        probe.draw(triangle);
-        const TextbookTriangle textbook = as_textbook(triangle);
-        int wrong = 0, textbook_wrong = 0;
-        window.for_each([&](int x, int y) {
-            const bool covered = covers(triangle, window.grid_x(x), window.grid_y(y));
-            wrong += probe.covers(x, y) != covered;
-            textbook_wrong += textbook_covers(textbook, Vec2(window.offset.position(x, y))) != covered;
-        });
-        note_window(trial, window);
-        trial.note("triangle of 1/256 pixel: ", describe(triangle));
-        trial.record(wrong);
-        trial.record_naive(textbook_wrong);
+void exact_integers(Trial& trial) {
+    const Window window = random_window(trial.random, kSide);
+    const auto kind = static_cast<std::uint32_t>(trial.number() % kTriangleKinds);
+    const GridTriangle triangle = random_triangle(trial.random, window, kind);
+    CoverageProbe probe(window);
+    probe.draw(triangle);
+    const TextbookTriangle textbook = as_textbook(triangle);
+    int wrong = 0, textbook_wrong = 0;
+    window.for_each([&](int x, int y) {
+        const bool covered = covers(triangle, window.grid_x(x), window.grid_y(y));
+        wrong += probe.covers(x, y) != covered;
+        textbook_wrong += textbook_covers(textbook, Vec2(window.offset.position(x, y))) != covered;
     });
+    note_window(trial, window);
+    trial.note("triangle of 1/256 pixel: ", describe(triangle));
+    trial.record(wrong);
+    trial.record_naive(textbook_wrong);
 }
 
 /// Counts the samples of the window whose coverage by the mesh is not exactly one. Counter-clockwise triangles count
@@ -73,17 +71,14 @@ NotOnce count_not_once(const std::vector<GridTriangle>& mesh, const Window& wind
     return result;
 }
 
-template <std::vector<GridTriangle> (*make)(TrialRandom&, const Window&)>
-StressResult covered_once(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        const Window window = random_window(trial.random, kSide);
-        const std::vector<GridTriangle> mesh = make(trial.random, window);
-        const NotOnce wrong = count_not_once(mesh, window);
-        note_window(trial, window);
-        trial.note(mesh.size(), " triangles, the first of them ", describe(mesh.front()));
-        trial.record(wrong.library);
-        trial.record_naive(wrong.naive);
-    });
+template <std::vector<GridTriangle> (*make)(TrialRandom&, const Window&)> void covered_once(Trial& trial) {
+    const Window window = random_window(trial.random, kSide);
+    const std::vector<GridTriangle> mesh = make(trial.random, window);
+    const NotOnce wrong = count_not_once(mesh, window);
+    note_window(trial, window);
+    trial.note(mesh.size(), " triangles, the first of them ", describe(mesh.front()));
+    trial.record(wrong.library);
+    trial.record_naive(wrong.naive);
 }
 
 constexpr std::string_view kTextbookMethod = "barycentrics >= 0 in float, as tinyrenderer";
@@ -98,7 +93,7 @@ constexpr StressTest kTests[] = {
      .source = "the rule's definition in 128-bit integers: the sample moved right by an infinitely small step",
      .naive = kTextbookMethod,
      .trials = 1'000'000,
-     .run = exact_integers},
+     .run = trials_of<exact_integers>},
     {.name = "coverage/once-fans",
      .what = "fans of 4 to 64 triangles around a jittered vertex cover each sample exactly once",
      .bound = 0,
@@ -106,7 +101,7 @@ constexpr StressTest kTests[] = {
      .source = kOnce,
      .naive = kTextbookMethod,
      .trials = 20'000,
-     .run = covered_once<random_fan>},
+     .run = trials_of<covered_once<random_fan>>},
     {.name = "coverage/once-strips",
      .what = "strips of slivers, many of them thinner than a hundredth of a pixel, cover each sample exactly once",
      .bound = 0,
@@ -114,7 +109,7 @@ constexpr StressTest kTests[] = {
      .source = kOnce,
      .naive = kTextbookMethod,
      .trials = 20'000,
-     .run = covered_once<random_strip>},
+     .run = trials_of<covered_once<random_strip>>},
     {.name = "coverage/once-grids",
      .what = "meshes of jittered or folded vertices cover each sample exactly once, back faces counted as minus one",
      .bound = 0,
@@ -122,7 +117,7 @@ constexpr StressTest kTests[] = {
      .source = kOnce,
      .naive = kTextbookMethod,
      .trials = 20'000,
-     .run = covered_once<random_grid>},
+     .run = trials_of<covered_once<random_grid>>},
 };
 
 } // namespace

@@ -89,84 +89,76 @@ void check_spawned_ray(Trial& trial, const Scene& built, Vec3 target, float scal
     if (t) trial.record_naive_failure_if(naive_hit(*accelerated.scene, {ray.at(*t), w, kTextbookTMin}).has_value());
 }
 
-StressResult self_hits(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        const float scale = trial.random.log_uniform(1e-8f, 1e8f);
-        const Shape shape = random_shape(trial.random, scale);
-        const Vec3 target = point_of(shape, trial.random);
-        check_spawned_ray(trial, make_scene({shape}), target, scale);
-    });
+void self_hits(Trial& trial) {
+    const float scale = trial.random.log_uniform(1e-8f, 1e8f);
+    const Shape shape = random_shape(trial.random, scale);
+    const Vec3 target = point_of(shape, trial.random);
+    check_spawned_ray(trial, make_scene({shape}), target, scale);
 }
 
-StressResult instance_self_hits(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        const float scale = trial.random.log_uniform(1e-8f, 1e8f), own = trial.random.log_uniform(1e-3f, 1e3f);
-        const Shape shape = random_shape(trial.random, own);
-        const Mat4 to_world = random_placement(trial.random, scale / own);
-        const Vec3 target = transform_point(to_world, point_of(shape, trial.random));
-        check_spawned_ray(trial, make_scene(shape, {to_world, to_world}), target, scale);
-    });
+void instance_self_hits(Trial& trial) {
+    const float scale = trial.random.log_uniform(1e-8f, 1e8f), own = trial.random.log_uniform(1e-3f, 1e3f);
+    const Shape shape = random_shape(trial.random, own);
+    const Mat4 to_world = random_placement(trial.random, scale / own);
+    const Vec3 target = transform_point(to_world, point_of(shape, trial.random));
+    check_spawned_ray(trial, make_scene(shape, {to_world, to_world}), target, scale);
 }
 
-StressResult into_spheres(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        TrialRandom& random = trial.random;
-        const float scale = random.log_uniform(1e-8f, 1e8f);
-        const Sphere sphere{random.vector() * (3 * scale), scale * random.uniform(0.1f, 1)};
-        const AcceleratedScene accelerated(make_scene({sphere}));
-        const Vec3 target = point_of(sphere, random), origin = target + random.direction() * (5 * scale);
-        const Ray ray{origin, normalize_scaled(target - origin)};
-        const Hit hit = accelerated.accelerator.closest(ray);
-        if (!hit.valid()) return;
-        const SurfacePoint point = surface_point(*accelerated.scene, ray, hit);
-        Vec3 w = direction_away(trial, point.ng);
-        if (dot(w, point.ng) > 0) w = -w;
-        const float cosine = -dot(w, point.ng), chord = 2 * sphere.radius * cosine;
-        if (cosine < 1e-2f) return; // grazing: the chord is hardly longer than the offset
-        // A ray origin δ below the surface makes the chord δ/cos longer and 2·δ·cos shorter.
-        const Vec3 start = offset_origin(point, w);
-        const float offset = dot(abs(point.ng), abs(start - point.p) + point.p_error) + 4e-7f * sphere.radius;
-        const auto error = [&](std::optional<float> t) {
-            if (!t) return std::numeric_limits<double>::infinity();
-            return static_cast<double>(abs(*t - chord) * cosine / offset);
-        };
-        const Hit across = accelerated.accelerator.closest({start, w});
-        trial.note("radius ", exact(sphere.radius), " at ", exact(sphere.center), ", from ", exact(point.p), " along ",
-                   exact(w), ": ", exact(across.t), ", the chord is ", exact(chord));
-        trial.record(error(across.valid() ? std::optional(across.t) : std::nullopt));
-        trial.record_naive(error(naive::intersect_sphere({ray.at(hit.t), w, kTextbookTMin}, sphere)));
-    });
+void into_spheres(Trial& trial) {
+    TrialRandom& random = trial.random;
+    const float scale = random.log_uniform(1e-8f, 1e8f);
+    const Sphere sphere{random.vector() * (3 * scale), scale * random.uniform(0.1f, 1)};
+    const AcceleratedScene accelerated(make_scene({sphere}));
+    const Vec3 target = point_of(sphere, random), origin = target + random.direction() * (5 * scale);
+    const Ray ray{origin, normalize_scaled(target - origin)};
+    const Hit hit = accelerated.accelerator.closest(ray);
+    if (!hit.valid()) return;
+    const SurfacePoint point = surface_point(*accelerated.scene, ray, hit);
+    Vec3 w = direction_away(trial, point.ng);
+    if (dot(w, point.ng) > 0) w = -w;
+    const float cosine = -dot(w, point.ng), chord = 2 * sphere.radius * cosine;
+    if (cosine < 1e-2f) return; // grazing: the chord is hardly longer than the offset
+    // A ray origin δ below the surface makes the chord δ/cos longer and 2·δ·cos shorter.
+    const Vec3 start = offset_origin(point, w);
+    const float offset = dot(abs(point.ng), abs(start - point.p) + point.p_error) + 4e-7f * sphere.radius;
+    const auto error = [&](std::optional<float> t) {
+        if (!t) return std::numeric_limits<double>::infinity();
+        return static_cast<double>(abs(*t - chord) * cosine / offset);
+    };
+    const Hit across = accelerated.accelerator.closest({start, w});
+    trial.note("radius ", exact(sphere.radius), " at ", exact(sphere.center), ", from ", exact(point.p), " along ",
+               exact(w), ": ", exact(across.t), ", the chord is ", exact(chord));
+    trial.record(error(across.valid() ? std::optional(across.t) : std::nullopt));
+    trial.record_naive(error(naive::intersect_sphere({ray.at(hit.t), w, kTextbookTMin}, sphere)));
 }
 
 /// Two parallel quads are 4e-5 apart. A ray leaving one outward must escape, and a ray leaving it inward must hit the
 /// other quad.
-StressResult parallel_surfaces(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        TrialRandom& random = trial.random;
-        constexpr float kGap = 4e-5f;
-        const Frame frame = frame_from_normal(random.direction());
-        const Vec3 corner = random.vector() - (frame.s + frame.t) * 2.0f;
-        const Quad lower{corner, frame.s * 4.0f, frame.t * 4.0f}, upper{corner + frame.n * kGap, lower.u, lower.v};
-        const AcceleratedScene accelerated(make_scene({QuadList{{lower}}, QuadList{{upper}}}));
-        const Vec3 target = upper.corner + upper.u * random.uniform(0.2f, 0.8f) + upper.v * random.uniform(0.2f, 0.8f);
-        const Vec3 from_above = frame.to_world({random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0.3f, 2)});
-        const Ray ray{target + from_above, normalize(-from_above)};
-        const Hit hit = accelerated.accelerator.closest(ray);
-        const SurfacePoint point = surface_point(*accelerated.scene, ray, hit.valid() ? hit : Hit{1, 0, 0.5f, 0.5f, 1});
-        const bool outwards = random.coin();
-        Vec3 w = frame.to_local(random.direction());
-        w.z = std::copysign(std::max(std::abs(w.z), 0.05f), outwards ? 1.0f : -1.0f);
-        w = normalize(frame.to_world(w));
-        const Hit next = accelerated.accelerator.closest({offset_origin(point, w), w});
-        trial.note("n = ", exact(frame.n), ", corner ", exact(corner), ", ray from ", exact(ray.origin), " along ",
-                   exact(ray.direction), " hits ", hit.object, "; leaving along ", exact(w), " hits ", next.object);
-        const auto wrong = [&](std::uint32_t first, std::uint32_t second) {
-            return first != 1 || second != (outwards ? kNoObject : 0u);
-        };
-        trial.record_failure_if(wrong(hit.object, next.object));
-        Ray textbook_ray{ray.at(hit.t), w, kTextbookTMin};
-        trial.record_naive_failure_if(wrong(hit.object, accelerated.accelerator.closest(textbook_ray).object));
-    });
+void parallel_surfaces(Trial& trial) {
+    TrialRandom& random = trial.random;
+    constexpr float kGap = 4e-5f;
+    const Frame frame = frame_from_normal(random.direction());
+    const Vec3 corner = random.vector() - (frame.s + frame.t) * 2.0f;
+    const Quad lower{corner, frame.s * 4.0f, frame.t * 4.0f}, upper{corner + frame.n * kGap, lower.u, lower.v};
+    const AcceleratedScene accelerated(make_scene({QuadList{{lower}}, QuadList{{upper}}}));
+    const Vec3 target = upper.corner + upper.u * random.uniform(0.2f, 0.8f) + upper.v * random.uniform(0.2f, 0.8f);
+    const Vec3 from_above = frame.to_world({random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0.3f, 2)});
+    const Ray ray{target + from_above, normalize(-from_above)};
+    const Hit hit = accelerated.accelerator.closest(ray);
+    const SurfacePoint point = surface_point(*accelerated.scene, ray, hit.valid() ? hit : Hit{1, 0, 0.5f, 0.5f, 1});
+    const bool outwards = random.coin();
+    Vec3 w = frame.to_local(random.direction());
+    w.z = std::copysign(std::max(std::abs(w.z), 0.05f), outwards ? 1.0f : -1.0f);
+    w = normalize(frame.to_world(w));
+    const Hit next = accelerated.accelerator.closest({offset_origin(point, w), w});
+    trial.note("n = ", exact(frame.n), ", corner ", exact(corner), ", ray from ", exact(ray.origin), " along ",
+               exact(ray.direction), " hits ", hit.object, "; leaving along ", exact(w), " hits ", next.object);
+    const auto wrong = [&](std::uint32_t first, std::uint32_t second) {
+        return first != 1 || second != (outwards ? kNoObject : 0u);
+    };
+    trial.record_failure_if(wrong(hit.object, next.object));
+    Ray textbook_ray{ray.at(hit.t), w, kTextbookTMin};
+    trial.record_naive_failure_if(wrong(hit.object, accelerated.accelerator.closest(textbook_ray).object));
 }
 
 /// A point just above a surface 20 km wide must be distinguished from the surface.
@@ -311,13 +303,13 @@ constexpr std::string_view kTMin = "t > 0.001, as the books have it";
 
 constexpr StressTest kTests[] = {
     {"departure/self-hits", "rays leaving triangles, quads and spheres of sizes 1e-8 to 1e8 do not hit them again", 0,
-     "wrong", kOffset, kTMin, 200'000, self_hits},
+     "wrong", kOffset, kTMin, 200'000, trials_of<self_hits>},
     {"departure/instance-self-hits", "the same of turned, stretched and mirrored instances", 0, "wrong", kOffset, kTMin,
-     200'000, instance_self_hits},
+     200'000, trials_of<instance_self_hits>},
     {"departure/into-spheres", "rays leaving a sphere inwards meet its other side, a chord away", 8, "of the offset",
-     "the chord's change with an offset start, to first order", kTMin, 200'000, into_spheres, 0.7},
+     "the chord's change with an offset start, to first order", kTMin, 200'000, trials_of<into_spheres>, 0.7},
     {"departure/parallel-surfaces", "of two sheets 4e-5 apart each lets light out on its side and hides the other", 0,
-     "wrong", kOffset, kTMin, 100'000, parallel_surfaces},
+     "wrong", kOffset, kTMin, 100'000, trials_of<parallel_surfaces>},
     {"departure/huge-ground", "from 1e-6 to 10 above a ground 20 km wide: hit downwards, never upwards", 0, "wrong",
      "the sign of the plane's distance, in double", kTMin, 200'000, huge_ground},
     {"departure/convex-shadows", "every face of a convex body, of size 1e-8 to 1e8, sees every other from inside", 0,

@@ -84,7 +84,7 @@ template <typename T> void shuffle(std::vector<T>& items, TrialRandom& random) {
 struct VisiblePrimitive {
     float reversed_depth = 0;
     std::uint32_t lowest = kNoObject; ///< Duet's rule: the lowest ID wins
-    std::uint32_t first = kNoObject; ///< the textbook rule: the first drawn wins
+    std::uint32_t first = kNoObject;  ///< the textbook rule: the first drawn wins
 };
 
 /// Renders each triangle alone and then selects the nearest.
@@ -106,59 +106,54 @@ Image<VisiblePrimitive> resolve_by_hand(const SetupTriangles& setup, const Trial
 
 } // namespace
 
-StressResult depth_order(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        TrialRandom& random = trial.random;
-        TrialView v = random_view(random, kSide, static_cast<double>(kNear));
-        v.view.camera.eye = {0, 0, 0}; // the view is along −z from the origin, so a corner's z is its depth
-        v.view.camera.look_at = {0, 0, -1};
-        v.view.camera.up = {0, 1, 0};
-        v.pinhole = CameraModel(v.view).pinhole();
-        const double depth = static_cast<double>(random.log_uniform(4 * kNear, kFar / 4));
-        const int steps = static_cast<int>(random.log_uniform(1, 64));
-        // The layer behind has the lower ID and would win a tie.
-        const Mesh behind = random_layer(random, v, depth), before = moved_nearer(behind, steps);
-        SetupTriangles setup = set_up_triangles(behind, v.view, v.window.offset);
-        const auto first_before = static_cast<std::uint32_t>(setup.source_triangles.size());
-        setup.append(set_up_triangles(before, v.view, v.window.offset));
-        if (random.coin()) std::reverse(setup.triangles.begin(), setup.triangles.end());
-        const auto tile = draw(setup, v.view, v.window);
+void depth_order(Trial& trial) {
+    TrialRandom& random = trial.random;
+    TrialView v = random_view(random, kSide, static_cast<double>(kNear));
+    v.view.camera.eye = {0, 0, 0}; // the view is along −z from the origin, so a corner's z is its depth
+    v.view.camera.look_at = {0, 0, -1};
+    v.view.camera.up = {0, 1, 0};
+    v.pinhole = CameraModel(v.view).pinhole();
+    const double depth = static_cast<double>(random.log_uniform(4 * kNear, kFar / 4));
+    const int steps = static_cast<int>(random.log_uniform(1, 64));
+    // The layer behind has the lower ID and would win a tie.
+    const Mesh behind = random_layer(random, v, depth), before = moved_nearer(behind, steps);
+    SetupTriangles setup = set_up_triangles(behind, v.view, v.window.offset);
+    const auto first_before = static_cast<std::uint32_t>(setup.source_triangles.size());
+    setup.append(set_up_triangles(before, v.view, v.window.offset));
+    if (random.coin()) std::reverse(setup.triangles.begin(), setup.triangles.end());
+    const auto tile = draw(setup, v.view, v.window);
 
-        trial.note("corners ", exact(behind.positions[0]), ", ", exact(behind.positions[1]), ", ",
-                   exact(behind.positions[2]), "; others ", steps, " floats nearer");
-        v.window.for_each([&](int x, int y) {
-            const Vec2d pixel = v.window.offset.position(x, y);
-            const std::optional<double> far = depth_at(behind, v.pinhole, pixel),
-                                        near = depth_at(before, v.pinhole, pixel);
-            constexpr double kResolved = 0x1p-23 * (1 + 1e-6);
-            if (!far || !near || *far / *near - 1 < kResolved) return;
-            const std::uint32_t seen = tile->id(x, y);
-            trial.record_failure_if(seen < first_before || seen == raster::kNoTriangle);
-            const auto z = [](double d) { return textbook_z(static_cast<float>(d), kNear, kFar); };
-            trial.record_naive_failure_if(!(z(*near) < z(*far)));
-        });
+    trial.note("corners ", exact(behind.positions[0]), ", ", exact(behind.positions[1]), ", ",
+               exact(behind.positions[2]), "; others ", steps, " floats nearer");
+    v.window.for_each([&](int x, int y) {
+        const Vec2d pixel = v.window.offset.position(x, y);
+        const std::optional<double> far = depth_at(behind, v.pinhole, pixel), near = depth_at(before, v.pinhole, pixel);
+        constexpr double kResolved = 0x1p-23 * (1 + 1e-6);
+        if (!far || !near || *far / *near - 1 < kResolved) return;
+        const std::uint32_t seen = tile->id(x, y);
+        trial.record_failure_if(seen < first_before || seen == raster::kNoTriangle);
+        const auto z = [](double d) { return textbook_z(static_cast<float>(d), kNear, kFar); };
+        trial.record_naive_failure_if(!(z(*near) < z(*far)));
     });
 }
 
-StressResult draw_order(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        const TrialView v = random_view(trial.random, kSide);
-        SetupTriangles setup = random_setup(trial.random, v);
-        shuffle(setup.triangles, trial.random);
-        const auto tile = draw(setup, v.view, v.window);
-        const Image<VisiblePrimitive> seen = resolve_by_hand(setup, v);
-        int wrong = 0, naive_wrong = 0;
-        v.window.for_each([&](int x, int y) {
-            const VisiblePrimitive& here = seen(x - v.window.rect.x0, y - v.window.rect.y0);
-            const std::uint32_t id = tile->id(x, y);
-            wrong += (id == raster::kNoTriangle ? kNoObject : id) != here.lowest;
-            naive_wrong += here.first != here.lowest;
-        });
-        trial.note(setup.triangles.size(), " triangles in ", v.view.width, "x", v.view.height, " pixels from (",
-                   v.window.rect.x0, ", ", v.window.rect.y0, ')');
-        trial.record(wrong);
-        trial.record_naive(naive_wrong);
+void draw_order(Trial& trial) {
+    const TrialView v = random_view(trial.random, kSide);
+    SetupTriangles setup = random_setup(trial.random, v);
+    shuffle(setup.triangles, trial.random);
+    const auto tile = draw(setup, v.view, v.window);
+    const Image<VisiblePrimitive> seen = resolve_by_hand(setup, v);
+    int wrong = 0, naive_wrong = 0;
+    v.window.for_each([&](int x, int y) {
+        const VisiblePrimitive& here = seen(x - v.window.rect.x0, y - v.window.rect.y0);
+        const std::uint32_t id = tile->id(x, y);
+        wrong += (id == raster::kNoTriangle ? kNoObject : id) != here.lowest;
+        naive_wrong += here.first != here.lowest;
     });
+    trial.note(setup.triangles.size(), " triangles in ", v.view.width, "x", v.view.height, " pixels from (",
+               v.window.rect.x0, ", ", v.window.rect.y0, ')');
+    trial.record(wrong);
+    trial.record_naive(naive_wrong);
 }
 
 } // namespace duet::compare

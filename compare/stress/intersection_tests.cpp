@@ -55,26 +55,22 @@ void judge_sphere(Trial& trial, const Ray& ray, const Sphere& sphere) {
     trial.record_naive(error(naive::intersect_sphere(ray, sphere)));
 }
 
-StressResult far_spheres(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        TrialRandom& random = trial.random;
-        const float radius = random.log_uniform(1e-3f, 1e3f);
-        const Vec3 away = random.direction() * (radius * random.log_uniform(10, 1e6f));
-        const Vec3 eye = random.vector() * radius;
-        const Sphere sphere{eye + away, radius};
-        const Vec3 aim = sphere.center + random.vector() * (0.8f * radius);
-        judge_sphere(trial, {eye, normalize(aim - eye)}, sphere);
-    });
+void far_spheres(Trial& trial) {
+    TrialRandom& random = trial.random;
+    const float radius = random.log_uniform(1e-3f, 1e3f);
+    const Vec3 away = random.direction() * (radius * random.log_uniform(10, 1e6f));
+    const Vec3 eye = random.vector() * radius;
+    const Sphere sphere{eye + away, radius};
+    const Vec3 aim = sphere.center + random.vector() * (0.8f * radius);
+    judge_sphere(trial, {eye, normalize(aim - eye)}, sphere);
 }
 
-StressResult near_spheres(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        TrialRandom& random = trial.random;
-        const Sphere sphere{random.vector(), random.log_uniform(1, 1e4f)};
-        const float height = random.sign() * random.log_uniform(1e-7f, 0.5f); // above or below the surface, in radii
-        const Vec3 eye = sphere.center + random.direction() * (sphere.radius * (1 + height));
-        judge_sphere(trial, {eye, random.direction()}, sphere);
-    });
+void near_spheres(Trial& trial) {
+    TrialRandom& random = trial.random;
+    const Sphere sphere{random.vector(), random.log_uniform(1, 1e4f)};
+    const float height = random.sign() * random.log_uniform(1e-7f, 0.5f); // above or below the surface, in radii
+    const Vec3 eye = sphere.center + random.direction() * (sphere.radius * (1 + height));
+    judge_sphere(trial, {eye, random.direction()}, sphere);
 }
 
 // Triangles ----------------------------------------------------------------------------------------------------------
@@ -99,45 +95,41 @@ double triangle_error(const Ray& ray, const std::array<Vec3, 3>& p, std::optiona
     return t ? in_roundoffs((static_cast<double>(*t) - plane) * slope / (length(n) * length(d)) / reach) : 0.0;
 }
 
-StressResult slivers(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        TrialRandom& random = trial.random;
-        const float scale = random.log_uniform(1e-6f, 1e6f), thickness = random.log_uniform(1e-6f, 1);
-        const Vec3 along = random.direction(), place = random.vector() * scale;
-        const Vec3 across = normalize(cross(along, random.direction())) * (thickness * scale);
-        const std::array<Vec3, 3> p{place, place + along * (scale * random.uniform(0.5f, 1)),
-                                    place + along * (scale * random.uniform()) + across};
-        const float u = random.uniform(), v = random.uniform(0, 1 - u);
-        const Vec3 target = p[0] * (1 - u - v) + p[1] * u + p[2] * v;
-        const Vec3 origin = target + random.direction() * (scale * random.log_uniform(1e-2f, 1e2f));
-        const Ray ray{origin, normalize_scaled(target - origin)};
-        const auto found = intersect_triangle(ShearedRay(ray), p[0], p[1], p[2]);
-        trial.note("a, b, c = ", exact(p[0]), ", ", exact(p[1]), ", ", exact(p[2]), ", ray from ", exact(origin),
-                   " along ", exact(ray.direction), ": t = ", found ? exact(found->t) : "none");
-        trial.record(triangle_error(ray, p, found ? std::optional(found->t) : std::nullopt));
-        trial.record_naive(triangle_error(ray, p, naive::intersect_triangle(ray, p[0], p[1], p[2])));
-    });
+void slivers(Trial& trial) {
+    TrialRandom& random = trial.random;
+    const float scale = random.log_uniform(1e-6f, 1e6f), thickness = random.log_uniform(1e-6f, 1);
+    const Vec3 along = random.direction(), place = random.vector() * scale;
+    const Vec3 across = normalize(cross(along, random.direction())) * (thickness * scale);
+    const std::array<Vec3, 3> p{place, place + along * (scale * random.uniform(0.5f, 1)),
+                                place + along * (scale * random.uniform()) + across};
+    const float u = random.uniform(), v = random.uniform(0, 1 - u);
+    const Vec3 target = p[0] * (1 - u - v) + p[1] * u + p[2] * v;
+    const Vec3 origin = target + random.direction() * (scale * random.log_uniform(1e-2f, 1e2f));
+    const Ray ray{origin, normalize_scaled(target - origin)};
+    const auto found = intersect_triangle(ShearedRay(ray), p[0], p[1], p[2]);
+    trial.note("a, b, c = ", exact(p[0]), ", ", exact(p[1]), ", ", exact(p[2]), ", ray from ", exact(origin), " along ",
+               exact(ray.direction), ": t = ", found ? exact(found->t) : "none");
+    trial.record(triangle_error(ray, p, found ? std::optional(found->t) : std::nullopt));
+    trial.record_naive(triangle_error(ray, p, naive::intersect_triangle(ray, p[0], p[1], p[2])));
 }
 
-StressResult zero_area(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        TrialRandom& random = trial.random;
-        // The corners are exactly collinear: they are on a grid on which sums and small multiples are exact.
-        const auto grid = [&] { return static_cast<float>(static_cast<int>(random.below(2001)) - 1000); };
-        const float scale = std::exp2(static_cast<float>(static_cast<int>(random.below(41)) - 20));
-        const Vec3 a = Vec3(grid(), grid(), grid()) * scale, step = Vec3(grid(), grid(), grid()) * scale;
-        const auto multiple = [&] { return a + step * static_cast<float>(static_cast<int>(random.below(7)) - 3); };
-        const Vec3 b = multiple(), c = multiple();
-        const Vec3 origin = random.vector() * (3000 * scale);
-        const Ray ray{origin, normalize_scaled(lerp(a, random.coin() ? b : c, random.uniform()) - origin)};
-        trial.note("a, b, c = ", exact(a), ", ", exact(b), ", ", exact(c), ", ray from ", exact(origin), " along ",
-                   exact(ray.direction));
-        const auto hit = intersect_triangle(ShearedRay(ray), a, b, c);
-        const double thickness = 64 * 6e-8 * 3000 * static_cast<double>(scale);
-        // A sheared sliver may have a width of one rounding error. A hit must then at least be on the line itself.
-        trial.record_failure_if(hit && !(std::isfinite(hit->t) && length(cross(Vec3d(ray.at(hit->t)) - Vec3d(a),
-                                                                               normalize(Vec3d(step)))) < thickness));
-    });
+void zero_area(Trial& trial) {
+    TrialRandom& random = trial.random;
+    // The corners are exactly collinear: they are on a grid on which sums and small multiples are exact.
+    const auto grid = [&] { return static_cast<float>(static_cast<int>(random.below(2001)) - 1000); };
+    const float scale = std::exp2(static_cast<float>(static_cast<int>(random.below(41)) - 20));
+    const Vec3 a = Vec3(grid(), grid(), grid()) * scale, step = Vec3(grid(), grid(), grid()) * scale;
+    const auto multiple = [&] { return a + step * static_cast<float>(static_cast<int>(random.below(7)) - 3); };
+    const Vec3 b = multiple(), c = multiple();
+    const Vec3 origin = random.vector() * (3000 * scale);
+    const Ray ray{origin, normalize_scaled(lerp(a, random.coin() ? b : c, random.uniform()) - origin)};
+    trial.note("a, b, c = ", exact(a), ", ", exact(b), ", ", exact(c), ", ray from ", exact(origin), " along ",
+               exact(ray.direction));
+    const auto hit = intersect_triangle(ShearedRay(ray), a, b, c);
+    const double thickness = 64 * 6e-8 * 3000 * static_cast<double>(scale);
+    // A sheared sliver may have a width of one rounding error. A hit must then at least be on the line itself.
+    trial.record_failure_if(hit && !(std::isfinite(hit->t) && length(cross(Vec3d(ray.at(hit->t)) - Vec3d(a),
+                                                                           normalize(Vec3d(step)))) < thickness));
 }
 
 // Many primitives ----------------------------------------------------------------------------------------------------
@@ -155,27 +147,25 @@ std::vector<Shape> duplicated(TrialRandom& random) {
     return {mesh, mesh};
 }
 
-StressResult duplicates(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        const AcceleratedScene accelerated(make_scene(duplicated(trial.random)));
-        const Mesh& mesh = std::get<Mesh>(accelerated.scene->shapes[0]);
-        for (int shot = 0; shot < 32; ++shot) {
-            const Ray ray{trial.random.direction() * 3.0f, trial.random.vector()};
-            const Hit found = accelerated.accelerator.closest(ray), expected = brute_force_hit(*accelerated.scene, ray);
-            trial.record_failure_if(!(found == expected));
-            if (!(found == expected))
-                trial.note("object ", found.object, " primitive ", found.primitive, ", expected ", expected.object,
-                           " and ", expected.primitive);
-            float nearest = kInfinity; // the last one tested wins
-            std::uint32_t last = 0;
-            for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-                const auto& [a, b, c] = mesh.triangles[i];
-                const auto t = naive::intersect_triangle(ray, mesh.positions[a], mesh.positions[b], mesh.positions[c]);
-                if (t && *t <= nearest) nearest = *t, last = i;
-            }
-            if (expected.valid()) trial.record_naive_failure_if(last != expected.primitive);
+void duplicates(Trial& trial) {
+    const AcceleratedScene accelerated(make_scene(duplicated(trial.random)));
+    const Mesh& mesh = std::get<Mesh>(accelerated.scene->shapes[0]);
+    for (int shot = 0; shot < 32; ++shot) {
+        const Ray ray{trial.random.direction() * 3.0f, trial.random.vector()};
+        const Hit found = accelerated.accelerator.closest(ray), expected = brute_force_hit(*accelerated.scene, ray);
+        trial.record_failure_if(!(found == expected));
+        if (!(found == expected))
+            trial.note("object ", found.object, " primitive ", found.primitive, ", expected ", expected.object, " and ",
+                       expected.primitive);
+        float nearest = kInfinity; // the last one tested wins
+        std::uint32_t last = 0;
+        for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+            const auto& [a, b, c] = mesh.triangles[i];
+            const auto t = naive::intersect_triangle(ray, mesh.positions[a], mesh.positions[b], mesh.positions[c]);
+            if (t && *t <= nearest) nearest = *t, last = i;
         }
-    });
+        if (expected.valid()) trial.record_naive_failure_if(last != expected.primitive);
+    }
 }
 
 /// Returns axis-aligned quads of many sizes in a few common planes.
@@ -192,19 +182,16 @@ std::vector<Shape> coplanar(TrialRandom& random) {
     return {list, list.quads.empty() ? list : QuadList{{list.quads[0], list.quads[7]}}};
 }
 
-StressResult coplanar_faces(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        const AcceleratedScene accelerated(make_scene(coplanar(trial.random)));
-        for (int shot = 0; shot < 32; ++shot) {
-            const Ray ray{trial.random.direction() * 3.0f, trial.random.vector()};
-            const Hit found = accelerated.accelerator.closest(ray), expected = brute_force_hit(*accelerated.scene, ray);
-            trial.record_failure_if(!(found == expected));
-            if (!(found == expected))
-                trial.note("ray from ", exact(ray.origin), " along ", exact(ray.direction), ": primitive ",
-                           found.primitive, " at ", exact(found.t), ", expected ", expected.primitive, " at ",
-                           exact(expected.t));
-        }
-    });
+void coplanar_faces(Trial& trial) {
+    const AcceleratedScene accelerated(make_scene(coplanar(trial.random)));
+    for (int shot = 0; shot < 32; ++shot) {
+        const Ray ray{trial.random.direction() * 3.0f, trial.random.vector()};
+        const Hit found = accelerated.accelerator.closest(ray), expected = brute_force_hit(*accelerated.scene, ray);
+        trial.record_failure_if(!(found == expected));
+        if (!(found == expected))
+            trial.note("ray from ", exact(ray.origin), " along ", exact(ray.direction), ": primitive ", found.primitive,
+                       " at ", exact(found.t), ", expected ", expected.primitive, " at ", exact(expected.t));
+    }
 }
 
 // Rays along the axes ------------------------------------------------------------------------------------------------
@@ -240,49 +227,46 @@ float whole_distance(const QuadList& boxes, Vec3 origin, std::size_t axis, float
     return nearest;
 }
 
-StressResult axis_parallel(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        TrialRandom& random = trial.random;
-        const AcceleratedScene accelerated(make_scene({whole_boxes(random)}));
-        const QuadList& boxes = std::get<QuadList>(accelerated.scene->shapes[0]);
-        for (int shot = 0; shot < 32; ++shot) {
-            const std::size_t axis = random.below(3);
-            const float sign = random.sign(), half = random.coin() ? 0.5f : 0.0f;
-            Ray ray;
-            for (std::size_t i = 0; i < 3; ++i) {
-                ray.origin[i] = static_cast<float>(random.below(20)) + half;
-                ray.direction[i] = random.coin() ? 0.0f : -0.0f;
-            }
-            ray.direction[axis] = sign;
-            Ray other = ray; // zeros of the opposite sign
-            other.direction = -ray.direction;
-            other.direction[axis] = sign;
-            const Hit hit = accelerated.accelerator.closest(ray), same = accelerated.accelerator.closest(other);
-            double error = hit == same && hit == brute_force_hit(*accelerated.scene, ray) ? 0 : kWrong;
-            if (half > 0) { // the ray passes through no edge, so the exact result is known
-                const float expected = whole_distance(boxes, ray.origin, axis, sign);
-                if (hit.valid() != std::isfinite(expected)) error = kWrong;
-                if (hit.valid()) error = std::max(error, ulps(hit.t, static_cast<long double>(expected)));
-                float nearest = kInfinity;
-                for (const Quad& quad : boxes.quads) {
-                    Box3 box;
-                    for (const Vec3& p : corners(quad)) box.extend(p);
-                    if (!naive::intersect_box(ray, box)) continue;
-                    const auto p = corners(quad);
-                    for (const std::size_t k : {std::size_t{1}, std::size_t{2}})
-                        if (const auto t = naive::intersect_triangle(ray, p[0], p[k], p[k + 1]))
-                            nearest = min(nearest, *t);
-                }
-                const bool both = std::isfinite(nearest) && std::isfinite(expected);
-                trial.record_naive(both                  ? ulps(nearest, static_cast<long double>(expected))
-                                   : nearest == expected ? 0
-                                                         : kWrong);
-            }
-            if (error > 8)
-                trial.note("ray from ", exact(ray.origin), " along ", exact(ray.direction), ": t = ", exact(hit.t));
-            trial.record(error);
+void axis_parallel(Trial& trial) {
+    TrialRandom& random = trial.random;
+    const AcceleratedScene accelerated(make_scene({whole_boxes(random)}));
+    const QuadList& boxes = std::get<QuadList>(accelerated.scene->shapes[0]);
+    for (int shot = 0; shot < 32; ++shot) {
+        const std::size_t axis = random.below(3);
+        const float sign = random.sign(), half = random.coin() ? 0.5f : 0.0f;
+        Ray ray;
+        for (std::size_t i = 0; i < 3; ++i) {
+            ray.origin[i] = static_cast<float>(random.below(20)) + half;
+            ray.direction[i] = random.coin() ? 0.0f : -0.0f;
         }
-    });
+        ray.direction[axis] = sign;
+        Ray other = ray; // zeros of the opposite sign
+        other.direction = -ray.direction;
+        other.direction[axis] = sign;
+        const Hit hit = accelerated.accelerator.closest(ray), same = accelerated.accelerator.closest(other);
+        double error = hit == same && hit == brute_force_hit(*accelerated.scene, ray) ? 0 : kWrong;
+        if (half > 0) { // the ray passes through no edge, so the exact result is known
+            const float expected = whole_distance(boxes, ray.origin, axis, sign);
+            if (hit.valid() != std::isfinite(expected)) error = kWrong;
+            if (hit.valid()) error = std::max(error, ulps(hit.t, static_cast<long double>(expected)));
+            float nearest = kInfinity;
+            for (const Quad& quad : boxes.quads) {
+                Box3 box;
+                for (const Vec3& p : corners(quad)) box.extend(p);
+                if (!naive::intersect_box(ray, box)) continue;
+                const auto p = corners(quad);
+                for (const std::size_t k : {std::size_t{1}, std::size_t{2}})
+                    if (const auto t = naive::intersect_triangle(ray, p[0], p[k], p[k + 1])) nearest = min(nearest, *t);
+            }
+            const bool both = std::isfinite(nearest) && std::isfinite(expected);
+            trial.record_naive(both                  ? ulps(nearest, static_cast<long double>(expected))
+                               : nearest == expected ? 0
+                                                     : kWrong);
+        }
+        if (error > 8)
+            trial.note("ray from ", exact(ray.origin), " along ", exact(ray.direction), ": t = ", exact(hit.t));
+        trial.record(error);
+    }
 }
 
 // Rays that are none -------------------------------------------------------------------------------------------------
@@ -327,21 +311,21 @@ StressResult bad_rays(const StressTest& test, const StressSetting& setting) {
 constexpr StressTest kTests[] = {
     {"intersection/far-spheres", "hits of spheres 10 to 1e6 radii away, grazing ones left out", 0.51, "ulp of t",
      "t is rounded once from double (Haines et al. 2019); judged by long double", "b² - a·c in float", 500'000,
-     far_spheres},
+     trials_of<far_spheres>},
     {"intersection/near-spheres", "hits from 1e-7 to 0.5 radii above or below the surface, in all directions", 0.6,
      "ulp of t", "t is rounded once from double (Haines et al. 2019); judged by long double", "b² - a·c in float",
-     500'000, near_spheres},
+     500'000, trials_of<near_spheres>},
     {"intersection/slivers", "triangles of size 1e-6 to 1e6, as thin as 1e-6 of it", 16, "2^-24 of the reach",
-     "judged by double", "Möller and Trumbore 1997, epsilon 1e-6", 500'000, slivers},
+     "judged by double", "Möller and Trumbore 1997, epsilon 1e-6", 500'000, trials_of<slivers>},
     {"intersection/zero-area", "collinear and coinciding corners: missed, or hit on their line", 0, "wrong",
-     "corners on a grid: exact", "", 500'000, zero_area},
+     "corners on a grid: exact", "", 500'000, trials_of<zero_area>},
     {"intersection/duplicates", "of triangles at the very same place the lowest object and primitive is hit", 0,
-     "wrong", "judged by testing every triangle", "the last one wins", 3'000, duplicates},
+     "wrong", "judged by testing every triangle", "the last one wins", 3'000, trials_of<duplicates>},
     {"intersection/coplanar", "of overlapping faces in common planes the accelerator finds what testing all does", 0,
-     "wrong", "judged by testing every quad", "", 3'000, coplanar_faces},
+     "wrong", "judged by testing every quad", "", 3'000, trials_of<coplanar_faces>},
     {"intersection/axis-parallel", "rays along axes, zeros of both signs, also in the planes and edges of boxes", 8,
      "ulp of t", "judged by whole and half numbers; 5 roundings of weights and products",
-     "Shirley's slabs on flat boxes, Möller and Trumbore 1997", 3'000, axis_parallel},
+     "Shirley's slabs on flat boxes, Möller and Trumbore 1997", 3'000, trials_of<axis_parallel>},
     {"intersection/bad-rays", "rays with NaN, infinities or no direction hit nothing", 0, "wrong", "exact",
      "`if (t < t_min || t > t_max) miss`, which a NaN passes", 200'000, bad_rays},
 };

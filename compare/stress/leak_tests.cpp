@@ -123,26 +123,24 @@ StressResult leak_from_outside(const StressTest& test, const StressSetting& sett
 }
 
 /// A box is six quads that do not share corners.
-StressResult leak_boxes(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        TrialRandom& random = trial.random;
-        const float scale = random.log_uniform(1e-6f, 1e6f);
-        const Vec3 middle = random.vector() * (scale * (trial.number() % 2 ? 1.0f : 100.0f));
-        const Vec3 half = Vec3(random.uniform(0.1f, 1), random.uniform(0.1f, 1), random.uniform(0.1f, 1)) * scale;
-        const Vec3 low = middle - half, high = middle + half;
-        const AcceleratedScene accelerated(make_scene({box_quads(low, high)}));
-        for (int shot = 0; shot < 16; ++shot) {
-            Vec3 target(random.coin() ? low.x : high.x, random.coin() ? low.y : high.y, random.coin() ? low.z : high.z);
-            const std::uint32_t axis = random.below(4); // 3: a corner
-            if (axis < 3) target[axis] = lerp(low[axis], high[axis], random.uniform());
-            const Ray ray = towards(lerp(low, high, random.uniform(0.2f, 0.8f)), target);
-            const Hit hit = accelerated.accelerator.closest(ray);
-            if (!hit.valid())
-                trial.note("box ", exact(low), " to ", exact(high), ", ray from ", exact(ray.origin), " along ",
-                           exact(ray.direction));
-            trial.record_failure_if(!hit.valid());
-        }
-    });
+void leak_boxes(Trial& trial) {
+    TrialRandom& random = trial.random;
+    const float scale = random.log_uniform(1e-6f, 1e6f);
+    const Vec3 middle = random.vector() * (scale * (trial.number() % 2 ? 1.0f : 100.0f));
+    const Vec3 half = Vec3(random.uniform(0.1f, 1), random.uniform(0.1f, 1), random.uniform(0.1f, 1)) * scale;
+    const Vec3 low = middle - half, high = middle + half;
+    const AcceleratedScene accelerated(make_scene({box_quads(low, high)}));
+    for (int shot = 0; shot < 16; ++shot) {
+        Vec3 target(random.coin() ? low.x : high.x, random.coin() ? low.y : high.y, random.coin() ? low.z : high.z);
+        const std::uint32_t axis = random.below(4); // 3: a corner
+        if (axis < 3) target[axis] = lerp(low[axis], high[axis], random.uniform());
+        const Ray ray = towards(lerp(low, high, random.uniform(0.2f, 0.8f)), target);
+        const Hit hit = accelerated.accelerator.closest(ray);
+        if (!hit.valid())
+            trial.note("box ", exact(low), " to ", exact(high), ", ray from ", exact(ray.origin), " along ",
+                       exact(ray.direction));
+        trial.record_failure_if(!hit.valid());
+    }
 }
 
 StressResult leak_instances(const StressTest& test, const StressSetting& setting) {
@@ -182,7 +180,7 @@ constexpr StressTest kTests[] = {
      "wrong", "Woop, Benthin and Wald 2013, §3; a ball's near side faces the eye", kMollerTrumbore, 100'000,
      leak_from_outside},
     {"leak/boxes", "rays from inside a box of any size and place hit it at its edges and corners", 0, "wrong",
-     "neighboring quads have the very same corners", "", 20'000, leak_boxes},
+     "neighboring quads have the very same corners", "", 20'000, trials_of<leak_boxes>},
     {"leak/instances", "rays from inside a turned, stretched and mirrored instance hit it, not the larger one around",
      0, "wrong", kWatertight, "", 3'000, leak_instances},
 };

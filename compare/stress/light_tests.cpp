@@ -60,96 +60,91 @@ double slant(const std::array<Vec3d, 4>& corners, Vec3d wi) {
     return std::abs(dot(normalize(cross(corners[1] - corners[0], corners[2] - corners[0])), wi));
 }
 
-StressResult samples(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        const Flat flat = random_flat(trial.random);
-        const Vec3d p(viewpoint(trial.random));
-        const Vec2d u(trial.random.uniform_2d());
-        const auto s = std::visit([&](const auto& shape) { return sample_solid_angle(shape, p, u); }, flat);
-        if (!s) return; // edge-on
-        const Vec3d q = p + s->wi * s->distance;
-        const auto pdf_of = [&](Vec3d at) {
-            return std::visit([&](const auto& shape) { return solid_angle_pdf(shape, p, at); }, flat);
-        };
-        const double pdf = pdf_of(q);
-        const auto corners = corners_of(flat);
-        trial.note(flat.index() == 0 ? "triangle " : "quad ", exact(Vec3(corners[0])), ", ", exact(Vec3(corners[1])),
-                   ", ", exact(Vec3(corners[2])), " seen from ", exact(Vec3(p)), ", u = (", u.x, ", ", u.y, "): pdf ",
-                   s->pdf, " and ", pdf);
-        if (!(s->pdf > 0) || !std::isfinite(s->pdf)) return trial.record(std::numeric_limits<double>::infinity());
-        const double place = 1 + length(q) / s->distance;       // the test itself rounds q
-        const double terms = place + 1 / slant(corners, s->wi); // an error of wi moves the point by this factor
-        trial.record(in_double_roundoffs(relative_error(s->pdf, pdf)) / place);
-        trial.record(in_double_roundoffs(off_shape(flat, p, q)) / terms);
-        trial.record(in_double_roundoffs(length(s->wi) - 1));
-    });
+void samples(Trial& trial) {
+    const Flat flat = random_flat(trial.random);
+    const Vec3d p(viewpoint(trial.random));
+    const Vec2d u(trial.random.uniform_2d());
+    const auto s = std::visit([&](const auto& shape) { return sample_solid_angle(shape, p, u); }, flat);
+    if (!s) return; // edge-on
+    const Vec3d q = p + s->wi * s->distance;
+    const auto pdf_of = [&](Vec3d at) {
+        return std::visit([&](const auto& shape) { return solid_angle_pdf(shape, p, at); }, flat);
+    };
+    const double pdf = pdf_of(q);
+    const auto corners = corners_of(flat);
+    trial.note(flat.index() == 0 ? "triangle " : "quad ", exact(Vec3(corners[0])), ", ", exact(Vec3(corners[1])), ", ",
+               exact(Vec3(corners[2])), " seen from ", exact(Vec3(p)), ", u = (", u.x, ", ", u.y, "): pdf ", s->pdf,
+               " and ", pdf);
+    if (!(s->pdf > 0) || !std::isfinite(s->pdf)) return trial.record(std::numeric_limits<double>::infinity());
+    const double place = 1 + length(q) / s->distance;       // the test itself rounds q
+    const double terms = place + 1 / slant(corners, s->wi); // an error of wi moves the point by this factor
+    trial.record(in_double_roundoffs(relative_error(s->pdf, pdf)) / place);
+    trial.record(in_double_roundoffs(off_shape(flat, p, q)) / terms);
+    trial.record(in_double_roundoffs(length(s->wi) - 1));
 }
 
 /// Tests that the mean of 1/pdf is the solid angle.
-StressResult densities(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        TrialRandom& random = trial.random;
-        const Flat flat = random_flat(random);
-        const Vec3d p(viewpoint(random));
-        const auto c = corners_of(flat);
-        const auto truth =
-            static_cast<double>(exact_solid_angle(p, c[0], c[1], c[2]) + exact_solid_angle(p, c[0], c[2], c[3]));
-        constexpr int kSamples = 2'000;
-        double mean = 0, square = 0;
-        for (int i = 0; i < kSamples; ++i) {
-            const Vec2d u(random.uniform_2d());
-            const auto s = std::visit([&](const auto& shape) { return sample_solid_angle(shape, p, u); }, flat);
-            const double value = s ? 1 / s->pdf : 0;
-            mean += value / kSamples, square += value * value / kSamples;
-        }
-        if (mean == 0) return; // edge-on
-        const double error = std::sqrt(std::max(0.0, square - mean * mean) / kSamples) + 1e-6 * truth;
-        if (error > 0.05 * truth) return; // too slanted for a normally distributed mean
-        trial.note("solid angle ", truth, ", estimated ", mean, " ± ", error);
-        trial.record(family_log_p_value(two_sided_p(std::abs(mean - truth) / error), trial.count()));
-    });
+void densities(Trial& trial) {
+    TrialRandom& random = trial.random;
+    const Flat flat = random_flat(random);
+    const Vec3d p(viewpoint(random));
+    const auto c = corners_of(flat);
+    const auto truth =
+        static_cast<double>(exact_solid_angle(p, c[0], c[1], c[2]) + exact_solid_angle(p, c[0], c[2], c[3]));
+    constexpr int kSamples = 2'000;
+    double mean = 0, square = 0;
+    for (int i = 0; i < kSamples; ++i) {
+        const Vec2d u(random.uniform_2d());
+        const auto s = std::visit([&](const auto& shape) { return sample_solid_angle(shape, p, u); }, flat);
+        const double value = s ? 1 / s->pdf : 0;
+        mean += value / kSamples, square += value * value / kSamples;
+    }
+    if (mean == 0) return; // edge-on
+    const double error = std::sqrt(std::max(0.0, square - mean * mean) / kSamples) + 1e-6 * truth;
+    if (error > 0.05 * truth) return; // too slanted for a normally distributed mean
+    trial.note("solid angle ", truth, ", estimated ", mean, " ± ", error);
+    trial.record(family_log_p_value(two_sided_p(std::abs(mean - truth) / error), trial.count()));
 }
 
-StressResult far_spheres(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        TrialRandom& random = trial.random;
-        const Sphere sphere{random.vector(), random.log_uniform(1e-3f, 1)};
-        const Vec3 p = sphere.center + random.direction() * (sphere.radius * random.log_uniform(1.001f, 1e6f));
-        using Wide = Vec3T<long double>;
-        const long double d2 = length_squared(Wide(sphere.center) - Wide(p));
-        const long double r2 = sqr(static_cast<long double>(sphere.radius));
-        if (d2 <= r2 * 1.001L) return;
-        const long double sin2 = r2 / d2, gap = sin2 / (1 + std::sqrt(1 - sin2));
-        const auto truth = static_cast<double>(1 / (2 * static_cast<long double>(kPiDouble) * gap));
-        // A rounding error of sin² has the same relative size in the density; at the limb that of √(1 − sin²) is
-        // larger.
-        const auto terms = static_cast<double>(1 + sin2 / std::sqrt(1 - sin2));
-        const auto density_error = [&](double pdf) { return in_double_roundoffs(relative_error(pdf, truth)) / terms; };
-        const auto s = sample_solid_angle(sphere, Vec3d(p), Vec2d(random.uniform_2d()));
-        trial.note("radius ", exact(sphere.radius), " at ", exact(sphere.center), " from ", exact(p));
-        if (!s) return trial.record(std::numeric_limits<double>::infinity());
-        trial.record(density_error(s->pdf));
-        trial.record(density_error(solid_angle_pdf(sphere, Vec3d(p), Vec3d(sphere.center))));
-        // The point is on the sphere, up to the rounding of the center's distance.
-        const double off =
-            length(Vec3d(p) - Vec3d(sphere.center) + s->wi * s->distance) - static_cast<double>(sphere.radius);
-        trial.record(in_double_roundoffs(off) / std::sqrt(static_cast<double>(d2)));
-        const Vec3 w = sphere.center - p;
-        const float cosine = std::sqrt(1 - sphere.radius * sphere.radius / length_squared(w));
-        trial.record_naive(density_error(static_cast<double>(1 / (2 * kPi * (1 - cosine)))));
-    });
+void far_spheres(Trial& trial) {
+    TrialRandom& random = trial.random;
+    const Sphere sphere{random.vector(), random.log_uniform(1e-3f, 1)};
+    const Vec3 p = sphere.center + random.direction() * (sphere.radius * random.log_uniform(1.001f, 1e6f));
+    using Wide = Vec3T<long double>;
+    const long double d2 = length_squared(Wide(sphere.center) - Wide(p));
+    const long double r2 = sqr(static_cast<long double>(sphere.radius));
+    if (d2 <= r2 * 1.001L) return;
+    const long double sin2 = r2 / d2, gap = sin2 / (1 + std::sqrt(1 - sin2));
+    const auto truth = static_cast<double>(1 / (2 * static_cast<long double>(kPiDouble) * gap));
+    // A rounding error of sin² has the same relative size in the density; at the limb that of √(1 − sin²) is
+    // larger.
+    const auto terms = static_cast<double>(1 + sin2 / std::sqrt(1 - sin2));
+    const auto density_error = [&](double pdf) { return in_double_roundoffs(relative_error(pdf, truth)) / terms; };
+    const auto s = sample_solid_angle(sphere, Vec3d(p), Vec2d(random.uniform_2d()));
+    trial.note("radius ", exact(sphere.radius), " at ", exact(sphere.center), " from ", exact(p));
+    if (!s) return trial.record(std::numeric_limits<double>::infinity());
+    trial.record(density_error(s->pdf));
+    trial.record(density_error(solid_angle_pdf(sphere, Vec3d(p), Vec3d(sphere.center))));
+    // The point is on the sphere, up to the rounding of the center's distance.
+    const double off =
+        length(Vec3d(p) - Vec3d(sphere.center) + s->wi * s->distance) - static_cast<double>(sphere.radius);
+    trial.record(in_double_roundoffs(off) / std::sqrt(static_cast<double>(d2)));
+    const Vec3 w = sphere.center - p;
+    const float cosine = std::sqrt(1 - sphere.radius * sphere.radius / length_squared(w));
+    trial.record_naive(density_error(static_cast<double>(1 / (2 * kPi * (1 - cosine)))));
 }
 
 constexpr StressTest kTests[] = {
     {"light/samples",
      "samples of triangles and quads, as thin as 1e-5, 0.01 to 1e4 away, lie on them and have the density that is "
      "requested",
-     17, "2^-53 of its terms", "17 roundings: 14 of both densities d³/(A·w), 3 of the point", "", 500'000, samples},
+     17, "2^-53 of its terms", "17 roundings: 14 of both densities d³/(A·w), 3 of the point", "", 500'000,
+     trials_of<samples>},
     {"light/densities", "the mean of 1/pdf is the solid angle", 6, "-log10 odds",
-     "odds of a false alarm 1e-6 for the row (Šidák 1967); judged by long double", "", 1'000, densities},
+     "odds of a false alarm 1e-6 for the row (Šidák 1967); judged by long double", "", 1'000, trials_of<densities>},
     {"light/far-spheres", "density and samples of spheres 1.001 to 1e6 radii away", 10, "2^-53 of its terms",
      "10 roundings of r²/d², 1 - cos and what is made of it; at the limb √(1 - r²/d²) divides; judged by long double",
-     "1 - sqrt(1 - r²/d²) in float", 500'000, far_spheres},
+     "1 - sqrt(1 - r²/d²) in float", 500'000, trials_of<far_spheres>},
 };
 
 } // namespace

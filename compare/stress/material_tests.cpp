@@ -48,18 +48,16 @@ Crossing crossing(TrialRandom& random) {
     return {eta, wo, wo.z > 0 ? eta : 1 / eta};
 }
 
-StressResult critical_angle(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        const Crossing c = crossing(trial.random);
-        const float cosine = abs_cos_theta(c.wo);
-        const double z = static_cast<double>(cosine), eta = static_cast<double>(c.relative), eta2 = eta * eta;
-        const double truth = ((eta - 1) * (eta + 1) + z * z) / eta2;
-        const double size = (std::abs((eta - 1) * (eta + 1)) + z * z) / eta2; // size of the terms, without cancellation
-        const auto error = [&](float cos2) { return in_roundoffs((static_cast<double>(cos2) - truth) / size); };
-        trial.note("cos = ", exact(cosine), ", η = ", exact(c.relative));
-        trial.record(error(cos2_refracted(cosine, c.relative)));
-        trial.record_naive(error(1 - (1 - cosine * cosine) / (c.relative * c.relative)));
-    });
+void critical_angle(Trial& trial) {
+    const Crossing c = crossing(trial.random);
+    const float cosine = abs_cos_theta(c.wo);
+    const double z = static_cast<double>(cosine), eta = static_cast<double>(c.relative), eta2 = eta * eta;
+    const double truth = ((eta - 1) * (eta + 1) + z * z) / eta2;
+    const double size = (std::abs((eta - 1) * (eta + 1)) + z * z) / eta2; // size of the terms, without cancellation
+    const auto error = [&](float cos2) { return in_roundoffs((static_cast<double>(cos2) - truth) / size); };
+    trial.note("cos = ", exact(cosine), ", η = ", exact(c.relative));
+    trial.record(error(cos2_refracted(cosine, c.relative)));
+    trial.record_naive(error(1 - (1 - cosine * cosine) / (c.relative * c.relative)));
 }
 
 /// Returns Fresnel's reflectance in double, from both cosines.
@@ -96,14 +94,12 @@ float textbook_fresnel(float cos_i, float eta) {
     return (parallel * parallel + perpendicular * perpendicular) / 2;
 }
 
-StressResult fresnel(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        const Crossing c = crossing(trial.random);
-        const float cosine = abs_cos_theta(c.wo);
-        trial.note("cos = ", exact(cosine), ", η = ", exact(c.relative));
-        trial.record(fresnel_error(fresnel_dielectric(cosine, c.relative), cosine, c.relative));
-        trial.record_naive(fresnel_error(textbook_fresnel(cosine, c.relative), cosine, c.relative));
-    });
+void fresnel(Trial& trial) {
+    const Crossing c = crossing(trial.random);
+    const float cosine = abs_cos_theta(c.wo);
+    trial.note("cos = ", exact(cosine), ", η = ", exact(c.relative));
+    trial.record(fresnel_error(fresnel_dielectric(cosine, c.relative), cosine, c.relative));
+    trial.record_naive(fresnel_error(textbook_fresnel(cosine, c.relative), cosine, c.relative));
 }
 
 /// Returns the error relative to Snell's law in double for the same floats: tangential components and the squared
@@ -128,41 +124,37 @@ Vec3 textbook_refract(Vec3 wo, float relative) {
     return across - n * std::sqrt(std::fabs(1 - length_squared(across)));
 }
 
-StressResult refraction(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        const Crossing c = crossing(trial.random);
-        const DielectricBsdf glass{c.eta, Rgb(1.0f)};
-        const auto s = glass.sample(c.wo, kOneMinusEpsilon, {}, TransportMode::kRadiance);
-        trial.note("wo = ", exact(c.wo), ", η = ", exact(c.eta));
-        if (!s) return trial.record(kWrong);
-        // Total internal reflection, possibly early by one rounding; or all but 2^-24 is reflected.
-        if (!s->transmitted) {
-            const double eta = static_cast<double>(c.relative), z = static_cast<double>(abs_cos_theta(c.wo));
-            const double cos2 = std::max(0.0, ((eta - 1) * (eta + 1) + z * z) / (eta * eta));
-            const double refracted = 1 - reflectance_of(z, std::sqrt(cos2), eta);
-            return trial.record(in_roundoffs(std::min(cos2 / std::max(1.0, 1 / (eta * eta)), refracted)));
-        }
-        trial.record(refraction_error(c, s->wi));
-        trial.record_naive(refraction_error(c, textbook_refract(c.wo, c.relative)));
-    });
+void refraction(Trial& trial) {
+    const Crossing c = crossing(trial.random);
+    const DielectricBsdf glass{c.eta, Rgb(1.0f)};
+    const auto s = glass.sample(c.wo, kOneMinusEpsilon, {}, TransportMode::kRadiance);
+    trial.note("wo = ", exact(c.wo), ", η = ", exact(c.eta));
+    if (!s) return trial.record(kWrong);
+    // Total internal reflection, possibly early by one rounding; or all but 2^-24 is reflected.
+    if (!s->transmitted) {
+        const double eta = static_cast<double>(c.relative), z = static_cast<double>(abs_cos_theta(c.wo));
+        const double cos2 = std::max(0.0, ((eta - 1) * (eta + 1) + z * z) / (eta * eta));
+        const double refracted = 1 - reflectance_of(z, std::sqrt(cos2), eta);
+        return trial.record(in_roundoffs(std::min(cos2 / std::max(1.0, 1 / (eta * eta)), refracted)));
+    }
+    trial.record(refraction_error(c, s->wi));
+    trial.record_naive(refraction_error(c, textbook_refract(c.wo, c.relative)));
 }
 
-StressResult glass_energy(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        const Crossing c = crossing(trial.random);
-        const DielectricBsdf glass{c.eta, Rgb(1.0f)};
-        trial.note("wo = ", exact(c.wo), ", η = ", exact(c.eta));
-        const auto first = glass.sample(c.wo, 0, {}, TransportMode::kImportance);
-        const auto last = glass.sample(c.wo, kOneMinusEpsilon, {}, TransportMode::kImportance);
-        if (!first || !last || !is_finite(first->wi) || !is_finite(last->wi)) return trial.record(kWrong);
-        double sum = static_cast<double>(first->pdf);
-        if (last->transmitted != first->transmitted) sum += static_cast<double>(last->pdf);
-        for (const BsdfSample& s : {*first, *last})
-            if (!(s.weight == Rgb(1.0f))) return trial.record(kWrong);
-        trial.record(in_roundoffs(sum - 1));
-        trial.record_naive(in_roundoffs(static_cast<double>(textbook_fresnel(abs_cos_theta(c.wo), c.relative)) +
-                                        (1 - static_cast<double>(first->pdf)) - 1));
-    });
+void glass_energy(Trial& trial) {
+    const Crossing c = crossing(trial.random);
+    const DielectricBsdf glass{c.eta, Rgb(1.0f)};
+    trial.note("wo = ", exact(c.wo), ", η = ", exact(c.eta));
+    const auto first = glass.sample(c.wo, 0, {}, TransportMode::kImportance);
+    const auto last = glass.sample(c.wo, kOneMinusEpsilon, {}, TransportMode::kImportance);
+    if (!first || !last || !is_finite(first->wi) || !is_finite(last->wi)) return trial.record(kWrong);
+    double sum = static_cast<double>(first->pdf);
+    if (last->transmitted != first->transmitted) sum += static_cast<double>(last->pdf);
+    for (const BsdfSample& s : {*first, *last})
+        if (!(s.weight == Rgb(1.0f))) return trial.record(kWrong);
+    trial.record(in_roundoffs(sum - 1));
+    trial.record_naive(in_roundoffs(static_cast<double>(textbook_fresnel(abs_cos_theta(c.wo), c.relative)) +
+                                    (1 - static_cast<double>(first->pdf)) - 1));
 }
 
 // All materials ------------------------------------------------------------------------------------------------------
@@ -209,26 +201,24 @@ double radiance_spread(const Bsdf& bsdf, Vec3 wo, const BsdfSample& s, Transport
     return 1 / (relative * relative);
 }
 
-StressResult furnace(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        TrialRandom& random = trial.random;
-        const Named& m = any_material(random);
-        const Vec3 wo = outgoing(random);
-        const float lobe = random.uniform();
-        const TransportMode mode = random.coin() ? TransportMode::kRadiance : TransportMode::kImportance;
-        const auto s = sample(m.bsdf, wo, lobe, random.uniform_2d(), mode);
-        trial.note(m.name, ", wo = ", exact(wo), mode == TransportMode::kRadiance ? ", radiance" : ", importance");
-        if (!s) return trial.record(m.lossless ? kWrong : 0); // lost to a second bounce between microfacets
-        const double largest = static_cast<double>(max(max(s->weight.r, s->weight.g), s->weight.b)) /
-                               radiance_spread(m.bsdf, wo, *s, mode);
-        if (!is_finite(s->weight) || !is_finite(s->wi) || !(s->pdf > 0)) return trial.record(kWrong);
-        if (!(min(min(s->weight.r, s->weight.g), s->weight.b) >= 0)) return trial.record(kWrong);
-        if (m.lossless) return trial.record(in_roundoffs(largest - 1));
-        // Where lobes share the samples, one may be sampled less often than its contribution requires; its weights
-        // are still bounded.
-        constexpr double kLargest = 10;
-        trial.record(largest <= kLargest ? 0 : kWrong);
-    });
+void furnace(Trial& trial) {
+    TrialRandom& random = trial.random;
+    const Named& m = any_material(random);
+    const Vec3 wo = outgoing(random);
+    const float lobe = random.uniform();
+    const TransportMode mode = random.coin() ? TransportMode::kRadiance : TransportMode::kImportance;
+    const auto s = sample(m.bsdf, wo, lobe, random.uniform_2d(), mode);
+    trial.note(m.name, ", wo = ", exact(wo), mode == TransportMode::kRadiance ? ", radiance" : ", importance");
+    if (!s) return trial.record(m.lossless ? kWrong : 0); // lost to a second bounce between microfacets
+    const double largest =
+        static_cast<double>(max(max(s->weight.r, s->weight.g), s->weight.b)) / radiance_spread(m.bsdf, wo, *s, mode);
+    if (!is_finite(s->weight) || !is_finite(s->wi) || !(s->pdf > 0)) return trial.record(kWrong);
+    if (!(min(min(s->weight.r, s->weight.g), s->weight.b) >= 0)) return trial.record(kWrong);
+    if (m.lossless) return trial.record(in_roundoffs(largest - 1));
+    // Where lobes share the samples, one may be sampled less often than its contribution requires; its weights
+    // are still bounded.
+    constexpr double kLargest = 10;
+    trial.record(largest <= kLargest ? 0 : kWrong);
 }
 
 double unlike(Rgb a, Rgb b) {
@@ -239,35 +229,31 @@ double unlike(Rgb a, Rgb b) {
     return in_roundoffs(worst);
 }
 
-StressResult weights(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        TrialRandom& random = trial.random;
-        const Named& m = rough_materials()[random.below(8)];
-        const Vec3 wo = outgoing(random);
-        const auto s = sample(m.bsdf, wo, random.uniform(), random.uniform_2d());
-        if (!s) return;
-        const float density = pdf(m.bsdf, wo, s->wi);
-        trial.note(m.name, ", wo = ", exact(wo), ", wi = ", exact(s->wi), ", pdf = ", exact(density));
-        if (!(density == s->pdf)) return trial.record(kWrong);
-        trial.record(unlike(eval(m.bsdf, wo, s->wi) * (abs_cos_theta(s->wi) / density), s->weight));
-    });
+void weights(Trial& trial) {
+    TrialRandom& random = trial.random;
+    const Named& m = rough_materials()[random.below(8)];
+    const Vec3 wo = outgoing(random);
+    const auto s = sample(m.bsdf, wo, random.uniform(), random.uniform_2d());
+    if (!s) return;
+    const float density = pdf(m.bsdf, wo, s->wi);
+    trial.note(m.name, ", wo = ", exact(wo), ", wi = ", exact(s->wi), ", pdf = ", exact(density));
+    if (!(density == s->pdf)) return trial.record(kWrong);
+    trial.record(unlike(eval(m.bsdf, wo, s->wi) * (abs_cos_theta(s->wi) / density), s->weight));
 }
 
-StressResult reciprocity(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        TrialRandom& random = trial.random;
-        const Named& m = rough_materials()[random.below(8)];
-        const Vec3 a = outgoing(random);
-        Vec3 b = outgoing(random);
-        if (random.coin()) // near the mirror direction, where narrow lobes lie
-            b = normalize(Vec3(-a.x, -a.y, a.z) + random.direction() * random.log_uniform(1e-4f, 1e-1f));
-        if (!same_hemisphere(a, b)) b.z = -b.z;
-        const Rgb forth = eval(m.bsdf, a, b), back = eval(m.bsdf, b, a);
-        const Rgb below = eval(m.bsdf, {a.x, a.y, -a.z}, {b.x, b.y, -b.z});
-        trial.note(m.name, ", ", exact(a), " and ", exact(b));
-        if (!is_finite(forth) || !(below == forth)) return trial.record(kWrong);
-        trial.record(unlike(forth, back));
-    });
+void reciprocity(Trial& trial) {
+    TrialRandom& random = trial.random;
+    const Named& m = rough_materials()[random.below(8)];
+    const Vec3 a = outgoing(random);
+    Vec3 b = outgoing(random);
+    if (random.coin()) // near the mirror direction, where narrow lobes lie
+        b = normalize(Vec3(-a.x, -a.y, a.z) + random.direction() * random.log_uniform(1e-4f, 1e-1f));
+    if (!same_hemisphere(a, b)) b.z = -b.z;
+    const Rgb forth = eval(m.bsdf, a, b), back = eval(m.bsdf, b, a);
+    const Rgb below = eval(m.bsdf, {a.x, a.y, -a.z}, {b.x, b.y, -b.z});
+    trial.note(m.name, ", ", exact(a), " and ", exact(b));
+    if (!is_finite(forth) || !(below == forth)) return trial.record(kWrong);
+    trial.record(unlike(forth, back));
 }
 
 StressResult chi_squared_test(const StressTest& test, const StressSetting& setting) {
@@ -297,53 +283,52 @@ StressResult chi_squared_test(const StressTest& test, const StressSetting& setti
 }
 
 /// Compares two estimates of a material's albedo: from its own samples and from uniform directions.
-StressResult albedo(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        TrialRandom& random = trial.random;
-        const Named& m =
-            rough_materials()[static_cast<std::size_t>(trial.number()) % 7]; // wide enough for uniform sampling
-        const Vec3 wo = direction_of(random.sign() * random.uniform(0.2f, 1), 2 * kPi * random.uniform());
-        constexpr int kSamples = 50'000;
-        double own = 0, own2 = 0, uniform = 0, uniform2 = 0;
-        for (int i = 0; i < kSamples; ++i) {
-            const auto s = sample(m.bsdf, wo, random.uniform(), random.uniform_2d());
-            const double a = s ? static_cast<double>(s->weight.r) : 0;
-            const Vec3 wi = random.direction();
-            const double b = static_cast<double>(eval(m.bsdf, wo, wi).r * abs_cos_theta(wi) / kUniformSpherePdf);
-            own += a / kSamples, own2 += a * a / kSamples;
-            uniform += b / kSamples, uniform2 += b * b / kSamples;
-        }
-        const double error = std::sqrt((own2 - own * own + uniform2 - uniform * uniform) / kSamples);
-        trial.note(m.name, ", wo = ", exact(wo), ": ", own, " and ", uniform, " ± ", error);
-        trial.record(family_log_p_value(two_sided_p((own - uniform) / error), trial.count()));
-    });
+void albedo(Trial& trial) {
+    TrialRandom& random = trial.random;
+    const Named& m =
+        rough_materials()[static_cast<std::size_t>(trial.number()) % 7]; // wide enough for uniform sampling
+    const Vec3 wo = direction_of(random.sign() * random.uniform(0.2f, 1), 2 * kPi * random.uniform());
+    constexpr int kSamples = 50'000;
+    double own = 0, own2 = 0, uniform = 0, uniform2 = 0;
+    for (int i = 0; i < kSamples; ++i) {
+        const auto s = sample(m.bsdf, wo, random.uniform(), random.uniform_2d());
+        const double a = s ? static_cast<double>(s->weight.r) : 0;
+        const Vec3 wi = random.direction();
+        const double b = static_cast<double>(eval(m.bsdf, wo, wi).r * abs_cos_theta(wi) / kUniformSpherePdf);
+        own += a / kSamples, own2 += a * a / kSamples;
+        uniform += b / kSamples, uniform2 += b * b / kSamples;
+    }
+    const double error = std::sqrt((own2 - own * own + uniform2 - uniform * uniform) / kSamples);
+    trial.note(m.name, ", wo = ", exact(wo), ": ", own, " and ", uniform, " ± ", error);
+    trial.record(family_log_p_value(two_sided_p((own - uniform) / error), trial.count()));
 }
 
 constexpr std::string_view kSidak = "odds of a false alarm 1e-6 for the row (Šidák 1967)";
 
 constexpr StressTest kTests[] = {
     {"material/critical-angle", "the refracted cosine's square, near the critical angle too", 5, "2^-24 of its terms",
-     "5 roundings; judged by double", "1 - sin²/η²", 1'000'000, critical_angle},
+     "5 roundings; judged by double", "1 - sin²/η²", 1'000'000, trials_of<critical_angle>},
     {"material/fresnel", "the reflectance of dielectrics, grazing and near the critical angle too, is in [0, 1]", 8,
      "2^-24", "Born and Wolf 1999, §1.5.2 in double; cos² within the bound above", "sines from cosines", 500'000,
-     fresnel},
+     trials_of<fresnel>},
     {"material/refraction", "Snell's law, grazing and near the critical angle too", 8, "2^-24 of its terms",
-     "tangential parts and squared cosine; judged by double", "Ray Tracing in One Weekend, §11.2", 500'000, refraction},
+     "tangential parts and squared cosine; judged by double", "Ray Tracing in One Weekend, §11.2", 500'000,
+     trials_of<refraction>},
     {"material/glass-energy", "reflection and refraction take all the light between them, each sample all of its share",
-     1, "2^-24", "R + (1 - R) is rounded once", "sines from cosines", 500'000, glass_energy},
-    {"material/furnace", "samples of lossless materials send on what they received; no weight of any other is "
-                         "beyond 10", 8,
-     "2^-24", "8 roundings: F·G₂/G₁ at most 1 (Heitz 2014); radiance crosses a boundary as L/n² (Veach 1997)", "",
-     1'000'000, furnace},
+     1, "2^-24", "R + (1 - R) is rounded once", "sines from cosines", 500'000, trials_of<glass_energy>},
+    {"material/furnace",
+     "samples of lossless materials send on what they received; no weight of any other is beyond 10", 8, "2^-24",
+     "8 roundings: F·G₂/G₁ at most 1 (Heitz 2014); radiance crosses a boundary as L/n² (Veach 1997)", "", 1'000'000,
+     trials_of<furnace>},
     {"material/weights", "a sample's weight is f·|cos|/pdf, its density that of pdf()", 9.01, "2^-24",
      "9 roundings: 6 of f·|cos|/pdf, 3 of the weight; D, F and G1's terms are the same numbers in both", "", 500'000,
-     weights, 0.95},
+     trials_of<weights>, 0.95},
     {"material/reciprocity", "f(a, b) = f(b, a), the same from below", 0, "2^-24",
-     "Helmholtz; every operation is symmetric", "", 500'000, reciprocity},
+     "Helmholtz; every operation is symmetric", "", 500'000, trials_of<reciprocity>},
     {"material/chi-squared", "directions are distributed as pdf says: 7 materials, 5 angles, both sides", 6,
      "-log10 odds", kSidak, "", 35, chi_squared_test},
     {"material/albedo", "own and uniform directions estimate the same albedo", 6, "-log10 odds", kSidak, "", 40,
-     albedo},
+     trials_of<albedo>},
 };
 
 } // namespace

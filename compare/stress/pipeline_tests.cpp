@@ -65,28 +65,22 @@ void check_hits(Trial& trial, const TrialScene& random) {
     trial.record_naive(static_cast<double>(textbook.unexplained));
 }
 
-template <SceneContents contents> StressResult hits_of(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        check_hits(trial, random_scene(trial.random, contents, {}, kWidth, kHeight));
-    });
+template <SceneContents contents> void hits_of(Trial& trial) {
+    check_hits(trial, random_scene(trial.random, contents, {}, kWidth, kHeight));
 }
 
 constexpr SceneContents kAll{.soup = true, .meshes = true, .spheres = true, .quads = true, .instances = true};
 
-StressResult hits_at_scales(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        const Placement placement{.offset = {}, .scale = trial.random.log_uniform(1e-6f, 1e6f)};
-        trial.note("scale ", exact(placement.scale));
-        check_hits(trial, random_scene(trial.random, kAll, placement, kWidth, kHeight));
-    });
+void hits_at_scales(Trial& trial) {
+    const Placement placement{.offset = {}, .scale = trial.random.log_uniform(1e-6f, 1e6f)};
+    trial.note("scale ", exact(placement.scale));
+    check_hits(trial, random_scene(trial.random, kAll, placement, kWidth, kHeight));
 }
 
-StressResult hits_far_away(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        const Placement placement{.offset = trial.random.vector() * 1e5f, .scale = 1};
-        trial.note("at ", exact(placement.offset));
-        check_hits(trial, random_scene(trial.random, kAll, placement, kWidth, kHeight));
-    });
+void hits_far_away(Trial& trial) {
+    const Placement placement{.offset = trial.random.vector() * 1e5f, .scale = 1};
+    trial.note("at ", exact(placement.offset));
+    check_hits(trial, random_scene(trial.random, kAll, placement, kWidth, kHeight));
 }
 
 // Threads ------------------------------------------------------------------------------------------------------------
@@ -141,19 +135,19 @@ constexpr std::string_view kSameBits =
 constexpr StressTest kTests[] = {
     row("pipeline/hits-soup",
         "both pipelines see the same in a soup of triangles of all sizes, before the eye and behind", 2000,
-        hits_of<SceneContents{.soup = true}>),
+        trials_of<hits_of<SceneContents{.soup = true}>>),
     row("pipeline/hits-meshes", "both pipelines see the same of closed meshes, from outside and within", 500,
-        hits_of<SceneContents{.meshes = true}>),
+        trials_of<hits_of<SceneContents{.meshes = true}>>),
     row("pipeline/hits-spheres", "both pipelines see the same of spheres and ellipsoids, from outside and within", 1500,
-        hits_of<SceneContents{.spheres = true, .instances = true}>),
+        trials_of<hits_of<SceneContents{.spheres = true, .instances = true}>>),
     row("pipeline/hits-quads", "both pipelines see the same of boxes and walls", 1500,
-        hits_of<SceneContents{.quads = true}>),
+        trials_of<hits_of<SceneContents{.quads = true}>>),
     row("pipeline/hits-instances", "both pipelines see the same of all shapes turned, stretched and mirrored", 300,
-        hits_of<kAll>),
+        trials_of<hits_of<kAll>>),
     row("pipeline/hits-scales", "both pipelines see the same in scenes of all shapes at scales from 1e-6 to 1e6", 300,
-        hits_at_scales),
+        trials_of<hits_at_scales>),
     row("pipeline/hits-far", "both pipelines see the same in scenes of all shapes up to 1e5 meters from the origin",
-        300, hits_far_away),
+        300, trials_of<hits_far_away>),
     {.name = "pipeline/threads-raster",
      .what = "2, 3 and 7 threads give the rasterizer's bits of one, in the image and all auxiliary ones",
      .bound = 0,

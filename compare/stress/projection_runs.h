@@ -1,12 +1,12 @@
 // This header declares tests of the group "projection" with their own files; projection_tests.cpp has their rows.
 #pragma once
 
-#include "compare/stress/stress.h"
+#include "compare/stress/trials.h"
 
 namespace duet::compare {
 
-StressResult clipped_floor(const StressTest& test, const StressSetting& setting);
-StressResult depth_order(const StressTest& test, const StressSetting& setting);
-StressResult draw_order(const StressTest& test, const StressSetting& setting);
+void clipped_floor(Trial& trial);
+void depth_order(Trial& trial);
+void draw_order(Trial& trial);
 
 } // namespace duet::compare

@@ -34,28 +34,26 @@ bool possible(const Hit& hit, double depth, double near) {
     return hit.u >= 0 && hit.v >= 0 && hit.u <= 1 && hit.v <= 1 && depth >= near * (1 - 0x1p-20) && depth < 1e30;
 }
 
-template <MakeTriangle make> StressResult displaced(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        const TrialView v = random_view(trial.random, kSide);
-        const std::array<Vec3, 3> corners = make(trial.random, v);
-        const ProjectedTriangle exact_triangle(v.pinhole, corners);
-        if (exact_triangle.edge_on()) return;
-        const raster::HitTile tile = draw(one_triangle(corners), v.view, v.window);
-        const TextbookTriangle textbook = as_textbook(v.pinhole, corners);
-        double worst = 0, textbook_worst = 0;
-        v.window.for_each([&](int x, int y) {
-            const Vec2d pixel = v.window.offset.position(x, y);
-            const Hit& hit = tile.hit(x, y);
-            worst = max(worst, displacement(exact_triangle, pixel, hit.valid()));
-            if (hit.valid() && !possible(hit, tile.depth(x, y), v.pinhole.near))
-                worst = std::numeric_limits<double>::infinity();
-            textbook_worst =
-                max(textbook_worst, displacement(exact_triangle, pixel, textbook_covers(textbook, Vec2(pixel))));
-        });
-        note_trial(trial, v, corners);
-        trial.record(worst);
-        trial.record_naive(textbook_worst);
+template <MakeTriangle make> void displaced(Trial& trial) {
+    const TrialView v = random_view(trial.random, kSide);
+    const std::array<Vec3, 3> corners = make(trial.random, v);
+    const ProjectedTriangle exact_triangle(v.pinhole, corners);
+    if (exact_triangle.edge_on()) return;
+    const raster::HitTile tile = draw(one_triangle(corners), v.view, v.window);
+    const TextbookTriangle textbook = as_textbook(v.pinhole, corners);
+    double worst = 0, textbook_worst = 0;
+    v.window.for_each([&](int x, int y) {
+        const Vec2d pixel = v.window.offset.position(x, y);
+        const Hit& hit = tile.hit(x, y);
+        worst = max(worst, displacement(exact_triangle, pixel, hit.valid()));
+        if (hit.valid() && !possible(hit, tile.depth(x, y), v.pinhole.near))
+            worst = std::numeric_limits<double>::infinity();
+        textbook_worst =
+            max(textbook_worst, displacement(exact_triangle, pixel, textbook_covers(textbook, Vec2(pixel))));
     });
+    note_trial(trial, v, corners);
+    trial.record(worst);
+    trial.record_naive(textbook_worst);
 }
 
 // Attributes ---------------------------------------------------------------------------------------------------------
@@ -74,49 +72,45 @@ void for_each_inside(const TrialView& v, const ProjectedTriangle& triangle, cons
     });
 }
 
-template <MakeTriangle make> StressResult barycentrics(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        const TrialView v = random_view(trial.random, kSide);
-        const std::array<Vec3, 3> corners = make(trial.random, v);
-        const ProjectedTriangle exact_triangle(v.pinhole, corners);
-        const raster::HitTile tile = draw(one_triangle(corners), v.view, v.window);
-        const TextbookTriangle textbook = as_textbook(v.pinhole, corners);
-        note_trial(trial, v, corners);
-        for_each_inside(v, exact_triangle, tile, [&](int x, int y, Vec2d pixel, const ProjectedPoint& truth) {
-            const auto error = [&](float u, float w) {
-                return in_roundoffs(larger_error(std::abs(static_cast<double>(u) - truth.u),
-                                                 std::abs(static_cast<double>(w) - truth.v)));
-            };
-            trial.record(error(tile.hit(x, y).u, tile.hit(x, y).v));
-            const Vec3 affine = textbook_barycentrics(textbook, Vec2(pixel));
-            trial.record_naive(error(affine.y, affine.z));
-        });
+template <MakeTriangle make> void barycentrics(Trial& trial) {
+    const TrialView v = random_view(trial.random, kSide);
+    const std::array<Vec3, 3> corners = make(trial.random, v);
+    const ProjectedTriangle exact_triangle(v.pinhole, corners);
+    const raster::HitTile tile = draw(one_triangle(corners), v.view, v.window);
+    const TextbookTriangle textbook = as_textbook(v.pinhole, corners);
+    note_trial(trial, v, corners);
+    for_each_inside(v, exact_triangle, tile, [&](int x, int y, Vec2d pixel, const ProjectedPoint& truth) {
+        const auto error = [&](float u, float w) {
+            return in_roundoffs(
+                larger_error(std::abs(static_cast<double>(u) - truth.u), std::abs(static_cast<double>(w) - truth.v)));
+        };
+        trial.record(error(tile.hit(x, y).u, tile.hit(x, y).v));
+        const Vec3 affine = textbook_barycentrics(textbook, Vec2(pixel));
+        trial.record_naive(error(affine.y, affine.z));
     });
 }
 
 /// Tests the distance of each hit point's projection from its sample, in pixels.
-StressResult point_errors(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        const TrialView v = random_view(trial.random, kSide);
-        const std::array<Vec3, 3> corners = random_sliver(trial.random, v);
-        const raster::HitTile tile = draw(one_triangle(corners), v.view, v.window);
-        const TextbookTriangle textbook = as_textbook(v.pinhole, corners);
-        note_trial(trial, v, corners);
-        const auto pixel_error = [&](Vec2d pixel, double u, double w) {
-            const Vec3d a(corners[0]), ab = Vec3d(corners[1]) - a, ac = Vec3d(corners[2]) - a;
-            const Vec3d seen = v.pinhole.project(a + ab * u + ac * w);
-            return std::hypot(seen.x - pixel.x, seen.y - pixel.y);
-        };
-        v.window.for_each([&](int x, int y) {
-            const Hit& hit = tile.hit(x, y);
-            if (!hit.valid()) return;
-            const Vec2d pixel = v.window.offset.position(x, y);
-            trial.record(possible(hit, tile.depth(x, y), v.pinhole.near)
-                             ? pixel_error(pixel, static_cast<double>(hit.u), static_cast<double>(hit.v))
-                             : std::numeric_limits<double>::infinity());
-            const Vec3 affine = textbook_barycentrics(textbook, Vec2(pixel));
-            trial.record_naive(pixel_error(pixel, static_cast<double>(affine.y), static_cast<double>(affine.z)));
-        });
+void point_errors(Trial& trial) {
+    const TrialView v = random_view(trial.random, kSide);
+    const std::array<Vec3, 3> corners = random_sliver(trial.random, v);
+    const raster::HitTile tile = draw(one_triangle(corners), v.view, v.window);
+    const TextbookTriangle textbook = as_textbook(v.pinhole, corners);
+    note_trial(trial, v, corners);
+    const auto pixel_error = [&](Vec2d pixel, double u, double w) {
+        const Vec3d a(corners[0]), ab = Vec3d(corners[1]) - a, ac = Vec3d(corners[2]) - a;
+        const Vec3d seen = v.pinhole.project(a + ab * u + ac * w);
+        return std::hypot(seen.x - pixel.x, seen.y - pixel.y);
+    };
+    v.window.for_each([&](int x, int y) {
+        const Hit& hit = tile.hit(x, y);
+        if (!hit.valid()) return;
+        const Vec2d pixel = v.window.offset.position(x, y);
+        trial.record(possible(hit, tile.depth(x, y), v.pinhole.near)
+                         ? pixel_error(pixel, static_cast<double>(hit.u), static_cast<double>(hit.v))
+                         : std::numeric_limits<double>::infinity());
+        const Vec3 affine = textbook_barycentrics(textbook, Vec2(pixel));
+        trial.record_naive(pixel_error(pixel, static_cast<double>(affine.y), static_cast<double>(affine.z)));
     });
 }
 
@@ -132,21 +126,19 @@ double textbook_depth(const TextbookTriangle& t, Vec2 pixel) {
             static_cast<double>(here) * static_cast<double>(kTextbookFar - kTextbookNear));
 }
 
-template <MakeTriangle make> StressResult depths(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [](Trial& trial) {
-        const TrialView v = random_view(trial.random, kSide, static_cast<double>(kTextbookNear));
-        const std::array<Vec3, 3> corners = make(trial.random, v);
-        const ProjectedTriangle exact_triangle(v.pinhole, corners);
-        const raster::HitTile tile = draw(one_triangle(corners), v.view, v.window);
-        const TextbookTriangle textbook = as_textbook(v.pinhole, corners);
-        note_trial(trial, v, corners);
-        for_each_inside(v, exact_triangle, tile, [&](int x, int y, Vec2d pixel, const ProjectedPoint& truth) {
-            const double distance = truth.depth * v.pinhole.ray(pixel).t_min / v.pinhole.near;
-            trial.record(in_roundoffs(relative_error(static_cast<double>(tile.hit(x, y).t), distance)));
-            trial.record(in_roundoffs(
-                relative_error(static_cast<double>(tile.reversed_depth(x, y)), v.pinhole.near / truth.depth)));
-            trial.record_naive(in_roundoffs(relative_error(textbook_depth(textbook, Vec2(pixel)), truth.depth)));
-        });
+template <MakeTriangle make> void depths(Trial& trial) {
+    const TrialView v = random_view(trial.random, kSide, static_cast<double>(kTextbookNear));
+    const std::array<Vec3, 3> corners = make(trial.random, v);
+    const ProjectedTriangle exact_triangle(v.pinhole, corners);
+    const raster::HitTile tile = draw(one_triangle(corners), v.view, v.window);
+    const TextbookTriangle textbook = as_textbook(v.pinhole, corners);
+    note_trial(trial, v, corners);
+    for_each_inside(v, exact_triangle, tile, [&](int x, int y, Vec2d pixel, const ProjectedPoint& truth) {
+        const double distance = truth.depth * v.pinhole.ray(pixel).t_min / v.pinhole.near;
+        trial.record(in_roundoffs(relative_error(static_cast<double>(tile.hit(x, y).t), distance)));
+        trial.record(
+            in_roundoffs(relative_error(static_cast<double>(tile.reversed_depth(x, y)), v.pinhole.near / truth.depth)));
+        trial.record_naive(in_roundoffs(relative_error(textbook_depth(textbook, Vec2(pixel)), truth.depth)));
     });
 }
 
@@ -164,7 +156,7 @@ constexpr StressTest kTests[] = {
                "the near plane 0.0001; the volumes in extended precision",
      .naive = kNoClip,
      .trials = 50'000,
-     .run = displaced<random_straddling>},
+     .run = trials_of<displaced<random_straddling>>},
     {.name = "projection/guard-band",
      .what = "triangles that reach 1e4 to 1e7 pixels beyond the window cover what rays see of them",
      .bound = 0.00277,
@@ -172,7 +164,7 @@ constexpr StressTest kTests[] = {
      .source = "snapping moves an outline by at most sqrt(2)/512 = 0.00276 pixel; the volumes in extended precision",
      .naive = kNoClip,
      .trials = 50'000,
-     .run = displaced<random_beyond_guard>},
+     .run = trials_of<displaced<random_beyond_guard>>},
     {.name = "projection/once-clipped",
      .what =
          "a floor of folded triangles under the eye and behind it, cut at the near plane and the guard band, covers "
@@ -182,7 +174,7 @@ constexpr StressTest kTests[] = {
      .source = "parity: as coverage/once-grids, orientation being lost; the floor's outline in extended precision",
      .naive = kNoClip,
      .trials = 10'000,
-     .run = clipped_floor},
+     .run = trials_of<clipped_floor>},
     {.name = "projection/barycentrics",
      .what = "u and v are perspective-correct on triangles whose corners are up to 1000 times as far as others",
      .bound = 0.51,
@@ -190,7 +182,7 @@ constexpr StressTest kTests[] = {
      .source = kRounding,
      .naive = "affine: ratios of areas on the screen",
      .trials = 30'000,
-     .run = barycentrics<random_visible>,
+     .run = trials_of<barycentrics<random_visible>>,
      .required_fraction = 0.35},
     {.name = "projection/barycentrics-straddling",
      .what = "u and v are perspective-correct on triangles that pass through the near plane and the eye's",
@@ -199,7 +191,7 @@ constexpr StressTest kTests[] = {
      .source = kRounding,
      .naive = "affine: ratios of areas on the screen",
      .trials = 50'000,
-     .run = barycentrics<random_straddling>,
+     .run = trials_of<barycentrics<random_straddling>>,
      .required_fraction = 0.3},
     {.name = "projection/slivers",
      .what = "a sample that only the snapped outline of a sliver covers gets a point of the sliver next to it",
@@ -209,7 +201,7 @@ constexpr StressTest kTests[] = {
                "all; u and v rounded to float: 0.0003",
      .naive = "affine: ratios of areas on the screen",
      .trials = 50'000,
-     .run = point_errors,
+     .run = trials_of<point_errors>,
      .required_fraction = 0.15},
     {.name = "projection/depth",
      .what =
@@ -220,7 +212,7 @@ constexpr StressTest kTests[] = {
      .source = "one rounding to float; the volumes in extended precision; 0.01 for double's share",
      .naive = "a float z-buffer, z/w in [-1, 1] between 0.1 and 1e5 meters",
      .trials = 30'000,
-     .run = depths<random_visible>,
+     .run = trials_of<depths<random_visible>>,
      .required_fraction = 0.35},
     {.name = "projection/depth-order",
      .what =
@@ -231,7 +223,7 @@ constexpr StressTest kTests[] = {
      .source = "near/depth rounds monotonically, by 2^-24 of itself at most: depths 2^-23 apart keep their order",
      .naive = "a float z-buffer, z/w in [-1, 1]",
      .trials = 20'000,
-     .run = depth_order,
+     .run = trials_of<depth_order>,
      .required_fraction = 0.7},
     {.name = "projection/draw-order",
      .what = "of triangles at the same place and depth the one of the lowest number is seen, in any order of drawing",
@@ -240,7 +232,7 @@ constexpr StressTest kTests[] = {
      .source = "each triangle drawn by itself, and the rule applied by hand: of equal reversed depth the lower number",
      .naive = "nearer replaces, else whoever came first stays",
      .trials = 10'000,
-     .run = draw_order},
+     .run = trials_of<draw_order>},
 };
 
 } // namespace

@@ -79,6 +79,10 @@ private:
 /// Runs `body` for each trial of the test on setting.threads threads and accumulates the results. The body may read
 /// shared data, but must only write to its trial.
 StressResult run_trials(const StressTest& test, const StressSetting& setting, const std::function<void(Trial&)>& body);
+/// The same for a function, as StressTest::run.
+template <void (*body)(Trial&)> StressResult trials_of(const StressTest& test, const StressSetting& setting) {
+    return run_trials(test, setting, body);
+}
 
 /// Returns the value with all digits, such as "(1, 2, 3)", for notes.
 std::string exact(Vec3 v);
