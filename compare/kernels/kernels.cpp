@@ -4,8 +4,6 @@
 #include "common/program/statistics.h"
 #include "common/system/parallel.h"
 #include "common/system/stopwatch.h"
-#include "compare/kernels/measure_kernels.h"
-#include "compare/peers/embree.h"
 #include "compare/report/text.h"
 
 #include <algorithm>
@@ -67,8 +65,7 @@ std::vector<Case> cases_of(const KernelsOptions& options) {
     return cases;
 }
 
-json report_json(const KernelsOptions& options, const KernelSettings& settings,
-                 const std::vector<KernelResults>& tables) {
+json report_json(const KernelSettings& settings, const std::vector<KernelResults>& tables) {
     json rows = json::array(), watertight = json::array(), judged = json::array();
     for (const KernelResults& table : tables) {
         for (json& row : rows_json(table)) rows.push_back(std::move(row));
@@ -79,10 +76,10 @@ json report_json(const KernelsOptions& options, const KernelSettings& settings,
     return {{"program", "compare kernels"},
             {"version", DUET_VERSION},
             {"peer", peer ? json(embree_version()) : json(nullptr)},
-            {"width", options.size.width},
-            {"height", options.size.height},
+            {"width", settings.size.width},
+            {"height", settings.size.height},
             {"threads", settings.threads},
-            {"seed", options.seed},
+            {"seed", settings.seed},
             {"rows", rows},
             {"watertight", watertight},
             {"judged", judged}};
@@ -92,15 +89,10 @@ json report_json(const KernelsOptions& options, const KernelSettings& settings,
 
 int kernels(const KernelsOptions& options) {
     check_json_path(options.stats);
-    KernelSettings settings;
-    settings.works = chosen_works(options.works);
+    KernelSettings settings = options.settings;
+    settings.works = chosen_works(settings.works);
     settings.peers = chosen_peers(options.peers);
-    settings.size = options.size;
-    settings.threads = options.threads > 0 ? options.threads : available_threads();
-    settings.repeats = options.repeats;
-    settings.seconds = options.seconds;
-    settings.watertight = options.watertight;
-    settings.seed = options.seed;
+    if (settings.threads == 0) settings.threads = available_threads();
     const std::vector<Case> cases = cases_of(options);
     const bool table_wanted = !options.quiet && options.stats != "-";
     if (!options.quiet && embree_version().empty()) std::cerr << "compare: " << kEmbreeMissing << '\n';
@@ -117,7 +109,7 @@ int kernels(const KernelsOptions& options) {
         if (table_wanted) print_table(std::cout, tables.back());
         std::cout.flush();
     }
-    if (!options.stats.empty()) write_json(options.stats, report_json(options, settings, tables));
+    if (!options.stats.empty()) write_json(options.stats, report_json(settings, tables));
     int code = kExitOk;
     for (const KernelResults& table : tables)
         for (const std::string& fault : kernel_failures(table)) {

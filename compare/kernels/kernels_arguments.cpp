@@ -10,6 +10,7 @@ void add_kernels(CommandLine& program) {
     CommandLine& kernels = program.add_subcommand(
         "kernels", "How fast rays are traced and hierarchies built, beside Embree on the same triangles and rays");
     KernelsOptions& options = set_action(kernels, compare::kernels);
+    KernelSettings& settings = options.settings;
     kernels.add("MESH", options.meshes, "Bare meshes (.obj), or scene files (.json), which are measured as they are")
         .required();
     kernels
@@ -18,7 +19,7 @@ void add_kernels(CommandLine& program) {
              "a closed box), instances (the same copies as instances of one mesh); default alone,room")
         .comma_separated();
     kernels
-        .add("--work", options.works,
+        .add("--work", settings.works,
              "Of build (seconds, and bytes a triangle), camera (single rays), camera-bulk (packets and "
              "streams), "
              "bounce, shadow (default: all)")
@@ -29,21 +30,21 @@ void add_kernels(CommandLine& program) {
              "AVX-512 "
              "medium-avx2 and high-avx2, or none (default: all)")
         .comma_separated();
-    kernels.add("--size", options.size, "One camera ray a pixel of WIDTHxHEIGHT (default 1920x1080)");
-    kernels.add("--threads", options.threads, "Threads of the second set of rows, after one thread's (default: all)")
+    kernels.add("--size", settings.size, "One camera ray a pixel of WIDTHxHEIGHT (default 1920x1080)");
+    kernels.add("--threads", settings.threads, "Threads of the second set of rows, after one thread's (default: all)")
         .range(1, 1024);
-    kernels.add("--repeats", options.repeats, "Measurements of each, in turns; under 5 there is no verdict (default 7)")
+    kernels.add("--repeats", settings.repeats, "Measurements of each, in turns; under 5 there is no verdict (default 7)")
         .range(1, 10000);
-    kernels.add("--seconds", options.seconds, "Length of one measurement of rays (default 0.15)")
+    kernels.add("--seconds", settings.seconds, "Length of one measurement of rays (default 0.15)")
         .number_range(1e-4, 1e4, "seconds from 1e-4 to 1e4");
     kernels
-        .add("--watertight", options.watertight,
+        .add("--watertight", settings.watertight,
              "Rays aimed at points, edges and vertices from within, each judged in double precision, where the "
              "mesh "
              "or room is closed; 0: none (default "
              "1000000)")
         .range(std::int64_t{0}, std::int64_t{1} << 40);
-    kernels.add("--seed", options.seed, "Seed of all random numbers (default 0)");
+    kernels.add("--seed", settings.seed, "Seed of all random numbers (default 0)");
     kernels.add("--stats", options.stats, "Write the rows as JSON to this file (-: standard output)");
     kernels.add_flag("--quiet", options.quiet, "No table, no progress bar; faults are still explained");
     kernels.set_footer(

@@ -19,10 +19,10 @@ struct KernelSettings {
     std::vector<std::string> works;   ///< some of kWorks
     std::vector<EmbreeQuality> peers; ///< empty: Duet alone
     ImageSize size{1920, 1080};
-    int threads = 1; ///< threads of the second set of rows; 1: no second set
+    int threads = 0; ///< threads of the second set of rows; 1: no second set
     int repeats = 7;
-    double seconds = 0.15;       ///< duration of one measurement of rays
-    std::int64_t watertight = 0; ///< number of rays of the watertightness test; 0: none
+    double seconds = 0.15;               ///< duration of one measurement of rays
+    std::int64_t watertight = 1'000'000; ///< number of rays of the watertightness test; 0: none
     std::uint64_t seed = 0;
 };
 
