@@ -19,14 +19,6 @@ Estimate estimate(const json& value) {
     return {number("value"), number("relative_error"), number("dof")};
 }
 
-/// Returns the probability of a ratio at least this far above 1 if its true value is 1.
-double p_value_above_one(const Estimate& ratio) {
-    const double distance = std::log(ratio.value);
-    if (!(distance > 0)) return 1;
-    if (ratio.relative_error == 0) return 0; // equal in all trials of each run, but different between runs
-    return student_t_tail(distance / ratio.relative_error, ratio.dof) / 2;
-}
-
 Estimate scaled(Estimate e, double factor) {
     e.value *= factor;
     return e;

@@ -40,7 +40,7 @@ struct BenchConditions {
 /// Throws Error if `earlier` is not a report of the bench or was made with other settings. Call it before a long run.
 void check_baseline(const nlohmann::json& earlier, const BenchConditions& now);
 
-/// Compares by Student's t-test on logarithms (equality_p_value), with the significance divided among all
+/// Compares by Student's t-test on logarithms (p_value_above_one), with the significance divided among all
 /// tests. A time difference is a finding only if it significantly exceeds a factor of 1 + drift, because a
 /// CPU's speed changes between runs. It must also exceed what a busy CPU explains: "slower" is tested on this
 /// run's time × processor_share (the CPU time that the threads received), "faster" likewise on the earlier

@@ -30,8 +30,6 @@ struct BenchRenderer {
     std::string note;      ///< what it omits, in sentences; empty: it converges to the reference
     std::vector<int> spps;
     std::function<TimedImage(int spp, std::uint64_t seed, Control& control)> render;
-
-    std::string name() const { return sampler.empty() ? technique : technique + ", " + sampler; }
 };
 
 /// Selects which of Duet's own techniques are measured.

@@ -38,7 +38,7 @@ Estimate median_of(std::vector<double> values);
 Estimate efficiency_of(const Estimate& mse, const Estimate& seconds);
 /// Returns a / b with the errors propagated as in efficiency_of.
 Estimate ratio_of(const Estimate& a, const Estimate& b);
-/// Returns the probability that two equal quantities are measured at least this different (Welch's test on logarithms).
-double equality_p_value(const Estimate& a, const Estimate& b);
+/// Returns the probability of a ratio at least this far above 1 if its true value is 1 (Welch's test on logarithms).
+double p_value_above_one(const Estimate& ratio);
 
 } // namespace duet::compare
