@@ -246,56 +246,54 @@ double in_units_of(Vec3d off, Vec3 bound) {
     return worst;
 }
 
-StressResult error_bounds(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [mesh = icosphere(0)](Trial& trial) {
-        TrialRandom& random = trial.random;
-        const float scale = random.log_uniform(1e-6f, 1e6f);
-        const Mat4 to_world = random_placement(random, scale);
-        const Scene scene = make_scene(mesh, {to_world, to_world});
-        const float u = random.uniform();
-        const Hit hit{0, random.below(20), u, random.uniform(0, 1 - u), 1};
-        const SurfacePoint point = surface_point(scene, {{}, {0, 0, 1}}, hit);
-        // This also transforms the point to object space, as a spawned ray's origin is, in float, and back to the
-        // world.
-        const Object& object = scene.objects[0];
-        const Vec3 back = transform_point_inverse(object.to_world, object.to_object, point.p);
-        const Vec3d there = transform_point(Mat4d(to_world), Vec3d(back));
-        trial.note("scale ", exact(scale), ", primitive ", hit.primitive, " at ", exact(point.p), " ± ",
-                   exact(point.p_error));
-        trial.record(in_units_of(Vec3d(point.p) - exact_position(scene, hit), point.p_error));
-        trial.record(in_units_of(there - exact_position(scene, hit), point.p_error));
-        trial.record_naive(in_units_of(there - exact_position(scene, hit), Vec3(1, 1, 1) * kTextbookTMin));
-    });
+void error_bounds(Trial& trial) {
+    static const Mesh mesh = icosphere(0);
+    TrialRandom& random = trial.random;
+    const float scale = random.log_uniform(1e-6f, 1e6f);
+    const Mat4 to_world = random_placement(random, scale);
+    const Scene scene = make_scene(mesh, {to_world, to_world});
+    const float u = random.uniform();
+    const Hit hit{0, random.below(20), u, random.uniform(0, 1 - u), 1};
+    const SurfacePoint point = surface_point(scene, {{}, {0, 0, 1}}, hit);
+    // This also transforms the point to object space, as a spawned ray's origin is, in float, and back to the
+    // world.
+    const Object& object = scene.objects[0];
+    const Vec3 back = transform_point_inverse(object.to_world, object.to_object, point.p);
+    const Vec3d there = transform_point(Mat4d(to_world), Vec3d(back));
+    trial.note("scale ", exact(scale), ", primitive ", hit.primitive, " at ", exact(point.p), " ± ",
+               exact(point.p_error));
+    trial.record(in_units_of(Vec3d(point.p) - exact_position(scene, hit), point.p_error));
+    trial.record(in_units_of(there - exact_position(scene, hit), point.p_error));
+    trial.record_naive(in_units_of(there - exact_position(scene, hit), Vec3(1, 1, 1) * kTextbookTMin));
 }
 
-StressResult instances_as_baked(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [mesh = icosphere(1)](Trial& trial) {
-        TrialRandom& random = trial.random;
-        const float scale = random.log_uniform(1e-6f, 1e6f);
-        const Mat4 to_world = random_placement(random, scale);
-        Mesh moved = mesh;
-        for (Vec3& p : moved.positions) p = Vec3(transform_point(Mat4d(to_world), Vec3d(p)));
-        const AcceleratedScene instance(make_scene(mesh, {to_world, to_world})), baked(make_scene({moved}));
-        for (int shot = 0; shot < 16; ++shot) {
-            const Vec3 target = transform_point(to_world, random.vector() * 0.5f);
-            const Vec3 origin = target + random.direction() * (scale * random.uniform(2, 5));
-            const Ray ray{origin, normalize_scaled(target - origin)};
-            const Hit a = instance.accelerator.closest(ray), b = baked.accelerator.closest(ray);
-            // Rounding chose different sides of an edge.
-            if (a.valid() && b.valid() && a.primitive != b.primitive) continue;
-            if (!a.valid() || !b.valid()) {
-                trial.record(a.valid() == b.valid() ? 0 : std::numeric_limits<double>::infinity());
-                continue;
-            }
-            const SurfacePoint point = surface_point(*instance.scene, ray, a);
-            const double along = static_cast<double>(a.t) - static_cast<double>(b.t);
-            const double off = std::abs(along * static_cast<double>(dot(ray.direction, point.ng)));
-            const Vec3 reach = point.p_error + abs(ray.origin) * 4e-7f;
-            trial.note("scale ", exact(scale), ", ray from ", exact(origin), " along ", exact(ray.direction), ": ",
-                       exact(a.t), " as an instance, ", exact(b.t), " baked");
-            trial.record(off / static_cast<double>(dot(abs(point.ng), reach)));
+void instances_as_baked(Trial& trial) {
+    static const Mesh mesh = icosphere(1);
+    TrialRandom& random = trial.random;
+    const float scale = random.log_uniform(1e-6f, 1e6f);
+    const Mat4 to_world = random_placement(random, scale);
+    Mesh moved = mesh;
+    for (Vec3& p : moved.positions) p = Vec3(transform_point(Mat4d(to_world), Vec3d(p)));
+    const AcceleratedScene instance(make_scene(mesh, {to_world, to_world})), baked(make_scene({moved}));
+    for (int shot = 0; shot < 16; ++shot) {
+        const Vec3 target = transform_point(to_world, random.vector() * 0.5f);
+        const Vec3 origin = target + random.direction() * (scale * random.uniform(2, 5));
+        const Ray ray{origin, normalize_scaled(target - origin)};
+        const Hit a = instance.accelerator.closest(ray), b = baked.accelerator.closest(ray);
+        // Rounding chose different sides of an edge.
+        if (a.valid() && b.valid() && a.primitive != b.primitive) continue;
+        if (!a.valid() || !b.valid()) {
+            trial.record(a.valid() == b.valid() ? 0 : std::numeric_limits<double>::infinity());
+            continue;
         }
-    });
+        const SurfacePoint point = surface_point(*instance.scene, ray, a);
+        const double along = static_cast<double>(a.t) - static_cast<double>(b.t);
+        const double off = std::abs(along * static_cast<double>(dot(ray.direction, point.ng)));
+        const Vec3 reach = point.p_error + abs(ray.origin) * 4e-7f;
+        trial.note("scale ", exact(scale), ", ray from ", exact(origin), " along ", exact(ray.direction), ": ",
+                   exact(a.t), " as an instance, ", exact(b.t), " baked");
+        trial.record(off / static_cast<double>(dot(abs(point.ng), reach)));
+    }
 }
 
 constexpr std::string_view kOffset = "Pharr, Jakob and Humphreys 2023, §6.8";
@@ -315,10 +313,10 @@ constexpr StressTest kTests[] = {
     {"departure/convex-shadows", "every face of a convex body, of size 1e-8 to 1e8, sees every other from inside", 0,
      "wrong", kOffset, kTMin, 200'000, convex_shadows},
     {"departure/error-bounds", "an instance's surface point, and its way to the object and back, keep to p_error", 1,
-     "of p_error", "judged by double", "an error of 0.001 for all", 200'000, error_bounds},
+     "of p_error", "judged by double", "an error of 0.001 for all", 200'000, trials_of<error_bounds>},
     {"departure/instances", "an instance is hit where the same mesh is, its vertices moved to the world", 1,
      "of the bounds", "p_error and the transformed ray's rounding, γ₄ of its origin; judged by the baked mesh", "",
-     10'000, instances_as_baked},
+     10'000, trials_of<instances_as_baked>},
 };
 
 } // namespace

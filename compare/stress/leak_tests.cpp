@@ -47,7 +47,8 @@ void check_ray(Trial& trial, const ClosedMesh& closed_mesh, const Ray& ray) {
     trial.record_naive_failure_if(!hit_by_any(closed_mesh.mesh(), ray));
 }
 
-const ClosedMesh& chosen(const std::vector<ClosedMesh>& all, Trial& trial) {
+const ClosedMesh& chosen(Trial& trial) {
+    static const std::vector<ClosedMesh> all = closed_meshes();
     return all[static_cast<std::size_t>(trial.number()) % all.size()];
 }
 
@@ -55,35 +56,26 @@ Vec3 inside(const ClosedMesh& closed_mesh, Trial& trial) {
     return closed_mesh.center + trial.random.vector() * (0.4f * closed_mesh.scale);
 }
 
-StressResult leak_random(const StressTest& test, const StressSetting& setting) {
-    const std::vector<ClosedMesh> all = closed_meshes();
-    return run_trials(test, setting, [&](Trial& trial) {
-        const ClosedMesh& closed_mesh = chosen(all, trial);
-        check_ray(trial, closed_mesh, {inside(closed_mesh, trial), trial.random.direction()});
-    });
+void leak_random(Trial& trial) {
+    const ClosedMesh& closed_mesh = chosen(trial);
+    check_ray(trial, closed_mesh, {inside(closed_mesh, trial), trial.random.direction()});
 }
 
 Ray towards(Vec3 origin, Vec3 target) { return {origin, normalize_scaled(target - origin)}; }
 
-StressResult leak_edges(const StressTest& test, const StressSetting& setting) {
-    const std::vector<ClosedMesh> all = closed_meshes();
-    return run_trials(test, setting, [&](Trial& trial) {
-        const ClosedMesh& closed_mesh = chosen(all, trial);
-        const Mesh& mesh = closed_mesh.mesh();
-        const auto& t = mesh.triangles[trial.random.below(static_cast<std::uint32_t>(mesh.triangles.size()))];
-        const Vec3 target = lerp(mesh.positions[t[0]], mesh.positions[t[1]], trial.random.uniform());
-        check_ray(trial, closed_mesh, towards(inside(closed_mesh, trial), target));
-    });
+void leak_edges(Trial& trial) {
+    const ClosedMesh& closed_mesh = chosen(trial);
+    const Mesh& mesh = closed_mesh.mesh();
+    const auto& t = mesh.triangles[trial.random.below(static_cast<std::uint32_t>(mesh.triangles.size()))];
+    const Vec3 target = lerp(mesh.positions[t[0]], mesh.positions[t[1]], trial.random.uniform());
+    check_ray(trial, closed_mesh, towards(inside(closed_mesh, trial), target));
 }
 
-StressResult leak_vertices(const StressTest& test, const StressSetting& setting) {
-    const std::vector<ClosedMesh> all = closed_meshes();
-    return run_trials(test, setting, [&](Trial& trial) {
-        const ClosedMesh& closed_mesh = chosen(all, trial);
-        const auto& positions = closed_mesh.mesh().positions;
-        const Vec3 vertex = positions[trial.random.below(static_cast<std::uint32_t>(positions.size()))];
-        check_ray(trial, closed_mesh, towards(inside(closed_mesh, trial), vertex));
-    });
+void leak_vertices(Trial& trial) {
+    const ClosedMesh& closed_mesh = chosen(trial);
+    const auto& positions = closed_mesh.mesh().positions;
+    const Vec3 vertex = positions[trial.random.below(static_cast<std::uint32_t>(positions.size()))];
+    check_ray(trial, closed_mesh, towards(inside(closed_mesh, trial), vertex));
 }
 
 StressResult leak_from_outside(const StressTest& test, const StressSetting& setting) {
@@ -143,28 +135,26 @@ void leak_boxes(Trial& trial) {
     }
 }
 
-StressResult leak_instances(const StressTest& test, const StressSetting& setting) {
-    return run_trials(test, setting, [mesh = icosphere(1, 0.1f)](Trial& trial) {
-        TrialRandom& random = trial.random;
-        const float scale = random.log_uniform(1e-6f, 1e6f);
-        const Mat4 to_world(
-            translation(Vec3d(random.vector()) * static_cast<double>(scale) * 100.0) *
-            rotation(normalize(Vec3d(random.direction())), static_cast<double>(random.uniform(0, 6))) *
-            scaling(Vec3d(static_cast<double>(random.uniform(0.2f, 1)), -1, 2) * static_cast<double>(scale)));
-        const AcceleratedScene accelerated(make_scene(mesh, {to_world, to_world * Mat4(scaling(Vec3(3, 3, 3)))}));
-        for (int shot = 0; shot < 64; ++shot) {
-            const auto& t = mesh.triangles[random.below(static_cast<std::uint32_t>(mesh.triangles.size()))];
-            const Vec3 on_edge = lerp(mesh.positions[t[0]], mesh.positions[t[1]], random.coin() ? 0 : random.uniform());
-            const Ray ray =
-                towards(transform_point(to_world, random.vector() * 0.3f), transform_point(to_world, on_edge));
-            const Hit hit = accelerated.accelerator.closest(ray), expected = brute_force_hit(*accelerated.scene, ray);
-            const bool wrong = hit.object != 0 || !(hit == expected);
-            if (wrong)
-                trial.note("scale ", exact(scale), ", ray from ", exact(ray.origin), " along ", exact(ray.direction),
-                           ": object ", hit.object, ", testing all: ", expected.object);
-            trial.record_failure_if(wrong);
-        }
-    });
+void leak_instances(Trial& trial) {
+    static const Mesh mesh = icosphere(1, 0.1f);
+    TrialRandom& random = trial.random;
+    const float scale = random.log_uniform(1e-6f, 1e6f);
+    const Mat4 to_world(
+        translation(Vec3d(random.vector()) * static_cast<double>(scale) * 100.0) *
+        rotation(normalize(Vec3d(random.direction())), static_cast<double>(random.uniform(0, 6))) *
+        scaling(Vec3d(static_cast<double>(random.uniform(0.2f, 1)), -1, 2) * static_cast<double>(scale)));
+    const AcceleratedScene accelerated(make_scene(mesh, {to_world, to_world * Mat4(scaling(Vec3(3, 3, 3)))}));
+    for (int shot = 0; shot < 64; ++shot) {
+        const auto& t = mesh.triangles[random.below(static_cast<std::uint32_t>(mesh.triangles.size()))];
+        const Vec3 on_edge = lerp(mesh.positions[t[0]], mesh.positions[t[1]], random.coin() ? 0 : random.uniform());
+        const Ray ray = towards(transform_point(to_world, random.vector() * 0.3f), transform_point(to_world, on_edge));
+        const Hit hit = accelerated.accelerator.closest(ray), expected = brute_force_hit(*accelerated.scene, ray);
+        const bool wrong = hit.object != 0 || !(hit == expected);
+        if (wrong)
+            trial.note("scale ", exact(scale), ", ray from ", exact(ray.origin), " along ", exact(ray.direction),
+                       ": object ", hit.object, ", testing all: ", expected.object);
+        trial.record_failure_if(wrong);
+    }
 }
 
 constexpr std::string_view kWatertight = "Woop, Benthin and Wald 2013, §3; judged by testing every triangle";
@@ -172,17 +162,18 @@ constexpr std::string_view kMollerTrumbore = "Möller and Trumbore 1997, epsilon
 
 constexpr StressTest kTests[] = {
     {"leak/random", "rays from inside a closed mesh hit it: of sizes 1e-6 to 1e6, and 1e5 away", 0, "wrong",
-     kWatertight, kMollerTrumbore, 100'000, leak_random},
-    {"leak/edges", "the same, aimed at its edges", 0, "wrong", kWatertight, kMollerTrumbore, 100'000, leak_edges},
+     kWatertight, kMollerTrumbore, 100'000, trials_of<leak_random>},
+    {"leak/edges", "the same, aimed at its edges", 0, "wrong", kWatertight, kMollerTrumbore, 100'000,
+     trials_of<leak_edges>},
     {"leak/vertices", "the same, aimed at its vertices", 0, "wrong", kWatertight, kMollerTrumbore, 100'000,
-     leak_vertices},
+     trials_of<leak_vertices>},
     {"leak/from-outside", "rays from 0.1 to 1000 radii outside, aimed at edges and vertices, hit the side they see", 0,
      "wrong", "Woop, Benthin and Wald 2013, §3; a ball's near side faces the eye", kMollerTrumbore, 100'000,
      leak_from_outside},
     {"leak/boxes", "rays from inside a box of any size and place hit it at its edges and corners", 0, "wrong",
      "neighboring quads have the very same corners", "", 20'000, trials_of<leak_boxes>},
     {"leak/instances", "rays from inside a turned, stretched and mirrored instance hit it, not the larger one around",
-     0, "wrong", kWatertight, "", 3'000, leak_instances},
+     0, "wrong", kWatertight, "", 3'000, trials_of<leak_instances>},
 };
 
 } // namespace
