@@ -24,6 +24,10 @@ private:
     Stopwatch watch_;
 };
 
+struct MedianRange {
+    double min = 0, median = 0, max = 0;
+};
+
 /// Returns the median, for an even number of values the mean of the middle two; 0 for no values.
 double median(std::vector<double> values);
 

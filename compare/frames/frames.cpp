@@ -1,13 +1,13 @@
 #include "compare/frames/frames.h"
 
 #include "common/image/image_file.h"
-#include "common/image/srgb.h"
 #include "common/program/program.h"
 #include "common/program/statistics.h"
 #include "common/system/error.h"
 #include "common/system/file.h"
 #include "compare/frames/cpu_affinity.h"
 #include "compare/frames/lit_frames.h"
+#include "compare/metrics/image_metrics.h"
 #include "compare/report/text.h"
 
 #include <algorithm>
@@ -61,8 +61,8 @@ std::string difference_text(const FrameRow& row) {
 }
 
 void print_table(std::ostream& out, const FramesOptions& options, const std::vector<MeshRows>& meshes) {
-    out << options.settings.size.width << "x" << options.settings.size.height << " pixels, milliseconds a frame (medians of "
-        << options.settings.repeats << " repeats in turns); ratio: the peer's time over ours\n";
+    out << options.settings.size.width << "x" << options.settings.size.height
+        << " pixels, milliseconds a frame (medians of " << options.settings.repeats << " repeats in turns); ratio: the peer's time over ours\n";
     const std::vector<int> widths{-26, -7, -7, 8, 9, 9, 9, 8, 8, 8, 8, 2, 0};
     print_cells(out, widths,
                 {"mesh", "view", "work", "threads", "covered", "ours", "peer", "min", "median", "max", "scaling", "",
@@ -87,16 +87,10 @@ void print_table(std::ostream& out, const FramesOptions& options, const std::vec
     out << (LlvmpipeRenderer::built() ? "no peer was requested\n" : "no peer: this program was built without EGL\n");
 }
 
-/// Writes an image of sRGB-encoded values.
-void write_encoded(const std::filesystem::path& path, ImageRgb image) {
-    for (Rgb& pixel : image.pixels()) pixel = {srgb_decode(pixel.r), srgb_decode(pixel.g), srgb_decode(pixel.b)};
-    write_image(path, image);
-}
-
 void write_images(const std::filesystem::path& folder, const MeshRows& mesh) {
     const auto write = [&](const FrameRow& row, const char* whose, const ImageRgb& image) {
         if (image.empty()) return;
-        write_encoded(folder / (mesh.mesh + "-" + name(row.view) + "-" + whose + ".png"), image);
+        write_image(folder / (mesh.mesh + "-" + name(row.view) + "-" + whose + ".png"), decoded(image));
     };
     for (const FrameRow& row : mesh.rows) {
         if (row.threads != mesh.rows.front().threads) continue;
@@ -154,7 +148,7 @@ int frames(const FramesOptions& options) {
                 scenes.push_back(measure_lit_frames(options.files[i], threads, settings));
                 if (interrupt.raised()) return kExitInterrupted;
                 if (!options.folder.empty())
-                    write_encoded(options.folder / (scenes.back().name + "-lit.png"), scenes.back().image);
+                    write_image(options.folder / (scenes.back().name + "-lit.png"), decoded(scenes.back().image));
                 bar.update(static_cast<double>(i + 1) * share);
                 continue;
             }

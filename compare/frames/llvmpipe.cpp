@@ -1,15 +1,17 @@
-#if defined(DUET_LLVMPIPE)
 #include "compare/frames/llvmpipe.h"
 
-#include "compare/frames/gl.h"
-#include "raster/shading/phong_model.h"
-
 #include "common/system/error.h"
+#include "compare/frames/gl.h"
+#include "compare/frames/measure_frames.h"
+#include "raster/shading/phong_model.h"
 
 #include <array>
 #include <vector>
 
 namespace duet::compare {
+
+#if defined(DUET_LLVMPIPE)
+
 namespace {
 
 constexpr const char* kVertexShader = R"(#version 450 core
@@ -192,15 +194,10 @@ void LlvmpipeRenderer::draw(FrameWork work) {
 
 ImageRgb LlvmpipeRenderer::image() const {
     const View& view = state_->view;
-    Image<std::array<std::uint8_t, 4>> bytes(view.width, view.height);
+    Image<Rgba8> bytes(view.width, view.height);
     state_->gl.ReadPixels(0, 0, view.width, view.height, GL_RGBA, GL_UNSIGNED_BYTE, &bytes[0]);
     state_->gl.check("reading the image");
-    ImageRgb result(view.width, view.height);
-    for (std::size_t i = 0; i < result.size(); ++i) {
-        const auto value = [&](std::size_t channel) { return static_cast<float>(bytes[i][channel]) / 255; };
-        result[i] = {value(0), value(1), value(2)};
-    }
-    return result;
+    return encoded_values(bytes);
 }
 
 ImageFloat LlvmpipeRenderer::reversed_depth() const {
@@ -211,6 +208,20 @@ ImageFloat LlvmpipeRenderer::reversed_depth() const {
     return result;
 }
 
-} // namespace duet::compare
+#else // a build without EGL or OpenGL headers has no peer
+
+struct LlvmpipeRenderer::State {};
+
+bool LlvmpipeRenderer::built() { return false; }
+LlvmpipeRenderer::LlvmpipeRenderer(const Scene&, const View&, int) {
+    throw Error("llvmpipe: this program was built without EGL");
+}
+LlvmpipeRenderer::~LlvmpipeRenderer() = default;
+std::string LlvmpipeRenderer::name() const { return {}; }
+void LlvmpipeRenderer::draw(FrameWork) {}
+ImageRgb LlvmpipeRenderer::image() const { return {}; }
+ImageFloat LlvmpipeRenderer::reversed_depth() const { return {}; }
 
 #endif
+
+} // namespace duet::compare

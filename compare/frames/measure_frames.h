@@ -3,6 +3,7 @@
 
 #include "compare/frames/frame_scene.h"
 #include "compare/frames/llvmpipe.h"
+#include "compare/timing.h"
 #include "raster/render.h"
 
 #include <atomic>
@@ -18,10 +19,6 @@ struct FrameDifference {
     bool same() const;   ///< whether both images count as the same
 };
 
-struct FrameRatio {
-    double min = 0, median = 0, max = 0; ///< peer's seconds / ours: above 1, Duet is faster
-};
-
 struct FrameRow {
     FrameWork work = FrameWork::kPhong;
     FrameView view = FrameView::kWhole;
@@ -29,7 +26,7 @@ struct FrameRow {
     double covered = 0;             ///< fraction of the pixels that the mesh covers
     double ours = 0;                ///< median seconds per frame
     double peer = 0;                ///< median seconds per frame; 0: no peer
-    FrameRatio ratio;               ///< range over the repeats
+    MedianRange ratio;              ///< peer's seconds / ours over the repeats: above 1, Duet is faster
     std::optional<FrameDifference> difference;
     std::string peer_name;
     ImageRgb image, peer_image; ///< Phong only, sRGB-encoded values

@@ -11,9 +11,6 @@
 
 namespace duet::compare {
 
-struct MedianRange {
-    double min = 0, median = 0, max = 0;
-};
 /// Returns the range of at least one value. The median of an even number of values is the lower of the middle two.
 MedianRange median_range(std::vector<double> values);
 
