@@ -2,6 +2,7 @@
 
 #include "common/sampling/hash.h"
 #include "common/system/stopwatch.h"
+#include "compare/metrics/error_metrics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -126,7 +127,7 @@ ImageError image_error(const ImageRgb& image, const ImageRgb& reference, const I
                 const double r = static_cast<double>(reference(x, y)[c]);
                 const double square = sqr(static_cast<double>(image(x, y)[c]) - r);
                 row.mse += square;
-                row.relmse += square / (sqr(r) + 0.01);
+                row.relmse += relative_square(square, r);
             }
         }
         total.mse += row.mse;

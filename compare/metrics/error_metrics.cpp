@@ -10,9 +10,6 @@ namespace duet::compare {
 
 namespace {
 
-/// This term avoids division by zero and keeps dark references from dominating.
-constexpr double kRelativeFloor = 0.01;
-
 /// Fraction of the pixels that relmse_trimmed excludes. In many images a few fireflies cause most of the relMSE.
 constexpr double kTrimmedShare = 0.001;
 
@@ -25,7 +22,7 @@ struct Sums {
             const double difference = value[c] - reference[c], square = sqr(difference);
             squared += square;
             absolute += std::abs(difference);
-            relative += square / (sqr(reference[c]) + kRelativeFloor);
+            relative += relative_square(square, reference[c]);
             symmetric += std::abs(difference) / (std::abs(value[c]) + std::abs(reference[c]) + kRelativeFloor);
         }
         differences += value - reference;

@@ -7,6 +7,11 @@
 
 namespace duet::compare {
 
+/// This term avoids division by zero and keeps dark references from dominating.
+inline constexpr double kRelativeFloor = 0.01;
+/// Returns the relative error of a squared error (Rousselle, Knaus and Zwicker 2011, §5).
+inline double relative_square(double square, double reference) { return square / (sqr(reference) + kRelativeFloor); }
+
 /// Differences of image A from the reference B, computed on the values as given, in double precision. Means are
 /// over all channels of all pixels that are finite in both images; the other pixels are counted. If no pixel is
 /// left, every mean is NaN.

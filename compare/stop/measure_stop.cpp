@@ -3,6 +3,7 @@
 
 #include "common/system/stopwatch.h"
 #include "compare/bench/measure.h"
+#include "compare/metrics/error_metrics.h"
 #include "compare/timing.h"
 #include "raytrace/sample_schedule.h"
 
@@ -20,8 +21,8 @@ double own_relmse(const Reference& reference) {
     double sum = 0;
     for (std::size_t i = 0; i < reference.mean.size(); ++i)
         for (std::size_t c = 0; c < 3; ++c)
-            sum += static_cast<double>(reference.variance[i][c]) /
-                   (sqr(static_cast<double>(reference.mean[i][c])) + 0.01);
+            sum += relative_square(static_cast<double>(reference.variance[i][c]),
+                                   static_cast<double>(reference.mean[i][c]));
     return sum / (3.0 * static_cast<double>(reference.mean.size()));
 }
 
