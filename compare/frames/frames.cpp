@@ -61,8 +61,9 @@ std::string difference_text(const FrameRow& row) {
 }
 
 void print_table(std::ostream& out, const FramesOptions& options, const std::vector<MeshRows>& meshes) {
-    out << options.settings.size.width << "x" << options.settings.size.height
-        << " pixels, milliseconds a frame (medians of " << options.settings.repeats << " repeats in turns); ratio: the peer's time over ours\n";
+    const ImageSize size = options.settings.size;
+    out << size.width << "x" << size.height << " pixels, milliseconds a frame (medians of "
+        << options.settings.repeats << " repeats in turns); ratio: the peer's time over ours\n";
     const std::vector<int> widths{-26, -7, -7, 8, 9, 9, 9, 8, 8, 8, 8, 2, 0};
     print_cells(out, widths,
                 {"mesh", "view", "work", "threads", "covered", "ours", "peer", "min", "median", "max", "scaling", "",
