@@ -4,6 +4,7 @@
 #include "common/program/command_line.h"
 
 #include <memory>
+#include <string>
 
 namespace duet::compare {
 
@@ -25,9 +26,11 @@ template <typename Options> Options& set_action(CommandLine& subcommand, int (*a
     return *options;
 }
 
-/// Text appended to each subcommand's --help.
-inline constexpr const char* kExitCodes =
-    "\n\nExit codes: 0 done, 1 failed (a metric over its limit, a failed test, a result that could not be written), 2 "
-    "unusable arguments or input, 130 interrupted (nothing is written).";
+/// Sets the text below the options in a subcommand's --help, and explains the exit codes there.
+inline void set_footer(CommandLine& subcommand, const std::string& text) {
+    subcommand.set_footer(
+        text + "\n\nExit codes: 0 done, 1 failed (a metric over its limit, a failed test, a result that could not be "
+               "written), 2 unusable arguments or input, 130 interrupted (nothing is written).");
+}
 
 } // namespace duet::compare

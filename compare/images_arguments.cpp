@@ -23,15 +23,15 @@ void add_images(CommandLine& program) {
     images.add("--stats", options.stats, "Write the figures as JSON to this file (-: standard output)");
     images.add("--threads", options.threads, "Threads (default: all)").range(1, 1024);
     images.add_flag("--quiet", options.quiet, "No table");
-    images.set_footer(
+    set_footer(
+        images,
         "Metrics: " + metric_names() +
-        ".\n\nEXR, PFM and HDR files are linear radiance and so is all that is compared. Of 8-bit files mse, rmse, "
-        "mae, psnr, ssim, worst and flip compare stored (sRGB-encoded) values, relmse, smape and mean_signed_error "
-        "linear ones. Alpha is not compared; where it is not 1 the table says so. The z metrics need EXR files with "
-        "variances (raytrace --aov variance) of two seeds." +
-        "\n\nExample:\n  compare images out/raster.png out/raytrace.png --fail-above rmse=0.1 --fail-above ssim=0.8\n"
-        "  compare images before.exr after.exr -o out\nthen open out/index.html in a browser." +
-        kExitCodes);
+            ".\n\nEXR, PFM and HDR files are linear radiance and so is all that is compared. Of 8-bit files mse, rmse, "
+            "mae, psnr, ssim, worst and flip compare stored (sRGB-encoded) values, relmse, smape and mean_signed_error "
+            "linear ones. Alpha is not compared; where it is not 1 the table says so. The z metrics need EXR files "
+            "with variances (raytrace --aov variance) of two seeds." +
+            "\n\nExample:\n  compare images out/raster.png out/raytrace.png --fail-above rmse=0.1 --fail-above "
+            "ssim=0.8\n  compare images before.exr after.exr -o out\nthen open out/index.html in a browser.");
 }
 
 } // namespace duet::compare

@@ -42,9 +42,8 @@ raytrace::PathTracerSettings hit_settings(raytrace::PathTracerSettings settings)
 /// Returns a function that renders the prepared scene of either pipeline.
 template <typename Prepared, typename Settings>
 RenderFunction render_function(const Prepared& prepared, const Settings& settings) {
-    return [prepared, settings](const View& view, Control& control) {
-        return render(prepared, view, settings, control);
-    };
+    return
+        [prepared, settings](const View& view, Control& control) { return render(prepared, view, settings, control); };
 }
 
 /// Returns the Renderer::render_hits of each pipeline alone, and prepares no shading.

@@ -25,9 +25,8 @@ void add_run(CommandLine& program) {
     run.add("--seed", settings.seed, "Seed of all random numbers (default 0)");
     run.add("--stats", options.stats, "Write the figures of report.json to this file too (-: standard output)");
     run.add_flag("--quiet", options.quiet, "No progress bar, no summary");
-    run.set_footer(std::string("Example:\n  compare run models/cornell.json -o out --size 512x512 --spp 256\n"
-                               "then open out/index.html in a browser.") +
-                   kExitCodes);
+    set_footer(run, "Example:\n  compare run models/cornell.json -o out --size 512x512 --spp 256\n"
+                    "then open out/index.html in a browser.");
 }
 
 } // namespace duet::compare

@@ -64,9 +64,8 @@ void add_bench(CommandLine& program) {
         .number_range(0, 10, "a number from 0 to 10");
     bench.add("--stats", options.stats, "Write the figures of report.json to this file too (-: standard output)");
     bench.add_flag("--quiet", options.quiet, "No progress bar, no tables");
-    bench.set_footer(std::string("Example:\n  compare bench models/cornell.json models/furnace.json -o out --exclude "
-                                 "0.35,0.05,0.65,0.2\nthen open out/index.html in a browser.") +
-                     kExitCodes);
+    set_footer(bench, "Example:\n  compare bench models/cornell.json models/furnace.json -o out --exclude "
+                      "0.35,0.05,0.65,0.2\nthen open out/index.html in a browser.");
 }
 
 } // namespace duet::compare

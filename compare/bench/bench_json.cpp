@@ -100,9 +100,15 @@ json scene_json(const SceneResult& result, bool with_rest) {
     for (const IndependentCheck& c : result.checks) checks.push_back(check_json(c));
     json equal_times = json::array();
     for (const EqualTimeRow& row : result.equal_times) equal_times.push_back(equal_time_json(row));
-    return {{"scene", result.scene}, {"equal_times", equal_times},  {"hash", result.scene_hash},
-            {"width", result.width}, {"height", result.height},     {"reference", reference_json(result.reference)},
-            {"checks", checks},      {"no_naive", result.no_naive}, {"rows", rows},
+    return {{"scene", result.scene},
+            {"equal_times", equal_times},
+            {"hash", result.scene_hash},
+            {"width", result.width},
+            {"height", result.height},
+            {"reference", reference_json(result.reference)},
+            {"checks", checks},
+            {"no_naive", result.no_naive},
+            {"rows", rows},
             {"processor_share", number_json(result.processor_share)}};
 }
 

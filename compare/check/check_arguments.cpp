@@ -20,9 +20,8 @@ void add_check(CommandLine& program) {
     check.add("--seed", options.settings.seed, "Seed of all random numbers (default 0)");
     check.add("--memory", options.memory_limit, "Limit of the address space in MiB (default: none)")
         .range(256, 1 << 30);
-    check.set_footer(std::string("Prints one JSON object a line for each scene.\n\n"
-                                 "Example:\n  compare check models/*.json --size 64x48") +
-                     kExitCodes);
+    set_footer(check, "Prints one JSON object a line for each scene.\n\n"
+                      "Example:\n  compare check models/*.json --size 64x48");
 }
 
 } // namespace duet::compare

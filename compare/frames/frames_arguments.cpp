@@ -66,16 +66,14 @@ void add_frames(CommandLine& program) {
     frames.add("-o,--output", options.folder, "A folder for the images");
     frames.add("--stats", options.stats, "Write the rows as JSON to this file (-: standard output)");
     frames.add_flag("--quiet", options.quiet, "No table, no progress bar");
-    frames.set_footer(
-        std::string("A frame is: clear, transform, shade by Phong's model with interpolated normals, encode to "
-                    "8-bit sRGB in memory; back faces are culled. Both draw the same mesh by the same matrices "
-                    "under the same light; where their images differ the exit code is 1. A ratio above 1 is "
-                    "the rasterizer ahead.\n\nOf a scene file, the time of preparation, of whole lit frames and of "
-                    "their stages (by the clock) is measured, without a peer; --view, --work and --texture are for "
-                    "meshes.\n\n"
-                    "Examples:\n  compare frames models/generated/octopus.obj --threads 1 --view close\n"
-                    "  compare frames models/cornell.json models/demo.json") +
-        kExitCodes);
+    set_footer(frames, "A frame is: clear, transform, shade by Phong's model with interpolated normals, encode to "
+                       "8-bit sRGB in memory; back faces are culled. Both draw the same mesh by the same matrices "
+                       "under the same light; where their images differ the exit code is 1. A ratio above 1 is "
+                       "the rasterizer ahead.\n\nOf a scene file, the time of preparation, of whole lit frames and of "
+                       "their stages (by the clock) is measured, without a peer; --view, --work and --texture are for "
+                       "meshes.\n\n"
+                       "Examples:\n  compare frames models/generated/octopus.obj --threads 1 --view close\n"
+                       "  compare frames models/cornell.json models/demo.json");
 }
 
 } // namespace duet::compare

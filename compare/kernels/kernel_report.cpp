@@ -197,9 +197,9 @@ void print_table(std::ostream& out, const KernelResults& table) {
     if (table.omitted_spheres > 0) out << ", " << table.omitted_spheres << " spheres left out";
     out << "; million rays a second\n";
     const std::vector<int> widths{2, -12, 8, 11, 11, 2, -21, 7, 2, -9, 0};
-    print_cells(out, widths,
-                {"", "work", "threads", "ours", "peer", "", "min - median - max", "repeats", "", "ours is",
-                 "the peer's best"});
+    print_cells(
+        out, widths,
+        {"", "work", "threads", "ours", "peer", "", "min - median - max", "repeats", "", "ours is", "the peer's best"});
     for (const KernelRow& row : table.rows) {
         const std::string threads = row.work == "memory" ? "" : std::to_string(row.threads);
         const std::string work = row.work + (is_rate(row) && !as_rendered(row) ? " *" : "");

@@ -33,7 +33,8 @@ void add_kernels(CommandLine& program) {
     kernels.add("--size", settings.size, "One camera ray a pixel of WIDTHxHEIGHT (default 1920x1080)");
     kernels.add("--threads", settings.threads, "Threads of the second set of rows, after one thread's (default: all)")
         .range(1, 1024);
-    kernels.add("--repeats", settings.repeats, "Measurements of each, in turns; under 5 there is no verdict (default 7)")
+    kernels
+        .add("--repeats", settings.repeats, "Measurements of each, in turns; under 5 there is no verdict (default 7)")
         .range(1, 10000);
     kernels.add("--seconds", settings.seconds, "Length of one measurement of rays (default 0.15)")
         .number_range(1e-4, 1e4, "seconds from 1e-4 to 1e4");
@@ -47,13 +48,11 @@ void add_kernels(CommandLine& program) {
     kernels.add("--seed", settings.seed, "Seed of all random numbers (default 0)");
     kernels.add("--stats", options.stats, "Write the rows as JSON to this file (-: standard output)");
     kernels.add_flag("--quiet", options.quiet, "No table, no progress bar; faults are still explained");
-    kernels.set_footer(
-        std::string("Example:\n  compare kernels bunny.obj models/cornell.json --scene room,clutter --stats "
-                    "kernels.json\n\nThe table sets ours against the best of the peer's settings, --stats "
-                    "against each. A ratio above 1 is ours ahead. The exit code is 1 where one of our "
-                    "answers is wrong by the double-precision judge, or a ray of ours slips through an edge "
-                    "or leaks out of a closed room or mesh.") +
-        kExitCodes);
+    set_footer(kernels, "Example:\n  compare kernels bunny.obj models/cornell.json --scene room,clutter --stats "
+                        "kernels.json\n\nThe table sets ours against the best of the peer's settings, --stats "
+                        "against each. A ratio above 1 is ours ahead. The exit code is 1 where one of our "
+                        "answers is wrong by the double-precision judge, or a ray of ours slips through an edge "
+                        "or leaks out of a closed room or mesh.");
 }
 
 } // namespace duet::compare

@@ -26,9 +26,8 @@ void add_ladder(CommandLine& program) {
     ladder.add("--seed", settings.seed, "Seed of all random numbers (default 0)");
     ladder.add("--stats", options.stats, "Write the figures of report.json to this file too (-: standard output)");
     ladder.add_flag("--quiet", options.quiet, "No progress bar, no table");
-    ladder.set_footer(std::string("Example:\n  compare ladder models/cornell.json -o out --spp 256\n"
-                                  "then open out/index.html in a browser.") +
-                      kExitCodes);
+    set_footer(ladder, "Example:\n  compare ladder models/cornell.json -o out --spp 256\n"
+                       "then open out/index.html in a browser.");
 }
 
 } // namespace duet::compare

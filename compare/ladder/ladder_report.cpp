@@ -97,8 +97,8 @@ const std::vector<int> kRungWidths{-18, 16, 12, 12, 10, 10, 10};
 /// Prints one row of the second table: a quantity, or that it is missing. Only a rung's first row has its lines
 /// of code.
 void print_row(std::ostream& out, std::size_t k, bool first, const MeasuredQuantity* q) {
-    std::vector<std::string> cells{message("  ", k + 1, ' ', q ? q->name : kRungNames[k].id),
-                                   q ? error_text(*q) : "-", q ? format_duration(q->raster.seconds) : "-",
+    std::vector<std::string> cells{message("  ", k + 1, ' ', q ? q->name : kRungNames[k].id), q ? error_text(*q) : "-",
+                                   q ? format_duration(q->raster.seconds) : "-",
                                    q ? format_duration(q->raytrace.seconds) : "-"};
     for (const char* const side : {"raster", "raytrace", "both"})
         if (first) cells.push_back(std::to_string(lines_of(k, side)));

@@ -28,10 +28,9 @@ void add_skip(CommandLine& program) {
     skip.add("--seed", options.measure.seed, "The first seed; each repeat takes the next (default 0)");
     skip.add("--stats", options.stats, "Write the rows as JSON to this file (-: standard output)");
     skip.add_flag("--quiet", options.quiet, "No table, no progress bar");
-    skip.set_footer(std::string("Example:\n  compare skip models/cornell.json --only russian_roulette\n\n"
-                                "A skip is proved where all images have the same bits with and without it, or where no "
-                                "bias is found by a test that would find one of 0.1 %; else the exit code is 1.") +
-                    kExitCodes);
+    set_footer(skip, "Example:\n  compare skip models/cornell.json --only russian_roulette\n\n"
+                     "A skip is proved where all images have the same bits with and without it, or where no "
+                     "bias is found by a test that would find one of 0.1 %; else the exit code is 1.");
 }
 
 } // namespace duet::compare

@@ -21,15 +21,12 @@ void add_stop(CommandLine& program) {
     stop.add("--threads", options.settings.threads, "Threads (default: all)").range(1, 1024);
     stop.add("--stats", options.stats, "Write the figures as JSON to this file (-: standard output)");
     stop.add_flag("--quiet", options.quiet, "No table, no progress bar");
-    stop.set_footer(
-        std::string(
-            "Example:\n  compare stop models/cornell.json models/demo.json --error 0.002\n\n"
-            "A row a scene: the median error of all seeds over the one requested, which is to be within 20 %; "
-            "adaptive over even sampling, by squared error × time, below 1 where adaptive sampling pays; and the "
-            "time farthest from the one requested, which is to be within 5 % or one pass of two samples a pixel. A "
-            "scene "
-            "with mirrors or glass and lights has caustics, and its error is reported only.") +
-        kExitCodes);
+    set_footer(stop,
+               "Example:\n  compare stop models/cornell.json models/demo.json --error 0.002\n\n"
+               "A row a scene: the median error of all seeds over the one requested, which is to be within 20 %; "
+               "adaptive over even sampling, by squared error × time, below 1 where adaptive sampling pays; and the "
+               "time farthest from the one requested, which is to be within 5 % or one pass of two samples a pixel. A "
+               "scene with mirrors or glass and lights has caustics, and its error is reported only.");
 }
 
 } // namespace duet::compare

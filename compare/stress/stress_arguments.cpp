@@ -18,7 +18,7 @@ void add_stress(CommandLine& program) {
     stress.add("--threads", options.threads, "Threads (default: all)").range(1, 1024);
     stress.add("--stats", options.stats, "Write the rows as JSON to this file (-: standard output)");
     stress.add_flag("--quiet", options.quiet, "No table, no progress bar; failures are still explained");
-    stress.set_footer(std::string("Example:\n  compare stress --only intersection --trials 10") + kExitCodes);
+    set_footer(stress, "Example:\n  compare stress --only intersection --trials 10");
 }
 
 } // namespace duet::compare

@@ -38,8 +38,8 @@ public:
     void add(const StressTest& test, const StressResult& result) const {
         row({result.failed() ? "FAILED" : "ok", std::string(test.name), message(result.trials),
              message(result.library.failures), readable(result.library.worst), "", bound_text(test),
-             result.naive ? message(result.naive->failures) : "", result.naive ? readable(result.naive->worst) : "",
-             "", std::string(test.source) + (test.naive.empty() ? "" : ". Books: " + std::string(test.naive))});
+             result.naive ? message(result.naive->failures) : "", result.naive ? readable(result.naive->worst) : "", "",
+             std::string(test.source) + (test.naive.empty() ? "" : ". Books: " + std::string(test.naive))});
     }
 
 private:
