@@ -157,24 +157,18 @@ int run_render_program(const RenderProgram& program, int argc, char** argv) {
 }
 
 AovSet parse_aovs(std::string_view list) {
+    constexpr std::pair<std::string_view, bool AovSet::*> kNames[] = {
+        {"depth", &AovSet::depth}, {"normal", &AovSet::normal},     {"albedo", &AovSet::albedo},
+        {"hit", &AovSet::hit},     {"variance", &AovSet::variance}, {"samples", &AovSet::samples}};
     AovSet set;
     while (!list.empty()) {
         const std::string_view name = list.substr(0, list.find(','));
         list.remove_prefix(std::min(list.size(), name.size() + 1));
-        if (name == "depth")
-            set.depth = true;
-        else if (name == "normal")
-            set.normal = true;
-        else if (name == "albedo")
-            set.albedo = true;
-        else if (name == "hit")
-            set.hit = true;
-        else if (name == "variance")
-            set.variance = true;
-        else if (name == "samples")
-            set.samples = true;
-        else
+        const auto found =
+            std::find_if(std::begin(kNames), std::end(kNames), [&](auto& aov) { return aov.first == name; });
+        if (found == std::end(kNames))
             throw Error(message("--aov: found ", name, ", expected depth, normal, albedo, hit, variance or samples"));
+        set.*found->second = true;
     }
     return set;
 }
