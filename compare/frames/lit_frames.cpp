@@ -2,6 +2,7 @@
 
 #include "common/scene/scene.h"
 #include "compare/frames/cpu_affinity.h"
+#include "compare/metrics/image_metrics.h"
 #include "compare/report/text.h"
 #include "compare/timing.h"
 

@@ -2,7 +2,7 @@
 
 #include "common/system/error.h"
 #include "compare/frames/gl.h"
-#include "compare/frames/measure_frames.h"
+#include "compare/metrics/image_metrics.h"
 #include "raster/shading/phong_model.h"
 
 #include <array>

@@ -3,6 +3,7 @@
 #include "common/image/srgb.h"
 #include "compare/frames/cpu_affinity.h"
 #include "compare/metrics/flip.h"
+#include "compare/metrics/image_metrics.h"
 #include "compare/timing.h"
 
 #include <algorithm>
@@ -98,14 +99,6 @@ void compare_images_of_frame(FrameRow& row, const Rendering& ours, const ImageFl
 }
 
 } // namespace
-
-ImageRgb encoded_values(const Image<Rgba8>& image) {
-    ImageRgb result(image.width(), image.height());
-    const auto value = [](std::uint8_t code) { return static_cast<float>(code) / 255; };
-    for (std::size_t i = 0; i < result.size(); ++i)
-        result[i] = {value(image[i].r), value(image[i].g), value(image[i].b)};
-    return result;
-}
 
 // Coverage may differ where an edge passes close to a sample. Both snap vertices to a grid of 1/256 pixel, but
 // the peer transforms them in float first. Elsewhere both shade the same point. The peer's sRGB curve is an

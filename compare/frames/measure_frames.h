@@ -41,9 +41,6 @@ struct FrameSettings {
     const std::atomic<bool>* stop = nullptr;
 };
 
-/// Converts 8-bit values to fractions of 255.
-ImageRgb encoded_values(const Image<Rgba8>& image);
-
 /// Measures the rows of one mesh, view and thread count, one per work in `works`. `prepared` must be prepared
 /// from `scene`. Makes fewer repeats if `stop` is set.
 std::vector<FrameRow> measure_frames(const Scene& scene, const raster::RasterScene& prepared, FrameView view,

@@ -63,6 +63,14 @@ void add_z_test(std::vector<MetricValue>& list, const std::optional<ZTest>& z) {
 
 } // namespace
 
+ImageRgb encoded_values(const Image<Rgba8>& image) {
+    ImageRgb result(image.width(), image.height());
+    const auto value = [](std::uint8_t code) { return static_cast<float>(code) / 255; };
+    for (std::size_t i = 0; i < result.size(); ++i)
+        result[i] = {value(image[i].r), value(image[i].g), value(image[i].b)};
+    return result;
+}
+
 ImageRgb decoded(const ImageRgb& image) {
     ImageRgb linear = image;
     for (Rgb& pixel : linear.pixels()) pixel = {srgb_decode(pixel.r), srgb_decode(pixel.g), srgb_decode(pixel.b)};

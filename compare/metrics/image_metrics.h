@@ -27,6 +27,8 @@ struct ImageMetrics {
 /// in size.
 ImageMetrics image_metrics(const ImageRgb& a, const ImageRgb& reference, Encoding encoding, int threads = 0);
 
+/// Converts 8-bit values to fractions of 255.
+ImageRgb encoded_values(const Image<Rgba8>& image);
 /// Decodes sRGB-encoded values to linear ones.
 ImageRgb decoded(const ImageRgb& image);
 
