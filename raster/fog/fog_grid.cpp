@@ -153,7 +153,6 @@ public:
 
 private:
     static constexpr int kClusterSlices = 4;
-    static constexpr std::size_t kMostLights = 64; ///< that stand for all that reach a cluster of froxels
 
     /// Finds the lights that reach the slices from the k-th on, as for surfaces that face all ways.
     void find_lights(const Columns& columns, int k) {

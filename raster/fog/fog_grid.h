@@ -46,6 +46,8 @@ public:
     Planes3 haze(const GBuffer& gbuffer, int threads) const;
     std::size_t memory_bytes() const { return light_.memory_bytes(); }
 
+    static constexpr std::size_t kMostLights = 64; ///< that stand for all that reach some neighboring froxels
+
 private:
     struct PixelRays;
     struct Columns;

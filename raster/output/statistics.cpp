@@ -122,6 +122,8 @@ std::vector<std::string> approximations(const RasterSceneData& data, const Raste
            "Emissive surfaces that move, and stretched spheres, are visible but light nothing.");
     if (scene.media.empty() || !settings.fog) return result;
     add_if(true, "Light that media scatter is computed in cells of 8 x 8 pixels by 64 slices.");
+    add_if(parts.direct && scene.lights.size() > FogGrid::kMostLights,
+           "Where more than 64 lights reach a part of the media, as many stand for all.");
     add_if(parts.environment && data.irradiance_probes && settings.indirect_light,
            "Light that media scatter more than once is what irradiance probes see, from all directions alike.");
     add_if(environment && parts.environment && !settings.indirect_light,
