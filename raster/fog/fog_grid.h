@@ -28,9 +28,9 @@ struct FogOptions {
     int threads = 0;        ///< 0 stands for all
 };
 
-/// Holds the light that the media of one view scatter and emit, for the rays through the middles of its froxels, of
-/// which one passes through the first pixel. Slices
-/// lie between surfaces of equal distance from the eye, so a distance means the same for all rays of a froxel.
+/// Holds the light that the media of one view scatter and emit, for the rays through the middles of its froxels. The
+/// first of these rays is that of the first pixel. Slices lie between surfaces of equal distance from the eye, so a
+/// distance means the same for all rays of a froxel.
 class FogGrid {
 public:
     /// Computes the light of the scene's media in front of the G-buffer's surfaces. Memory of an earlier frame is

@@ -226,10 +226,11 @@ ScatteringDistance::ScatteringDistance(const Ray& ray, Vec3 light, Interval rang
 }
 
 float ScatteringDistance::sample_angle(float u) const {
-    // This is the tangent of a sum of angles, less the tangent of the first.
-    const float tangent = std::tan(angle_ * u), denominator = height_ - begin_ * tangent;
-    const float distance = (sqr(height_) + sqr(begin_)) * tangent / denominator;
-    return denominator > 0 ? std::min(range_.begin + distance, range_.end) : range_.end;
+    // This is the tangent of a sum of angles, less the tangent of the first. The sum is below π/2, so the denominator
+    // is positive.
+    const float cosine = std::cos(angle_ * u), sine = std::sin(angle_ * u);
+    const float distance = (sqr(height_) + sqr(begin_)) * sine / (height_ * cosine - begin_ * sine);
+    return distance >= 0 ? std::min(range_.begin + distance, range_.end) : range_.end; // rounded beyond π/2
 }
 
 float ScatteringDistance::sample_transmittance(float u) const {
