@@ -90,10 +90,10 @@ RasterObject prepare_object(const Scene& scene, const Object& object) {
     return result;
 }
 
-/// Renders the probes of deferred shading, if there is light that they could hold.
+/// Renders the probes of deferred shading, if there is light that they could hold, and a surface that they could light.
 void prepare_probes(const RasterSettings& settings, RasterSceneData& data) {
     const Scene& scene = data.scene;
-    if (is_dark(data, settings)) return;
+    if (scene.objects.empty() || is_dark(data, settings)) return;
     if (settings.indirect_light) {
         data.irradiance_probes = std::make_shared<const IrradianceProbes>(data, settings);
         data.memory_bytes += static_cast<std::int64_t>(data.irradiance_probes->memory_bytes());

@@ -183,6 +183,21 @@ TEST_SUITE("unit") {
         });
     }
 
+    TEST_CASE("fog needs no surfaces") {
+        Scene scene;
+        scene.materials = {Diffuse{}};
+        scene.material_names = {"unused"};
+        scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        scene.media = {fog(Rgb(0.2f), Rgb(0.5f))};
+        scene.media[0].box = Box3{{-1, -1, -3}, {1, 1, -1}};
+        finish_scene(scene);
+        const Rendering image = render(scene, view_of(look({0, 0, 0}, {0, 0, -1}, 20)), {});
+        const double through = std::exp(-0.7 * 2);
+        const Rgb middle = image.radiance(23, 15);
+        CHECK(static_cast<double>(middle.g) > 1.05 * through); // the fog scatters the environment's light, too
+        CHECK(static_cast<double>(middle.g) < 0.8);
+    }
+
     TEST_CASE("without fog, a scene looks as if it had no media") {
         Scene scene = varied_scene(24);
         const Rendering clear = render(scene, perspective(), {});
