@@ -49,7 +49,7 @@ raytrace::PathTracerSettings path_tracer_settings(const ComparisonSettings& comm
 
 raster::RasterSettings hit_settings(raster::RasterSettings settings) {
     keep_hits_only(settings);
-    settings.shading = raster::Shading::kDepth;
+    settings.shading = raster::Shading::kNormal; // cheapest shading: only the hits are used
     return settings;
 }
 

@@ -213,7 +213,7 @@ TEST_SUITE("unit") {
         SkipOptions options;
         options.scene = kModels / "cornell.json";
         options.size = {16, 16};
-        options.settings = {1, 1, 0};
+        options.settings = {1, 1};
         options.measure.repeats = 1;
         options.only = {"lens", "raytrace/textures"};
         options.stats = stats.string();

@@ -101,7 +101,8 @@ void repair_motion(Json& object) {
 /// Changes what the schema allows and the format does not (models/README.md).
 void repair(Json& object, const std::string& definition) {
     const std::string type = object.value("type", "");
-    if (type == "box") repair_box(object["low"], object["high"]);
+    const bool has_corners = object.contains("low") && object.contains("high");
+    if (has_corners && (type == "box" || type == "fog")) repair_box(object["low"], object["high"]);
     if (object.contains("transform_end")) repair_motion(object);
     if (object.contains("conductor")) object.erase("reflectance");
     if (type == "dielectric" && object.value("thin", false))
@@ -182,7 +183,9 @@ std::optional<Json> SchemaValues::object(const Json& schema, const Place& place)
 }
 
 std::optional<Json> SchemaValues::array(const Json& schema, const Place& place) {
-    const auto least = schema.value("minItems", 0u), most = schema.value("maxItems", 6u);
+    constexpr std::uint32_t kUsualItems = 6; // more take time, and find nothing more
+    const auto least = schema.value("minItems", 0u),
+               most = std::max(least, std::min(schema.value("maxItems", kUsualItems), kUsualItems));
     const bool objects = place.key == "objects";
     if (objects && place.depth > kDeepest) return {};
     std::uint32_t count = least + random_.below(most - least + 1);
