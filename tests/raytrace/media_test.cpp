@@ -212,7 +212,7 @@ TEST_SUITE("unit") {
             CHECK(sorted.front() >= range.begin);
             CHECK(sorted.back() <= range.end);
             // The mean of 1/pdf over the samples below a limit is the length up to there.
-            for (const std::size_t rank : {5000, 10000, 15000, 19000}) {
+            for (const std::size_t rank : {5000u, 10000u, 15000u, 19000u}) {
                 CAPTURE(rank);
                 double total = 0;
                 for (const float t : samples)
