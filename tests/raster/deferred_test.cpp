@@ -1,8 +1,8 @@
 // These tests compare deferred shading with closed forms and with the path tracer.
+#include "tests/raster/path_traced.h"
 #include "tests/raster/varied_scene.h"
 
 #include "common/system/file.h"
-#include "raytrace/render.h"
 
 #include <doctest/doctest.h>
 
@@ -12,24 +12,6 @@ using namespace duet::test;
 namespace {
 
 Scene load_model(const char* name) { return load_scene(std::filesystem::path(DUET_SOURCE_DIR) / "models" / name); }
-
-/// Returns the mean over pixels of |a − b|² / (b² + 0.01), as compare's relMSE does.
-double relmse(const ImageRgb& a, const ImageRgb& b) {
-    double sum = 0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-        for (std::size_t c = 0; c < 3; ++c) {
-            const auto x = static_cast<double>(a[i][c]), y = static_cast<double>(b[i][c]);
-            sum += (x - y) * (x - y) / (y * y + 0.01);
-        }
-    return sum / (3 * static_cast<double>(a.size()));
-}
-
-ImageRgb path_traced(const Scene& scene, const View& view, int spp) {
-    raytrace::PathTracerSettings settings;
-    settings.samples_per_pixel = spp;
-    Control control;
-    return raytrace::render(raytrace::prepare(scene, settings), view, settings, control).radiance;
-}
 
 } // namespace
 

@@ -1,9 +1,9 @@
 // These tests compare the rasterizer's fog with closed forms, with numerical integrals and with the path tracer.
+#include "tests/raster/path_traced.h"
 #include "tests/raster/varied_scene.h"
 
 #include "common/medium/phase_function.h"
 #include "raster/fog/fog_grid.h"
-#include "raytrace/render.h"
 
 #include <doctest/doctest.h>
 
@@ -43,16 +43,6 @@ template <typename Check> void for_each_ray(const Scene& scene, const View& view
     const Pinhole pinhole = CameraModel(view).pinhole();
     for (int y = 0; y < view.height; ++y)
         for (int x = 0; x < view.width; ++x) check(image.radiance(x, y), pinhole.ray({x + 0.5, y + 0.5}));
-}
-
-double relmse(const ImageRgb& a, const ImageRgb& b) {
-    double sum = 0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-        for (std::size_t c = 0; c < 3; ++c) {
-            const auto x = static_cast<double>(a[i][c]), y = static_cast<double>(b[i][c]);
-            sum += (x - y) * (x - y) / (y * y + 0.01);
-        }
-    return sum / (3 * static_cast<double>(a.size()));
 }
 
 } // namespace
@@ -240,12 +230,7 @@ TEST_SUITE("image") {
         finish_scene(scene);
         for (View view : {perspective(), orthographic()}) {
             view.width /= 2, view.height /= 2;
-            raytrace::PathTracerSettings settings;
-            settings.samples_per_pixel = 256;
-            Control control;
-            const ImageRgb expected =
-                raytrace::render(raytrace::prepare(scene, settings), view, settings, control).radiance;
-            const double error = relmse(render(scene, view, {}).radiance, expected);
+            const double error = relmse(render(scene, view, {}).radiance, path_traced(scene, view, 256));
             MESSAGE("relMSE ", error);
             CHECK(error < 0.03);
         }
