@@ -19,7 +19,6 @@ struct PathTracerSceneData {
     LightSampler lights;                     ///< the scene's lights, and its environment if that is sampled
     LightSampler finite_lights;              ///< without the environment, for settings that leave it out
     LightSampler environment_light;          ///< the environment alone
-    std::vector<std::uint32_t> delta_lights; ///< indices of point, spot and sun lights, in scenes with media
     std::vector<std::optional<Bsdf>> bsdfs;  ///< by material; empty where a texture varies it
     bool emitters = false;                   ///< whether some object emits, so that hits can find light
     bool environment = false;                ///< whether it is not black, so that rays that escape can find light

@@ -21,7 +21,6 @@ PathTracerSceneData::PathTracerSceneData(const Scene& scene_, int threads)
     : scene(scene_), accelerator(scene_, threads), lights(scene_.lights, sampled_irradiance(scene_.environment)),
       finite_lights(scene_.lights, 0), environment_light({}, sampled_irradiance(scene_.environment)),
       emitters(any_used_material(scene_, emits)), environment(!is_black(scene_.environment)) {
-    for (std::uint32_t i = 0; scene.needs.media && i < scene.first_surface_light; ++i) delta_lights.push_back(i);
     bsdfs.reserve(scene.materials.size());
     for (const Material& material : scene.materials)
         bsdfs.push_back(textured(material) ? std::nullopt

@@ -65,7 +65,7 @@ RenderPlan::RenderPlan(const PathTracerSceneData& prepared_, const View& view, c
                                                      : prepared.finite_lights;
     const bool lights_useful = (prepared.scatters_diffusely && !chooser.empty()) || !skips.light_samples;
     if (samples_lights(settings.integrator) && max_depth > 0 && lights_useful) lights = &chooser;
-    if (lights != nullptr && !environment_only && !prepared.delta_lights.empty()) delta_lights = &prepared.delta_lights;
+    if (lights != nullptr && !environment_only && scene.needs.media) delta_lights = scene.first_surface_light;
     // Paths are scattered in batches only if they need nothing that batches do not support: a medium stack, footprints,
     // or the shadow rays and light samples that tests request.
     if (!needs_medium_stack && !pixel_footprint && !black_shadow_rays && !specular_light_samples)

@@ -33,7 +33,7 @@ struct RenderPlan {
     /// Whether light meets something between surfaces, so that paths need a medium stack: media, or a dielectric that
     /// absorbs or has a priority.
     bool needs_medium_stack = false;
-    const std::vector<std::uint32_t>* delta_lights = nullptr; ///< sampled along rays in media; null if there are none
+    std::size_t delta_lights = 0; ///< this many, the first of Scene::lights, are sampled along rays in media
     bool black_shadow_rays = false; ///< whether shadow rays are traced even if the surface reflects none of the light
     BatchedSurfaces batched;        ///< surfaces at which paths are scattered in batches (wavefront/batch.h)
     int max_depth = 0;

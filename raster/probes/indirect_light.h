@@ -6,7 +6,6 @@
 #include "raster/gbuffer/gbuffer.h"
 #include "raster/probes/irradiance_probes.h"
 #include "raster/raster_scene.h"
-#include "raster/fog/fog_grid.h"
 #include "raster/screen_space/gtao.h"
 
 namespace duet::raster {

@@ -36,9 +36,9 @@ Rgb scattering_of_path(const MediumStretch& stretch, Rgb throughput) {
     return {throughput.r > 0 ? s.r : 0, throughput.g > 0 ? s.g : 0, throughput.b > 0 ? s.b : 0};
 }
 
-// Returns the asymmetry of one of the media on the stretch that begins at t, chosen by its share of the scattering.
-float choose_asymmetry(std::span<const Medium> media, const Ray& ray, float t, float t_end, float u, Rgb& throughput) {
-    const Rgb all = stretch_at(media, ray, t, t_end).scattering;
+// Returns the asymmetry of one of the media on the stretch that begins at t, chosen by its share of their scattering.
+float choose_asymmetry(std::span<const Medium> media, const Ray& ray, float t, float t_end, const Rgb& all, float u,
+                       Rgb& throughput) {
     float left = u * average(all);
     const Medium* chosen = nullptr;
     for (const Medium& medium : media) {
@@ -79,7 +79,8 @@ std::optional<MediumCollision> sample_collision(std::span<const Medium> media, c
         const float probability = weight / (weight + null_weight);
         if (random() < probability) {
             throughput *= real / probability;
-            return MediumCollision{t, choose_asymmetry(media, ray, begin, t_end, random(), throughput)};
+            return MediumCollision{
+                t, choose_asymmetry(media, ray, begin, t_end, stretch.scattering, random(), throughput)};
         }
         // This ends the path in the channel that scatters most. So there are two null collisions at most.
         throughput *= null / (1 - probability);
@@ -136,52 +137,57 @@ Interval lit_range(const SpotLight& light, const Ray& ray, Interval range) {
     return {std::max(range.begin, first), std::min(range.end, second)};
 }
 
-// Returns how to sample the distances at which the light of a delta light is scattered, or nothing if it does not reach
-// the range. `intensity` is set to the mean of its channels.
-std::optional<ScatteringDistance> scattering_distance(std::span<const Medium> media, const Light& light, const Ray& ray,
-                                                      Interval range, float& intensity) {
+// A LightOnRay says how to sample the distances at which the light of a delta light is scattered.
+struct LightOnRay {
+    float intensity; // mean of the channels
+    ScatteringDistance distance;
+
+    // Returns what the light sends to the ray without media and occluders, by the roughest estimate.
+    float weight() const { return intensity * distance.integral(); }
+};
+// Returns nothing if the light does not reach the range.
+std::optional<LightOnRay> light_on_ray(std::span<const Medium> media, const Light& light, const Ray& ray,
+                                       Interval range) {
     const auto extinction = [&](float t) {
         const MediumStretch stretch = stretch_at(media, ray, t, range.end);
         return average(stretch.scattering + stretch.absorption);
     };
-    if (const auto* sun = std::get_if<SunLight>(&light)) {
-        intensity = average(sun->irradiance);
-        return ScatteringDistance(range, extinction(range.begin));
-    }
-    if (const auto* point = std::get_if<PointLight>(&light)) {
-        intensity = average(point->intensity);
-        return ScatteringDistance(ray, point->position, range, extinction(range.begin));
-    }
+    if (const auto* sun = std::get_if<SunLight>(&light))
+        return LightOnRay{average(sun->irradiance), {range, extinction(range.begin)}};
+    if (const auto* point = std::get_if<PointLight>(&light))
+        return LightOnRay{average(point->intensity), {ray, point->position, range, extinction(range.begin)}};
     const auto& spot = std::get<SpotLight>(light);
-    intensity = average(spot.intensity);
     range = lit_range(spot, ray, range);
     if (range.empty()) return std::nullopt;
-    return ScatteringDistance(ray, spot.position, range, extinction(range.begin));
+    return LightOnRay{average(spot.intensity), {ray, spot.position, range, extinction(range.begin)}};
 }
 
-// Chooses one light of at most kCandidates by the light that it would send to the ray without media and occluders. If
-// there are more, every k-th is a candidate, from a random one on.
+// Chooses one delta light of at most kCandidates by its weight. If there are more, every k-th is a candidate, from a
+// random one on.
 constexpr std::size_t kCandidates = 8;
 
-std::optional<SampledLight> choose_light(const RenderPlan& plan, const Ray& ray, Interval range, float u) {
-    const std::vector<std::uint32_t>& lights = *plan.delta_lights;
-    const std::size_t stride = (lights.size() + kCandidates - 1) / kCandidates;
+struct ChosenLight {
+    std::size_t index;
+    float probability;
+    ScatteringDistance distance;
+};
+std::optional<ChosenLight> choose_light(const RenderPlan& plan, const Ray& ray, Interval range, float u) {
+    const std::size_t stride = (plan.delta_lights + kCandidates - 1) / kCandidates;
     const float scaled = u * static_cast<float>(stride);
     const std::size_t first = std::min(static_cast<std::size_t>(scaled), stride - 1);
-    std::array<float, kCandidates> weights{};
+    std::array<std::optional<LightOnRay>, kCandidates> candidates;
     float sum = 0;
-    for (std::size_t i = first, k = 0; i < lights.size(); i += stride, ++k) {
-        float intensity = 0;
-        const auto distance =
-            scattering_distance(plan.scene.media, plan.scene.lights[lights[i]], ray, range, intensity);
-        if (distance) sum += weights[k] = intensity * distance->integral();
+    for (std::size_t i = first, k = 0; i < plan.delta_lights; i += stride, ++k) {
+        candidates[k] = light_on_ray(plan.scene.media, plan.scene.lights[i], ray, range);
+        if (candidates[k]) sum += candidates[k]->weight();
     }
     float left = (scaled - static_cast<float>(first)) * sum;
-    std::optional<SampledLight> chosen;
-    for (std::size_t i = first, k = 0; i < lights.size() && left >= 0; i += stride, ++k) {
-        if (!(weights[k] > 0)) continue;
-        chosen = SampledLight{lights[i], weights[k] / (sum * static_cast<float>(stride)), 0};
-        left -= weights[k];
+    std::optional<ChosenLight> chosen;
+    for (std::size_t i = first, k = 0; i < plan.delta_lights && left >= 0; i += stride, ++k) {
+        const float weight = candidates[k] ? candidates[k]->weight() : 0;
+        if (!(weight > 0)) continue;
+        chosen = ChosenLight{i, weight / (sum * static_cast<float>(stride)), candidates[k]->distance};
+        left -= weight;
     }
     return chosen;
 }
@@ -192,16 +198,13 @@ std::optional<ScatteredLight> sample_scattered_light(const RenderPlan& plan, con
     const std::vector<Medium>& media = plan.scene.media;
     const Interval range = scattering_range(media, ray, t_end);
     if (range.empty()) return std::nullopt;
-    const std::optional<SampledLight> chosen = choose_light(plan, ray, range, u.y);
+    const std::optional<ChosenLight> chosen = choose_light(plan, ray, range, u.y);
     if (!chosen) return std::nullopt;
-    const Light& light = plan.scene.lights[chosen->index];
-    float intensity = 0;
-    const auto distance = scattering_distance(media, light, ray, range, intensity);
-    const float t = distance->sample(u.x);
+    const float t = chosen->distance.sample(u.x);
     const MediumVertex vertex{ray.at(t), ray.direction, ray.time, 0};
-    const std::optional<LightSample> s = sample_light(light, vertex.p, {});
+    const std::optional<LightSample> s = sample_light(plan.scene.lights[chosen->index], vertex.p, {});
     if (!s) return std::nullopt;
-    const float pdf = chosen->probability * distance->pdf(t);
+    const float pdf = chosen->probability * chosen->distance.pdf(t);
     const Rgb scattering = scattering_at(media, ray, t, s->wi) / pdf; // at first, because each of both may be huge
     const Rgb radiance = transmittance(media, ray, t) * scattering * s->radiance *
                          transmittance(media, spawn_ray(plan, vertex, s->wi), s->distance);

@@ -272,7 +272,7 @@ private:
     // scatter from delta lights. Returns where they scatter the path itself, if they do.
     std::optional<MediumCollision> pass_media(const Ray& ray, float t_end, int depth, const VertexRandomSamples& u) {
         if (!plan_.scene.needs.media || medium_stack_.in_dielectric()) return std::nullopt;
-        if (plan_.delta_lights != nullptr && depth < plan_.max_depth) add_scattered_light(ray, t_end, depth, u);
+        if (plan_.delta_lights > 0 && depth < plan_.max_depth) add_scattered_light(ray, t_end, depth, u);
         Rgb emitted;
         const auto collision = sample_collision(plan_.scene.media, ray, t_end, u.distance, state_.throughput, emitted);
         if (!is_black(emitted)) sink_.add(emitted, LightSource::kOther, depth);
