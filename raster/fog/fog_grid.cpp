@@ -33,14 +33,14 @@ Floats lane_offsets(float first, float step) { return Floats(first) + load(kLane
 AmbientLight environment_in_fog(const RasterSceneData& data, const RasterSettings& settings,
                                 const ScreenProjection& projection) {
     if (!shows_environment(data, settings)) return {};
-    return
-        [light = broadcast<Floats>(data.ambient), media = frame_media(data.scene.media, projection)](const Vec3s& p) {
-            Color sum(kNone);
-            for (const Vec3 axis : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)})
-                for (const Vec3 w : {axis, -axis})
-                    sum += transmittance(optical_depth<Floats>(media, p, broadcast<Floats>(w), Floats(kInfinity)));
-            return light * sum * Floats(1.0f / 6);
-        };
+    return [light = broadcast<Floats>(data.ambient),
+            media = frame_media(data.scene.media, settings, projection)](const Vec3s& p) {
+        Color sum(kNone);
+        for (const Vec3 axis : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)})
+            for (const Vec3 w : {axis, -axis})
+                sum += transmittance(optical_depth<Floats>(media, p, broadcast<Floats>(w), Floats(kInfinity)));
+        return light * sum * Floats(1.0f / 6);
+    };
 }
 
 /// Represents the camera rays of a batch of pixels, up to the visible surfaces.
@@ -235,10 +235,8 @@ private:
 
 void FogGrid::compute(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
                       const AmbientLight& ambient, const FogOptions& options) {
-    media_.clear();
-    if (!settings.fog) return;
     projection_ = gbuffer.projection;
-    media_ = frame_media(data.scene.media, *projection_);
+    media_ = frame_media(data.scene.media, settings, *projection_);
     if (media_.empty()) return;
     side_ = options.side, slices_ = options.slices;
     const auto count = [&](int pixels) { return (pixels + side_ - 2) / side_ + 1; }; // so that pixels lie between them

@@ -182,8 +182,7 @@ void compute_direct_light(const RasterSceneData& data, const RasterSettings& set
         else
             *image = {};
     }
-    std::vector<Medium> media;
-    if (settings.fog) media = frame_media(data.scene.media, gbuffer.projection);
+    const std::vector<Medium> media = frame_media(data.scene.media, settings, gbuffer.projection);
     const LightSet light_set(lights, shadows, media.empty());
     const bool few = lights.size() <= LightSet::kFewLights; // which lists would not make fewer
     std::vector<WeightedLight> all_of_few;

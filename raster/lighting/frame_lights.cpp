@@ -75,7 +75,9 @@ LightDirection direction_to(const FrameLight& light, const Vec3T<Floats>& p) {
     return {way * (Floats(1.0f) / distance), distance};
 }
 
-std::vector<Medium> frame_media(std::span<const Medium> media, const ScreenProjection& projection) {
+std::vector<Medium> frame_media(std::span<const Medium> media, const RasterSettings& settings,
+                                const ScreenProjection& projection) {
+    if (!settings.fog) return {};
     std::vector<Medium> result(media.begin(), media.end());
     for (Medium& medium : result)
         medium.box = {projection.relative(Vec3d(medium.box.low)), projection.relative(Vec3d(medium.box.high))};

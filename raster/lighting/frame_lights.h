@@ -4,6 +4,7 @@
 #include "common/light/light.h"
 #include "common/medium/medium.h"
 #include "raster/gbuffer/screen_projection.h"
+#include "raster/settings.h"
 
 #include <span>
 #include <vector>
@@ -51,7 +52,8 @@ LightDirection direction_to(const FrameLight& light, const Vec3T<Floats>& p);
 /// Converts the lights that emit anything.
 std::vector<FrameLight> frame_lights(std::span<const Light> lights, const ScreenProjection& projection);
 
-/// Converts the scene's media: their boxes are relative to the eye.
-std::vector<Medium> frame_media(std::span<const Medium> media, const ScreenProjection& projection);
+/// Converts the scene's media, unless the settings leave them out: their boxes are relative to the eye.
+std::vector<Medium> frame_media(std::span<const Medium> media, const RasterSettings& settings,
+                                const ScreenProjection& projection);
 
 } // namespace duet::raster

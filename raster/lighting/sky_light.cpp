@@ -12,8 +12,7 @@ namespace duet::raster {
 void add_sky_light(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
                    const GtaoImage* occlusion, Planes3& radiance) {
     const IrradianceHarmonics& coefficients = data.sky_irradiance;
-    std::vector<Medium> media;
-    if (settings.fog) media = frame_media(data.scene.media, gbuffer.projection);
+    const std::vector<Medium> media = frame_media(data.scene.media, settings, gbuffer.projection);
     for_each_batch(gbuffer.width(), gbuffer.height(), settings.threads, [&](int x, int y) {
         const RgbT<Floats> albedo = gbuffer.diffuse.color(x, y);
         const auto lit = gbuffer.visible(x, y) & (albedo.r + albedo.g + albedo.b > Floats(0.0f));
