@@ -59,9 +59,9 @@ void fill_context(RenderContext& context, const std::string& program, const RunO
 }
 
 /// Writes a side's image and records the time it took.
-void write_rendering(RendererResult& side, const fs::path& path) {
+void write_rendering(RendererResult& side, const fs::path& path, const ViewTransform& view_transform) {
     const Stopwatch watch;
-    write_image(path, side.rendering.radiance);
+    write_image(path, side.rendering.radiance, {.view = view_transform});
     side.context.write_seconds = watch.seconds();
 }
 
@@ -86,7 +86,7 @@ int run(const RunOptions& options) {
     check_json_path(options.stats);
     const InterruptFlag interrupt;
     Stopwatch watch;
-    const Scene scene = load_scene(options.scene, options.size);
+    const Scene scene = load_scene(options.scene, options.scene_options);
     const double load_seconds = watch.seconds();
     const fs::path folder = make_folder(options.folder);
     const View view = scene_view(scene);
@@ -105,8 +105,9 @@ int run(const RunOptions& options) {
     const HitAgreement agreement = compare_hits(scene, view, raster->hits, raytrace->hits, options.settings.threads);
     if (interrupt.raised()) return kExitInterrupted;
 
-    write_rendering(*raster, folder / "raster.png");
-    write_rendering(*raytrace, folder / "raytrace.png");
+    const ViewTransform view_transform = options.view_transform.applied_to(scene.view_transform);
+    write_rendering(*raster, folder / "raster.png", view_transform);
+    write_rendering(*raytrace, folder / "raytrace.png", view_transform);
     const double range = difference_range(a, b);
     write_image(folder / "difference.png", difference_image(a, b, range));
     const json report = {{"raster", statistics_json(raster->context, raster->rendering.statistics)},
@@ -117,7 +118,8 @@ int run(const RunOptions& options) {
     write_json(folder / "report.json", report);
     write_file(folder / "index.html", report_page({scene.path.filename().string(), report_image("Rasterizer", *raster),
                                                    report_image("Path tracer", *raytrace), metrics, Encoding::kLinear,
-                                                   ReportHits{scene, raster->hits, raytrace->hits, agreement}}));
+                                                   ReportHits{scene, raster->hits, raytrace->hits, agreement},
+                                                   view_transform}));
     if (!options.stats.empty()) write_json(options.stats, report);
     if (!options.quiet) print_summary(folder / "index.html", *raster, *raytrace, agreement, metrics);
     return kExitOk;

@@ -1,6 +1,7 @@
 // `compare run`: renders one scene with both pipelines and writes one report.
 #pragma once
 
+#include "common/program/view_transform_options.h"
 #include "compare/renderer.h"
 
 #include <filesystem>
@@ -10,8 +11,9 @@ namespace duet::compare {
 
 struct RunOptions {
     std::filesystem::path scene, folder;
-    ImageSize size{0, 0}; ///< 0: the scene's size
+    SceneOptions scene_options;
     ComparisonSettings settings;
+    ViewTransformOptions view_transform;
     std::string stats; ///< file for a copy of report.json; "-" for standard output; empty: none
     bool quiet = false;
 };

@@ -15,7 +15,7 @@ void add_run(CommandLine& program) {
     run.add("-o,--output", options.folder,
             "The folder for index.html, raster.png, raytrace.png, difference.png and report.json")
         .required();
-    run.add("--size", options.size, "Image size WIDTHxHEIGHT (default: the scene's)");
+    add_scene_options(run, options.scene_options);
     run.add("--spp", settings.raytrace_spp, "The path tracer's samples a pixel (default 64)").range(1, 1 << 24);
     run.add("--raster-spp", settings.raster_spp, "The rasterizer's samples a pixel (default 16)").range(1, 1 << 24);
     run.add("--depth", settings.max_depth,
@@ -23,6 +23,7 @@ void add_run(CommandLine& program) {
         .range(0, 1 << 20);
     run.add("--threads", settings.threads, "Threads (default: all)").range(1, 1024);
     run.add("--seed", settings.seed, "Seed of all random numbers (default 0)");
+    add_view_transform(run, options.view_transform);
     run.add("--stats", options.stats, "Write the figures of report.json to this file too (-: standard output)");
     run.add_flag("--quiet", options.quiet, "No progress bar, no summary");
     set_footer(run, "Example:\n  compare run models/cornell.json -o out --size 512x512 --spp 256\n"

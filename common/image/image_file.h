@@ -25,8 +25,8 @@ ImageRgb to_linear(const StoredImage& file);
 ImageRgb read_image(const std::filesystem::path& path);
 
 /// Writes a linear RGB image in the format of the file extension. The formats .png, .jpg/.jpeg, .tga and .ppm store 8
-/// bits, encoded by the sRGB curve and rounded to nearest; NaN becomes 0 there. The formats .pfm, .hdr and .exr store
-/// linear values. The file is written atomically: it is complete or absent. Throws an Error with exit code 2 for an
+/// bits: the image after the view transform, encoded by the sRGB curve; NaN becomes 0 there. The formats .pfm, .hdr and
+/// .exr store linear values. The file is written atomically: it is complete or absent. Throws an Error with exit code 2 for an
 /// unknown extension, and with exit code 1 if writing fails.
 void write_image(const std::filesystem::path& path, const ImageRgb& image, const WriteOptions& options = {});
 /// Throws an Error unless write_image supports the path's extension, its folder exists and the path is not a folder.

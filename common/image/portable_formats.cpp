@@ -1,6 +1,5 @@
 // This file reads and writes PPM (netpbm's ppm(5): P3, P6) and PFM (Debevec's portable float map: PF, Pf).
 #include "common/image/formats.h"
-#include "common/image/srgb.h"
 
 #include <bit>
 #include <charconv>
@@ -147,7 +146,7 @@ StoredImage decode_pfm(const ImageBytes& file) {
 }
 
 std::string encode_ppm(const ImageRgb& image, const WriteOptions& options) {
-    const std::vector<std::uint8_t> bytes = srgb_encode_8bit(image);
+    const std::vector<std::uint8_t> bytes = display_bytes(image, options.view);
     std::string file = message(options.ascii_ppm ? "P3\n" : "P6\n", image.width(), ' ', image.height(), "\n255\n");
     if (!options.ascii_ppm) {
         file.append(bytes.begin(), bytes.end());

@@ -2,7 +2,6 @@
 // that stb does not detect.
 #include "common/image/container_checks.h"
 #include "common/image/formats.h"
-#include "common/image/srgb.h"
 
 #include <cstdlib>
 
@@ -137,8 +136,9 @@ void append(void* file, void* data, int size) {
     static_cast<std::string*>(file)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
 }
 
-template <typename Write> std::string encode_with(Write write, const ImageRgb& image) {
-    const std::vector<std::uint8_t> bytes = srgb_encode_8bit(image);
+template <typename Write>
+std::string encode_with(Write write, const ImageRgb& image, const WriteOptions& options) {
+    const std::vector<std::uint8_t> bytes = display_bytes(image, options.view);
     std::string file;
     if (write(&append, &file, image.width(), image.height(), 3, bytes.data()) == 0)
         throw Error("an image cannot be encoded: out of memory", 1);
@@ -172,11 +172,11 @@ StoredImage decode_tga(const ImageBytes& file) {
     return decode_with<stbi_uc>(stbi_load_from_callbacks, file, "TGA");
 }
 
-std::string encode_png(const ImageRgb& image, const WriteOptions&) {
+std::string encode_png(const ImageRgb& image, const WriteOptions& options) {
     const auto write = [](auto append_, void* file, int width, int height, int channels, const std::uint8_t* bytes) {
         return stbi_write_png_to_func(append_, file, width, height, channels, bytes, width * channels);
     };
-    return encode_with(write, image);
+    return encode_with(write, image, options);
 }
 
 std::string encode_jpeg(const ImageRgb& image, const WriteOptions& options) {
@@ -184,11 +184,11 @@ std::string encode_jpeg(const ImageRgb& image, const WriteOptions& options) {
         const int quality = std::clamp(options.jpeg_quality, 1, 100);
         return stbi_write_jpg_to_func(append_, file, width, height, channels, bytes, quality);
     };
-    return encode_with(write, image);
+    return encode_with(write, image, options);
 }
 
-std::string encode_tga(const ImageRgb& image, const WriteOptions&) {
-    return encode_with(stbi_write_tga_to_func, image);
+std::string encode_tga(const ImageRgb& image, const WriteOptions& options) {
+    return encode_with(stbi_write_tga_to_func, image, options);
 }
 
 } // namespace duet

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/image/image.h"
+#include "common/image/view_transform.h"
 
 #include <cstdint>
 #include <string>
@@ -35,6 +36,7 @@ inline constexpr long long kMaxImagePixels = 90'000'000;
 struct WriteOptions {
     bool ascii_ppm = false; ///< P3 instead of P6
     int jpeg_quality = 95;  ///< 1 to 100
+    ViewTransform view{};   ///< how 8-bit files show radiance; files of linear values do not use it
 };
 
 /// A named channel of an EXR file (for example "R", "depth.Z" or "hit.object") stores either floats or 32-bit unsigned

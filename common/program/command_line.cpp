@@ -100,6 +100,7 @@ template Option CommandLine::add(const std::string&, int&, const std::string&);
 template Option CommandLine::add(const std::string&, std::uint64_t&, const std::string&);
 template Option CommandLine::add(const std::string&, std::int64_t&, const std::string&);
 template Option CommandLine::add(const std::string&, double&, const std::string&);
+template Option CommandLine::add(const std::string&, std::optional<double>&, const std::string&);
 template Option CommandLine::add(const std::string&, std::filesystem::path&, const std::string&);
 template Option CommandLine::add(const std::string&, ImageSize&, const std::string&);
 template Option CommandLine::add(const std::string&, std::vector<std::string>&, const std::string&);

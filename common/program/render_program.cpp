@@ -3,6 +3,7 @@
 #include "common/image/image_file.h"
 #include "common/program/program.h"
 #include "common/program/statistics.h"
+#include "common/program/view_transform_options.h"
 #include "common/system/parallel.h"
 #include "common/system/stopwatch.h"
 
@@ -16,9 +17,10 @@ namespace {
 
 struct Options {
     std::string scene, output, aovs, stats;
-    ImageSize size{0, 0}; ///< zeros: the scene's
+    SceneOptions scene_options;
     int spp = 0, threads = 0, orbit = 0;
     std::uint64_t seed = 0;
+    ViewTransformOptions view_transform;
     bool ascii = false, quiet = false;
 };
 
@@ -26,7 +28,7 @@ void add_common_options(CommandLine& program, Options& options, const std::strin
     program.add("SCENE", options.scene, "A scene file (.json) or a bare mesh (.obj: framed, on a ground under a sky)")
         .required();
     program.add("-o,--output", options.output, "The image: .png, .jpg, .tga, .ppm, .pfm, .hdr or .exr");
-    program.add("--size", options.size, "Image size WIDTHxHEIGHT (default: the scene's)");
+    add_scene_options(program, options.scene_options);
     program.add("--spp", options.spp, spp_help).range(1, 1 << 24);
     program.add("--threads", options.threads, "Threads (default: all)").range(1, 1024);
     program.add("--seed", options.seed, "Seed of all random numbers (default 0)");
@@ -38,6 +40,7 @@ void add_common_options(CommandLine& program, Options& options, const std::strin
         .add("--orbit", options.orbit,
              "Render this many frames around the camera's target; the output's name holds %04d")
         .range(1, 9999);
+    add_view_transform(program, options.view_transform);
     program.add_flag("--ascii", options.ascii, "Write .ppm as text (P3)");
     program.add_flag("--quiet", options.quiet, "No progress bar");
 }
@@ -99,7 +102,7 @@ int render_all(const RenderProgram& program, const Options& options) {
     context.threads = options.threads > 0 ? options.threads : available_threads();
     context.seed = options.seed;
     Stopwatch watch;
-    const Scene scene = load_scene(options.scene, options.size);
+    const Scene scene = load_scene(options.scene, options.scene_options);
     context.load_seconds = watch.lap();
     context.width = scene.width;
     context.height = scene.height;
@@ -112,6 +115,8 @@ int render_all(const RenderProgram& program, const Options& options) {
     context.prepare_seconds = watch.lap();
 
     const InterruptFlag interrupt;
+    const WriteOptions write_options{.ascii_ppm = options.ascii,
+                                     .view = options.view_transform.applied_to(scene.view_transform)};
     const int frames = options.orbit > 0 ? options.orbit : 1;
     nlohmann::json all_statistics = nlohmann::json::array();
     ProgressBar bar(program.name, options.quiet);
@@ -124,7 +129,7 @@ int render_all(const RenderProgram& program, const Options& options) {
         const Rendering rendering = render(view, control);
         context.render_seconds = watch.lap();
         bar.finish();
-        write_rendering(output, rendering, options.ascii);
+        write_rendering(output, rendering, write_options);
         context.write_seconds = watch.lap();
         all_statistics.push_back(statistics_json(context, rendering.statistics));
         if (!options.quiet) print_summary(context, rendering, output);
@@ -136,9 +141,26 @@ int render_all(const RenderProgram& program, const Options& options) {
 
 } // namespace
 
-Scene load_scene(const std::filesystem::path& path, ImageSize size) {
-    Scene scene = load_scene(path);
-    if (size.width > 0) scene.width = size.width, scene.height = size.height;
+void add_scene_options(CommandLine& program, SceneOptions& options) {
+    program.add("--size", options.size, "Image size WIDTHxHEIGHT (default: the scene's)");
+    program
+        .add_parsed(
+            "--up",
+            [&options](const std::vector<std::string>& axes) {
+                static constexpr std::string_view kAxes = "xyz";
+                const std::size_t axis = kAxes.find(axes.back());
+                if (axes.back().size() != 1 || axis == kAxes.npos)
+                    throw Error(message("--up: found ", axes.back(), ", expected x, y or z"));
+                options.up = static_cast<UpAxis>(axis + 1);
+            },
+            "The axis of a bare mesh that points up: x, y or z (default: z for a mesh that is flat below along z "
+            "alone, else y)")
+        .repeatable();
+}
+
+Scene load_scene(const std::filesystem::path& path, const SceneOptions& options) {
+    Scene scene = load_scene(path, options.up);
+    if (options.size.width > 0) scene.width = options.size.width, scene.height = options.size.height;
     return scene;
 }
 

@@ -3,8 +3,10 @@
 #pragma once
 
 #include "common/camera/camera.h"
+#include "common/image/stored_image.h"
 #include "common/program/command_line.h"
 #include "common/rendering.h"
+#include "common/scene/default_scene.h"
 #include "common/scene/scene.h"
 #include "common/system/control.h"
 
@@ -18,9 +20,16 @@ namespace duet {
 /// A RenderFunction renders one prepared scene from any number of views.
 using RenderFunction = std::function<Rendering(const View&, Control&)>;
 
-/// Loads a scene like load_scene() and gives it another image size, unless `size` is 0 × 0. Preparation depends on the
-/// size: the rasterizer renders no shadow map finer than the image can show.
-Scene load_scene(const std::filesystem::path& path, ImageSize size);
+/// SceneOptions say how a scene is loaded.
+struct SceneOptions {
+    ImageSize size{0, 0}; ///< 0 × 0: the scene's
+    UpAxis up = UpAxis::kGuessed;
+};
+/// Adds --size and --up. `options` must outlive the parsing.
+void add_scene_options(CommandLine& program, SceneOptions& options);
+/// Loads a scene like load_scene(path). Preparation depends on the size: the rasterizer renders no shadow map finer than
+/// the image can show.
+Scene load_scene(const std::filesystem::path& path, const SceneOptions& options);
 
 /// OutputOptions say where the images are written.
 struct OutputOptions {
@@ -53,6 +62,6 @@ AovSet parse_aovs(std::string_view list);
 
 /// Writes the image to `path`, and its auxiliary images (AOVs). In an EXR file they are further channels. For other
 /// formats each AOV is written to an EXR file beside the image, `STEM.NAME.exr`.
-void write_rendering(const std::filesystem::path& path, const Rendering& rendering, bool ascii_ppm = false);
+void write_rendering(const std::filesystem::path& path, const Rendering& rendering, const WriteOptions& options = {});
 
 } // namespace duet

@@ -52,7 +52,7 @@ std::vector<Layer> auxiliary_layers(const Rendering& r) {
 
 } // namespace
 
-void write_rendering(const std::filesystem::path& path, const Rendering& rendering, bool ascii_ppm) {
+void write_rendering(const std::filesystem::path& path, const Rendering& rendering, const WriteOptions& options) {
     const int width = rendering.radiance.width(), height = rendering.radiance.height();
     std::vector<Layer> layers = auxiliary_layers(rendering);
     if (lower_case_extension(path) == ".exr" && !layers.empty()) {
@@ -61,7 +61,7 @@ void write_rendering(const std::filesystem::path& path, const Rendering& renderi
         write_exr(path, width, height, all);
         return;
     }
-    write_image(path, rendering.radiance, {.ascii_ppm = ascii_ppm});
+    write_image(path, rendering.radiance, options);
     for (const Layer& layer : layers) {
         std::filesystem::path aov_path = path;
         write_exr(aov_path.replace_extension("." + layer.name + ".exr"), width, height, layer.channels);

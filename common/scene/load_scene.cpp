@@ -21,7 +21,7 @@ namespace {
 /// files. The parsed tree takes up to fifty times the file's size in memory.
 constexpr std::size_t kMaxSceneBytes = std::size_t{1} << 26;
 
-void read_image_size(const JsonValue& image, Scene& scene) {
+void read_image_settings(const JsonValue& image, Scene& scene) {
     image.check_keys(scene_keys("image"));
     if (image.has("width")) scene.width = image.at("width").integer(1, kMaxRenderSide);
     if (image.has("height")) scene.height = image.at("height").integer(1, kMaxRenderSide);
@@ -29,6 +29,11 @@ void read_image_size(const JsonValue& image, Scene& scene) {
     if (pixels > kMaxImagePixels)
         image.fail(
             message("found ", pixels, " pixels, expected at most ", kMaxImagePixels, "; --size may ask for more"));
+    ViewTransform& view = scene.view_transform;
+    view.exposure = static_cast<float>(image.number_or("exposure", 0, {-kMaxExposure, kMaxExposure}));
+    if (image.has("tone"))
+        view.tone = static_cast<Tone>(image.at("tone").one_of({kToneNames.begin(), kToneNames.end()}));
+    view.dither = image.boolean_or("dither", false);
 }
 
 Scene read_scene(const std::filesystem::path& path) {
@@ -42,7 +47,7 @@ Scene read_scene(const std::filesystem::path& path) {
     scene.path = path;
     scene.files = {path};
     scene.camera = read_camera(file.at("camera"));
-    if (file.has("image")) read_image_size(file.at("image"), scene);
+    if (file.has("image")) read_image_settings(file.at("image"), scene);
     ImageCache images(scene);
     NameIndex textures, materials;
     if (file.has("textures")) textures = read_textures(file.at("textures"), scene, images);
@@ -79,11 +84,15 @@ void check_reach(const Scene& scene) {
 
 } // namespace
 
-Scene load_scene(const std::filesystem::path& path) {
+Scene load_scene(const std::filesystem::path& path) { return load_scene(path, UpAxis::kGuessed); }
+
+Scene load_scene(const std::filesystem::path& path, UpAxis up) {
     const std::string extension = lower_case_extension(path);
     if (extension != ".json" && extension != ".obj")
         throw Error(message(path.string(), ": expected a scene file (.json) or a mesh (.obj)"));
-    Scene scene = extension == ".obj" ? default_scene_for_mesh(path) : read_scene(path);
+    if (extension == ".json" && up != UpAxis::kGuessed)
+        throw Error(message(path.string(), ": --up turns a bare mesh (.obj); in a scene file a transform does it"));
+    Scene scene = extension == ".obj" ? default_scene_for_mesh(path, up) : read_scene(path);
     finish_scene(scene);
     check_reach(scene);
     return scene;

@@ -5,6 +5,7 @@
 #include "common/geometry/footprint.h"
 #include "common/geometry/shape.h"
 #include "common/geometry/surface_point.h"
+#include "common/image/view_transform.h"
 #include "common/light/environment.h"
 #include "common/light/light.h"
 #include "common/material/material.h"
@@ -59,6 +60,7 @@ struct Scene {
     std::vector<std::filesystem::path> files;
     Camera camera;
     int width = 640, height = 480;
+    ViewTransform view_transform; ///< how 8-bit files show the image
 
     TextureSet textures;
     std::vector<Material> materials;

@@ -53,7 +53,7 @@ int threads_of(const BenchOptions& options) {
 class SceneBench {
 public:
     SceneBench(const BenchOptions& options, const fs::path& path, const InterruptFlag& interrupt)
-        : options_(options), interrupt_(interrupt), scene_(load_scene(path, options.size)),
+        : options_(options), interrupt_(interrupt), scene_(load_scene(path, SceneOptions{options.size})),
           view_(scene_view(scene_, options.size, bench_scale(scene_))),
           counted_(counted_pixels(options.excluded, view_.width, view_.height)) {
         result_.scene = path.string();

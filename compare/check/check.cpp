@@ -41,7 +41,7 @@ int check_file(const std::string& name, const CheckOptions& options) {
     int exit_code = kExitOk;
     std::optional<Scene> scene;
     try {
-        scene = load_scene(name, options.size);
+        scene = load_scene(name, SceneOptions{options.size});
     } catch (const Error& error) {
         line["verdict"] = "refused";
         line["details"] = error.what();

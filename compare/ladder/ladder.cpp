@@ -65,7 +65,7 @@ void write_images(const fs::path& folder, const LadderResult& result) {
 int ladder(const LadderOptions& options) {
     check_json_path(options.stats);
     const InterruptFlag interrupt;
-    const Scene scene = load_scene(options.scene, options.size);
+    const Scene scene = load_scene(options.scene, options.scene_options);
     const fs::path folder = make_folder(options.folder);
     const View view = scene_view(scene);
     const LadderResult result = measure_ladder(scene, view, options, interrupt);

@@ -10,7 +10,7 @@ namespace duet::compare {
 
 struct LadderOptions {
     std::filesystem::path scene, folder;
-    ImageSize size{0, 0};        ///< 0: the scene's size
+    SceneOptions scene_options;
     ComparisonSettings settings; ///< an odd raytrace_spp is rounded up, because the samples form two halves
     std::string stats;         ///< file for a copy of report.json; "-" for standard output; empty: none
     bool quiet = false;        ///< no progress bar, no table

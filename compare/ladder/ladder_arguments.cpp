@@ -12,7 +12,7 @@ void add_ladder(CommandLine& program) {
     ComparisonSettings& settings = options.settings;
     ladder.add("SCENE", options.scene, "A scene file (.json) or a bare mesh (.obj)").required();
     ladder.add("-o,--output", options.folder, "The folder for index.html, report.json and the images").required();
-    ladder.add("--size", options.size, "Image size WIDTHxHEIGHT (default: the scene's)");
+    add_scene_options(ladder, options.scene_options);
     ladder
         .add("--spp", settings.raytrace_spp,
              "The path tracer's samples a pixel, in two halves (default 64; odd numbers are rounded up)")

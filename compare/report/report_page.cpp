@@ -93,6 +93,22 @@ json side_json(const ReportImage& side) {
             {"rendering", side.rendering ? rendering_json(*side.rendering) : json(nullptr)}};
 }
 
+/// Returns the tone curves by name: the matrices of ToneMapping, and a table of the curve that the page interpolates. Its
+/// steps of 1/32 of a stop are finer than a code of the display.
+json tones_json() {
+    constexpr int kLow = -20, kHigh = 20, kStepsPerStop = 32;
+    json tones = json::object();
+    for (std::size_t i = 0; i < kToneNames.size(); ++i) {
+        const ToneMapping& mapping = tone_mapping(static_cast<Tone>(i));
+        std::vector<float> curve;
+        for (int k = kLow * kStepsPerStop; k <= kHigh * kStepsPerStop; ++k)
+            curve.push_back(mapping.curve(std::exp2(static_cast<float>(k) / kStepsPerStop)));
+        tones[std::string(kToneNames[i])] = {
+            {"inset", mapping.inset}, {"outset", mapping.outset}, {"curve", curve}, {"log2_range", {kLow, kHigh}}};
+    }
+    return tones;
+}
+
 template <typename Pixel> void check_size(const Image<Pixel>& image, const ReportPage& page) {
     DUET_CHECK_EQ(image.width(), page.a.image.width());
     DUET_CHECK_EQ(image.height(), page.a.image.height());
@@ -112,6 +128,9 @@ std::string report_page(const ReportPage& page) {
                        {"width", page.a.image.width()},
                        {"height", page.a.image.height()},
                        {"eight_bit", page.encoding == Encoding::kEncoded},
+                       {"tones", tones_json()},
+                       {"tone", kToneNames[static_cast<std::size_t>(page.view.tone)]},
+                       {"exposure", page.view.exposure},
                        {"sides", {side_json(page.a), side_json(page.b)}},
                        {"difference", difference_planes(page.a.image, page.b.image)},
                        {"difference_range", difference_range(page.a.image, page.b.image)},

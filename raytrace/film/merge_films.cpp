@@ -3,6 +3,7 @@
 #include "common/image/image_file.h"
 #include "common/program/command_line.h"
 #include "common/program/program.h"
+#include "common/program/view_transform_options.h"
 #include "common/system/error.h"
 #include "common/system/file_lock.h"
 
@@ -55,6 +56,7 @@ void sort_by_samples(std::vector<NamedFilm>& films) {
 struct Options {
     std::string output, film;
     std::vector<std::string> films;
+    ViewTransformOptions view_transform;
     bool quiet = false;
 };
 
@@ -72,7 +74,7 @@ int merge(const Options& options) {
         throw Error("--film: the films leave out samples, or some pixels have more than others: the whole could not be "
                     "continued (the image alone can be written)");
     if (!options.film.empty()) write_film(options.film, all);
-    write_image(options.output, all.film.image());
+    write_image(options.output, all.film.image(), {.view = options.view_transform.applied_to({})});
     if (options.quiet) return kExitOk;
     std::cerr << options.output << ": " << all.film.width() << " x " << all.film.height() << ", " << count << " films, "
               << all.film.min_samples_taken() << (contiguous ? "" : " or more") << " samples a pixel";
@@ -115,6 +117,7 @@ int run_merge(int argc, char** argv) {
             .required();
         command_line.add("--film", options.film,
                          "Write the joint film, too: it can be continued, or joined with others");
+        add_view_transform(command_line, options.view_transform);
         command_line.add_flag("--quiet", options.quiet, "No summary");
         const std::optional<int> exit_code = command_line.parse(argc, argv);
         return exit_code ? *exit_code : merge(options);

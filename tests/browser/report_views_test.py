@@ -168,6 +168,21 @@ class Views(support.PageTest):
         self.assertEqual(page.text("#exposure-value"), "−8.0 EV")
         self.assert_shows(page, self.picture(changed, 2, 3, -8), 2, 3)
 
+    def test_tone(self):
+        def filmic(v):
+            s = 0.7232 * v
+            return s * (2.51 * s + 0.03) / (s * (2.43 * s + 0.59) + 0.14)
+        page = self.pair("mode=flicker&play=false&ev=2&tone=filmic")
+        for at in (BRIGHTER, DARKER, (0, 0), (15, 11)):
+            self.assert_shows(page, [srgb_byte(filmic(half(v) * 4)) for v in changed(*at)], *at)
+        page.js("tone.value = 'none'; tone.dispatchEvent(new Event('change'))")
+        self.assert_shows(page, self.picture(changed, 2, 3, 2), 2, 3)
+        page.js("tone.value = 'agx'; tone.dispatchEvent(new Event('change'))")
+        page.wait("location.hash.includes('tone=agx')")
+        shown = self.color(page, 15, 11)
+        clipped = self.picture(changed, 15, 11, 2)
+        self.assertTrue(max(shown) < max(clipped) and min(shown) > 0, (shown, clipped))
+
     def test_pixel_values_by_mouse_and_keyboard(self):
         page = self.pair()
         page.move(*self.point_at(page, *BRIGHTER))

@@ -28,5 +28,25 @@ for program in raster raytrace; do
     done
     ! cmp -s "$scratch/orbit-0000.png" "$scratch/orbit-0001.png" || fail "$program --orbit does not turn the camera"
     rm -f "$scratch"/orbit*
+
+    # Exposure, tone and dithering change 8-bit files; the command line overrides the scene; floats stay as they are.
+    rm -f "$scratch/sums"
+    for view in '' '--exposure 1' '--tone filmic' '--tone agx' '--tone agx --dither'; do
+        expect 0 "$bin/$program" models/cornell.json -o "$scratch/view.ppm" --size 24x16 --spp 2 --quiet $cheap $view
+        cksum <"$scratch/view.ppm" >>"$scratch/sums"
+    done
+    [ "$(sort -u "$scratch/sums" | wc -l)" = 5 ] || fail "$program: two view transforms gave the same file"
+    sed "s#\"image\": {#&\"tone\": \"agx\", \"exposure\": 2, #; s#\"meshes/#\"$PWD/models/meshes/#" models/cornell.json \
+        >"$scratch/view.json"
+    expect 0 "$bin/$program" "$scratch/view.json" -o "$scratch/view.ppm" --size 24x16 --spp 2 --quiet $cheap \
+        --tone none --exposure 1
+    [ "$(cksum <"$scratch/view.ppm")" = "$(sed -n 2p "$scratch/sums")" ] || fail "$program: --tone is not the last word"
+    expect 0 "$bin/$program" models/cornell.json -o "$scratch/plain.pfm" --size 24x16 --spp 2 --quiet $cheap
+    expect 0 "$bin/$program" models/cornell.json -o "$scratch/view.pfm" --size 24x16 --spp 2 --quiet $cheap --tone agx
+    cmp -s "$scratch/plain.pfm" "$scratch/view.pfm" || fail "$program: --tone changed linear values"
+    expect 2 "$bin/$program" models/cornell.json -o "$scratch/view.png" --tone warm
+    one_line_error "--tone: found warm, expected none, filmic or agx"
+    expect 2 "$bin/$program" models/cornell.json -o "$scratch/view.png" --exposure nan
+    one_line_error "expected a number of stops in"
 done
 finish

@@ -83,7 +83,7 @@ LadderOptions small_ladder(const fs::path& folder) {
     LadderOptions options;
     options.scene = fs::path(DUET_SOURCE_DIR) / "models" / "cornell.json";
     options.folder = folder;
-    options.size = {24, 20};
+    options.scene_options.size = {24, 20};
     options.settings.raster_spp = 1;
     options.settings.raytrace_spp = 3;
     options.quiet = true;

@@ -20,7 +20,7 @@ RunOptions small_run(const fs::path& folder) {
     RunOptions options;
     options.scene = fs::path(DUET_SOURCE_DIR) / "models" / "cornell.json";
     options.folder = folder;
-    options.size = {24, 20};
+    options.scene_options.size = {24, 20};
     options.settings.raster_spp = 1;
     options.settings.raytrace_spp = 2;
     options.quiet = true;

@@ -15,7 +15,7 @@ const std::vector<JsonKeys>& scene_keys() {
          {"eye", "look_at"},
          {"projection", "up", "fov_degrees", "near", "aperture_radius", "focus_distance", "shutter"}},
         {"orthographic", {"projection", "eye", "look_at"}, {"up", "height", "near", "shutter"}},
-        {"image", {}, {"width", "height"}},
+        {"image", {}, {"width", "height", "exposure", "tone", "dither"}},
 
         {"image_texture", {"type", "file"}, {"scale", "filter", "values", "channel"}},
         {"checker_texture", {"type"}, {"even", "odd", "scale", "solid"}},

@@ -29,7 +29,7 @@ function showInspector(announce = false) {
   }
   const i = state.py * width + state.px, values = decoded.pictures.map(picture => picture.rgb(i)),
         d = decoded.difference.rgb(i);
-  const shade = rgb => css(rgb.every(Number.isFinite) ? rgb.map(v => encodeSrgb(v * 2 ** state.ev)) : invalidColor);
+  const shade = rgb => css(displayedColor(rgb, state.ev));
   const stored = data.eight_bit ? v => String(encodeSrgb(v)) : null;
   const sees = decoded.hits ? decoded.hits.of.map(hit => seen(hit(i))) : ["", ""];
   const judged = [`${data.flip.name} ${radianceText(decoded.flip[i])}`,

@@ -66,6 +66,7 @@ function showSteps() {
 
 function updateExposure() {
   element("exposure").value = state.ev;
+  element("tone").value = state.tone;
   element("exposure-value").textContent = minus(`${state.ev > 0 ? "+" : ""}${state.ev.toFixed(1)} EV`);
   layers.pictures.forEach((layer, k) => paintImage(layer, decoded.pictures[k], state.ev));
   showInspector();
@@ -131,7 +132,8 @@ function showWorst() {
 
 // ---- Event handlers.
 
-function setExposure(ev) { state.ev = clamp(Math.round(ev * 10) / 10, -8, 8); updateExposure(); changed(); }
+function setExposure(ev) { state.ev = clamp(Math.round(ev * 10) / 10, -maxStops, maxStops); updateExposure(); changed(); }
+function setTone(tone) { state.tone = tone; updateExposure(); changed(); }
 function setChannel(channel) {
   state.channel = channel;
   difference = channelOf(decoded.difference, channel);
@@ -156,7 +158,8 @@ function wire() {
   on("zoom-out", "click", () => zoomBy(0.5));
   on("zoom-fit", "click", fitAgain);
   on("exposure", "input", value => setExposure(Number(value)));
-  on("exposure", "dblclick", () => setExposure(0));
+  on("exposure", "dblclick", () => setExposure(defaults.ev));
+  on("tone", "change", setTone);
   on("range", "input", value => { state.range = Number((10 ** value).toPrecision(3)); updateDifference(); changed(); });
   on("channel", "change", setChannel);
   on("palette", "change", setPalette);
@@ -203,6 +206,8 @@ function fillIn() {
               mode.title)));
   ["chip-a", "chip-b"].forEach(
       (id, k) => fill(id, make("i", {"aria-hidden": "true"}, sides[k].symbol), ` ${sides[k].name}`));
+  Object.assign(element("exposure"), { min: -maxStops, max: maxStops });
+  fill("tone", ...Object.keys(data.tones).map(name => make("option", { value: name }, name)));
   element("mode-keys").textContent = `1 – ${modes.length}`;
   element("mode-names").textContent = modes.map(mode => mode.title.toLowerCase()).join(", ");
   showSections();

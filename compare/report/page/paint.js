@@ -13,6 +13,20 @@ function exposureTable(stops) {
   return table;
 }
 
+// Returns the bytes of a color: the view transform (common/image/view_transform.h) at an exposure in stops. The curve of
+// a tone is a table over the binary logarithm of its argument.
+function displayedColor(rgb, stops) {
+  if (!rgb.every(Number.isFinite)) return invalidColor;
+  const { inset, outset, curve, log2_range: [low, high] } = data.tones[state.tone], gain = 2 ** stops;
+  const times = (matrix, v) => matrix.map(row => row[0] * v[0] + row[1] * v[1] + row[2] * v[2]);
+  const compressed = times(inset, rgb.map(v => Math.max(v, 0) * gain)).map(x => {
+    const at = clamp((Math.log2(x) - low) / (high - low), 0, 1) * (curve.length - 1);
+    const k = Math.min(Math.floor(at), curve.length - 2);
+    return curve[k] + (curve[k + 1] - curve[k]) * (at - k);
+  });
+  return times(outset, compressed).map(encodeSrgb);
+}
+
 // Creates a canvas for an image. It is also read back, to choose text colors with enough contrast.
 function newCanvas() {
   const canvas = make("canvas", { width, height });
@@ -36,6 +50,10 @@ const invalid = bits => (bits & 0x7c00) === 0x7c00;
 function write(bytes, at, r, g, b) { bytes[at] = r; bytes[at + 1] = g; bytes[at + 2] = b; }
 
 function paintImage(canvas, picture, stops) {
+  if (state.tone !== "none") {
+    paint(canvas, (i, bytes, at) => write(bytes, at, ...displayedColor(picture.rgb(i), stops)));
+    return;
+  }
   const table = exposureTable(stops), [r, g, b] = picture.planes;
   paint(canvas, (i, bytes, at) => {
     if (invalid(r[i]) || invalid(g[i]) || invalid(b[i])) write(bytes, at, ...invalidColor);

@@ -17,7 +17,8 @@ const state = {
   zoom: 0,
   x: width / 2,
   y: height / 2,
-  ev: 0,
+  ev: data.exposure,
+  tone: data.tone,
   range: data.difference_range,
   channel: "luminance",
   palette: "hue",
@@ -30,6 +31,7 @@ const state = {
   bin: -1,
 };
 const defaults = { ...state };
+const maxStops = Math.max(8, Math.ceil(Math.abs(defaults.ev))); // at the ends of the exposure slider
 
 function readAddress() {
   Object.assign(state, defaults); // values that are not in the URL get their defaults
@@ -41,6 +43,7 @@ function readAddress() {
     else if (Number.isFinite(Number(text))) state[key] = Number(text);
   }
   if (!modes.some(mode => mode.key === state.mode)) state.mode = "split";
+  if (!Object.hasOwn(data.tones, state.tone)) state.tone = defaults.tone;
   if (!Object.hasOwn(channels, state.channel)) state.channel = "luminance";
   if (!Object.hasOwn(palettes, state.palette)) state.palette = "hue";
   if (!Object.hasOwn(quantities, state.histogram)) state.histogram = "signed";
@@ -52,7 +55,7 @@ function readAddress() {
   state.bin = Math.max(Math.round(state.bin), -1);
   state.range = clamp(state.range, 1e-4, 100);
   state.split = clamp(state.split, 0, 1);
-  state.ev = clamp(state.ev, -8, 8);
+  state.ev = clamp(state.ev, -maxStops, maxStops);
   state.period = clamp(state.period, 350, 2000);
   state.zoom = state.zoom <= 0 ? 0 : clamp(state.zoom, 0.01, maxZoom);
 }

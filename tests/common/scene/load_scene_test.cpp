@@ -51,7 +51,7 @@ const char* const kWhole = R"({
   "$schema": "scene.schema.json", "description": "all there is",
   "camera": {"projection": "perspective", "eye": [0, 1, 6], "look_at": [0, 1, 0], "up": [0, 2, 0], "fov_degrees": 20,
              "near": 0.01, "aperture_radius": 0.1, "focus_distance": 5, "shutter": [0.25, 0.75]},
-  "image": {"width": 320, "height": 200},
+  "image": {"width": 320, "height": 200, "exposure": -1.5, "tone": "agx", "dither": true},
   "textures": {
     "tiles": {"type": "checker", "even": 0.9, "odd": [0.1, 0.2, 0.3], "scale": 8, "solid": true},
     "stone": {"type": "noise", "low": 0.1, "high": [0.9, 0.8, 0.7], "scale": 4, "octaves": 6, "marble": true}
@@ -92,6 +92,7 @@ TEST_SUITE("unit") {
         CHECK(scene.camera.shutter_open == 0.25);
         CHECK(scene.camera.shutter_close == 0.75);
         CHECK(scene.width == 320);
+        CHECK(scene.view_transform == ViewTransform{-1.5f, Tone::kAgx, true});
         CHECK(scene.height == 200);
         REQUIRE(scene.materials.size() == 5);
         CHECK(scene.material_names[2] == "gold");
@@ -183,6 +184,9 @@ TEST_SUITE("unit") {
              "$.image: found 268435456 pixels, expected at most 90000000; --size may ask for more"},
             {with(R"("image": {"width": 2.5})"), "$.image.width: found 2.5"},
             {with(R"("image": [1, 2])"), "$.image: found an array of 2 elements, expected an object"},
+            {with(R"("image": {"exposure": 33})"), "$.image.exposure: found 33, expected a number in [-32, 32]"},
+            {with(R"("image": {"tone": "warm"})"), "$.image.tone: found \"warm\", expected"},
+            {with(R"("image": {"dither": 1})"), "$.image.dither: found 1"},
             {with(R"("description": 7)"), "$.description: found 7, expected a string"},
             {with_camera("7"), "$.camera: found 7, expected an object"},
             {with_camera(R"({"look_at": [0, 0, 0]})"), "$.camera: the key \"eye\" is missing"},
