@@ -1,5 +1,6 @@
 #include "raster/lighting/direct_light.h"
 
+#include "raster/gbuffer/facet_normal.h"
 #include "raster/lighting/light_set.h"
 #include "raster/lighting/lit_batch.h"
 
@@ -93,18 +94,20 @@ private:
 
     Sum light_batch(int x, int y, const xsimd::batch_bool<float>& lanes, std::span<const WeightedLight> near) {
         const LitBatch batch(gbuffer_, x, y, lanes, tables_);
+        const Vec3T<Floats> facet =
+            shadows_ == nullptr ? batch.n() : facet_normals(gbuffer_, batch.p(), batch.n(), x, y);
         Sum sum;
         for (const WeightedLight& light : near)
-            add(batch, lights_[light.index], light.weight, LitBatch::Lobes::kAll, x, y, sum);
+            add(batch, lights_[light.index], light.weight, LitBatch::Lobes::kAll, facet, x, y, sum);
         for (const LightField& field : std::span(fields_).first(field_count_))
             sum.exact += batch.diffuse(field.irradiance(batch.p(), batch.n()));
         if (batch.specular())
-            for (const std::uint32_t i : distant_) add(batch, lights_[i], 1, LitBatch::Lobes::kSpecular, x, y, sum);
+            for (const std::uint32_t i : distant_) add(batch, lights_[i], 1, LitBatch::Lobes::kSpecular, facet, x, y, sum);
         return sum;
     }
 
-    void add(const LitBatch& batch, const FrameLight& light, float weight, LitBatch::Lobes lobes, int x, int y,
-             Sum& sum) const {
+    void add(const LitBatch& batch, const FrameLight& light, float weight, LitBatch::Lobes lobes, const Vec3T<Floats>& facet,
+             int x, int y, Sum& sum) const {
         RgbT<Floats> reflected = batch.reflected(light, lobes) * Floats(weight);
         if (!media_.empty()) {
             const LightDirection to = direction_to(light, batch.p());
@@ -116,7 +119,8 @@ private:
         }
         const xsimd::batch_bool<float> lit = max_component(reflected) > Floats(0.0f);
         if (lane_bits(lit) == 0) return;
-        const Floats visible = shadows_->visibility(light.index, receiver(batch, light, x, y), batch.n(), x, y, lit);
+        const Floats visible = shadows_->visibility(light.index, receiver(batch, light, x, y),
+                                                    receiving_normal(batch, light, facet), x, y, lit);
         const RgbT<Floats> seen = reflected * xsimd::select(lit, visible, Floats(0.0f));
         if (shadows_->noisy(light.index))
             sum.unshadowed += reflected, sum.shadowed += seen;
@@ -129,11 +133,24 @@ private:
     Vec3T<Floats> receiver(const LitBatch& batch, const FrameLight& light, int x, int y) const {
         constexpr float kLow = 0.4f, kHigh = 0.8f; // cosines between which the height falls
         const Vec3T<Floats> n = batch.n(), p = batch.p();
-        const Vec3T<Floats> wi = light.kind == FrameLight::Kind::kSun ? broadcast<Floats>(light.axis)
-                                                                      : broadcast<Floats>(light.position) - p;
-        const Floats cosine = dot(n, wi) * inverse_sqrt(max(dot(wi, wi), Floats(1e-20f)));
+        const Floats cosine = dot(n, direction_to_middle(batch, light));
         const Floats low = clamp((Floats(kHigh) - cosine) * Floats(1 / (kHigh - kLow)), Floats(0.0f), Floats(1.0f));
         return p + n * (load(gbuffer_.bulge, x, y) * low);
+    }
+
+    /// Returns the normals of the planes that do not shade themselves. They are those of the facets, where these face the
+    /// light; a facet that smooth shading turns toward the light stands for a part of the smooth surface.
+    Vec3T<Floats> receiving_normal(const LitBatch& batch, const FrameLight& light, const Vec3T<Floats>& facet) const {
+        constexpr float kLeastCosine = 0.05f;
+        const auto faces = dot(facet, direction_to_middle(batch, light)) > Floats(kLeastCosine);
+        return select(faces, facet, batch.n());
+    }
+
+    /// Returns the unit directions from the points to the middle of the light.
+    static Vec3T<Floats> direction_to_middle(const LitBatch& batch, const FrameLight& light) {
+        const Vec3T<Floats> wi = light.kind == FrameLight::Kind::kSun ? broadcast<Floats>(light.axis)
+                                                                      : broadcast<Floats>(light.position) - batch.p();
+        return wi * inverse_sqrt(max(dot(wi, wi), Floats(1e-20f)));
     }
 
     Sum& sum_at(int x, int y) {
