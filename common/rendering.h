@@ -93,6 +93,7 @@ struct RenderStatistics {
     bool interrupted = false;
 };
 
+/// A Rendering is what a pipeline returns: the image, the requested auxiliary images, and statistics.
 struct Rendering {
     ImageRgb radiance; ///< linear radiance
     // Auxiliary images are empty unless requested. Depth, normal and albedo are means over the samples that hit a

@@ -8,6 +8,8 @@
 
 namespace duet::compare {
 
+/// Adds the subcommand of this name, with its options.
+///@{
 void add_run(CommandLine& program);
 void add_ladder(CommandLine& program);
 void add_images(CommandLine& program);
@@ -18,6 +20,7 @@ void add_kernels(CommandLine& program);
 void add_frames(CommandLine& program);
 void add_stress(CommandLine& program);
 void add_check(CommandLine& program);
+///@}
 
 /// Sets what a subcommand runs. Returns the options that it runs with, for the arguments to be written to.
 template <typename Options> Options& set_action(CommandLine& subcommand, int (*action)(const Options&)) {

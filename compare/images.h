@@ -7,6 +7,7 @@
 
 namespace duet::compare {
 
+/// Holds the options of `compare images`.
 struct ImagesOptions {
     std::filesystem::path a, reference;
     std::vector<std::string> limits; ///< "METRIC=VALUE"

@@ -29,11 +29,14 @@ struct Renderer {
     double prepare_seconds = 0;
 };
 
+/// Prepares the rasterizer for a scene.
 Renderer raster_renderer(const Scene& scene, const ComparisonSettings& settings);
+/// Prepares the path tracer for a scene.
 Renderer raytrace_renderer(const Scene& scene, const ComparisonSettings& settings);
 
-/// Returns a pipeline's settings of the full image.
+/// Returns the rasterizer's settings of the full image.
 raster::RasterSettings raster_settings(const ComparisonSettings& settings);
+/// Returns the path tracer's settings of the full image.
 raytrace::PathTracerSettings path_tracer_settings(const ComparisonSettings& settings);
 /// Returns the settings for Rendering::hit alone: one ray per pixel, and the cheapest shading.
 raster::RasterSettings hit_settings(raster::RasterSettings settings);
@@ -46,8 +49,9 @@ RenderFunction render_function(const Prepared& prepared, const Settings& setting
         [prepared, settings](const View& view, Control& control) { return render(prepared, view, settings, control); };
 }
 
-/// Returns the Renderer::render_hits of each pipeline alone, and prepares no shading.
+/// Returns Renderer::render_hits of the rasterizer alone, and prepares no shading.
 RenderFunction raster_hits(const Scene& scene, const ComparisonSettings& settings);
+/// Returns Renderer::render_hits of the path tracer alone.
 RenderFunction raytrace_hits(const Scene& scene, const ComparisonSettings& settings);
 
 /// Returns the view of the scene's camera, in the scene's image size.

@@ -9,6 +9,7 @@
 
 namespace duet::compare {
 
+/// Holds the options of `compare run`.
 struct RunOptions {
     std::filesystem::path scene, folder;
     SceneOptions scene_options;

@@ -24,6 +24,7 @@ private:
     Stopwatch watch_;
 };
 
+/// Holds the median of repeated measurements, and their range.
 struct MedianRange {
     double min = 0, median = 0, max = 0;
 };

@@ -30,10 +30,10 @@ std::span<const Model> all_models();
 /// Generates one model's files, and their subfolders, below the folder.
 void generate_model(const Model& model, const std::filesystem::path& folder);
 
-// Each model has one function, in the file of its name.
+/// Writes the files of the model of this name. The function is defined in the file of that name.
+///@{
 void write_amphora(const std::filesystem::path& folder);
 void write_bowl(const std::filesystem::path& folder);
-inline constexpr const char* kHallFile = "generated/hall.obj";
 void write_hall(const std::filesystem::path& folder);
 void write_lanterns(const std::filesystem::path& folder);
 void write_pear(const std::filesystem::path& folder);
@@ -41,5 +41,7 @@ void write_plinth(const std::filesystem::path& folder);
 void write_ring(const std::filesystem::path& folder);
 void write_sky(const std::filesystem::path& folder);
 void write_spheres(const std::filesystem::path& folder);
+///@}
+inline constexpr const char* kHallFile = "generated/hall.obj";
 
 } // namespace duet::models

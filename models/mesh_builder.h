@@ -65,6 +65,7 @@ struct Tube {
     Vec3d plane_normal{0, 0, 1};
     Vec2d uv_low{0, 0}, uv_high{1, 1};
 };
+/// Adds a tube, with its domes.
 void add_tube(MeshBuilder& mesh, const Tube& tube);
 
 /// Replaces the normals. Each corner gets the angle-weighted mean of the normals of those triangles around its

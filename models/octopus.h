@@ -17,8 +17,11 @@ inline constexpr double kEyeX = 0.245, kEyeY = 0.82, kEyeZ = 0.17, kEyeRadius = 
 inline constexpr Vec3d kBallCenter{0.72, 0.40, 0.78};
 inline constexpr double kBallRadius = 0.28;
 
+/// Writes the octopus's mesh below the folder. A number in the name is about that of its triangles.
+///@{
 void write_octopus(const std::filesystem::path& folder);
 void write_octopus_hundred_thousand(const std::filesystem::path& folder);
 void write_octopus_million(const std::filesystem::path& folder);
+///@}
 
 } // namespace duet::models

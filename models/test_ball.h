@@ -7,6 +7,7 @@
 
 namespace duet::models {
 
+/// Describes a scene of the test ball: what its material is, and how it is written.
 struct BallScene {
     std::string name, description;
     std::string material; ///< the material's keys, as JSON
@@ -15,6 +16,7 @@ struct BallScene {
 /// Returns the scenes in the order of the gallery's page.
 std::span<const BallScene> ball_scenes();
 
+/// Writes the ball's mesh and the scene of each material below the folder.
 void write_test_ball(const std::filesystem::path& folder);
 
 } // namespace duet::models

@@ -16,6 +16,7 @@
 
 namespace duet::raster {
 
+/// Holds what is known of an object before any view.
 struct RasterObject {
     Box3 bounds;        ///< in world space, over all of the object's motion
     std::optional<Rgb> uniform_color;       ///< base color, if it is the same all over the object
@@ -33,6 +34,7 @@ class RadianceMap; // raster/probes/radiance_map.h
 class ReflectionProbes; // raster/probes/reflection_probes.h
 class GlassShapes; // raster/probes/glass_shapes.h
 
+/// Holds what prepare() makes of a scene, once for any number of views.
 struct RasterSceneData {
     const Scene& scene;
     std::vector<RasterObject> objects{};  ///< parallel to Scene::objects

@@ -33,6 +33,7 @@ enum class Output {
     kReversedDepth, ///< Rendering::reversed_depth: reversed depth only, e.g. for a shadow map; nothing is shaded
 };
 
+/// Holds the settings of the rasterizer.
 struct RasterSettings : RenderSettings {
     Shading shading = Shading::kLit;
     Output output = Output::kRadiance; ///< kReversedDepth uses only one sample per pixel

@@ -10,6 +10,7 @@
 
 namespace duet::raytrace {
 
+/// Holds what prepare() makes of a scene. It refers to the scene, which must outlive it.
 struct PathTracerSceneData {
     /// `threads` is the number of build threads (0 = all).
     PathTracerSceneData(const Scene& scene_, int threads);

@@ -22,6 +22,7 @@ private:
     std::shared_ptr<const PathTracerSceneData> data_;
 };
 
+/// Builds the hierarchies and the light tree of a scene, on PathTracerSettings::threads threads.
 PathTracerScene prepare(const Scene& scene, const PathTracerSettings& settings);
 /// Renders one image. If `control` stops it, it returns the mean of the samples taken so far. With
 /// PathTracerSettings::film it continues that film, bit-equal to a single run. Throws Error for invalid settings, for a

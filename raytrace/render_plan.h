@@ -14,6 +14,7 @@ namespace duet::raytrace {
 /// scene of models/ best, from 1 to 14, gain more than a tenth in one of them alone (raytrace/measurements.md).
 inline constexpr float kSurvivalFactor = 4;
 
+/// Holds the decisions of one render. It refers to the prepared scene, which must outlive it.
 struct RenderPlan {
     RenderPlan(const PathTracerSceneData& prepared_, const View& view, const PathTracerSettings& settings);
     RenderPlan(const RenderPlan&) = delete; // bsdfs may point into the plan

@@ -34,6 +34,7 @@ enum class Integrator {
 /// Returns the integrator named "path", "naive", "bidirectional", "vcm", "photons", "whitted", "direct", "unshadowed",
 /// "lights", "environment", "reflection", "normal" or "albedo". Throws Error for any other name.
 Integrator integrator(std::string_view name);
+/// Returns the name that integrator() reads.
 std::string_view integrator_name(Integrator integrator);
 /// Returns whether paths start at the lights, too, so that a sample reaches other pixels than its own.
 inline bool traces_light_paths(Integrator integrator) {
@@ -49,6 +50,7 @@ inline bool connects(Integrator integrator) {
     return integrator == Integrator::kBidirectional || integrator == Integrator::kVcm;
 }
 
+/// Holds the settings of the path tracer.
 struct PathTracerSettings : RenderSettings {
     PathTracerSettings() { samples_per_pixel = 64; }
     Integrator integrator = Integrator::kPath;

@@ -12,6 +12,7 @@
 
 namespace duet {
 
+/// A sphere has a center and a radius, in meters; the radius is positive.
 struct Sphere {
     Vec3 center;
     float radius = 1;
@@ -28,6 +29,7 @@ inline std::array<Vec3, 4> corners(const Quad& q) {
     return {q.corner, q.corner + q.u, (q.corner + q.u) + q.v, q.corner + q.v};
 }
 
+/// A list of quads is one shape; a box has six of them.
 struct QuadList {
     std::vector<Quad> quads;
 };

@@ -12,6 +12,7 @@ struct Tick {
     std::string label;
 };
 
+/// An axis has a range of values and its ticks.
 struct Axis {
     double low = 0, high = 1; ///< visible range; low < high
     bool logarithmic = false;

@@ -37,15 +37,20 @@ template <typename T> constexpr RgbT<T> operator/(RgbT<T> a, T s) { return {a.r 
 template <typename T> constexpr RgbT<T>& operator+=(RgbT<T>& a, RgbT<T> b) { return a = a + b; }
 template <typename T> constexpr RgbT<T>& operator*=(RgbT<T>& a, RgbT<T> b) { return a = a * b; }
 template <typename T> constexpr RgbT<T>& operator*=(RgbT<T>& a, T s) { return a = a * s; }
+/// Interpolates linearly from a at t = 0 to b at t = 1. The result is exact at both ends.
 template <typename T> constexpr RgbT<T> lerp(RgbT<T> a, RgbT<T> b, T t) { return a * (T(1) - t) + b * t; }
 
+/// Returns the largest channel.
 template <typename T> constexpr T max_component(RgbT<T> c) { return max(max(c.r, c.g), c.b); }
+/// Returns the mean of the three channels.
 template <typename T> constexpr T average(RgbT<T> c) { return (c.r + c.g + c.b) * T(1.0 / 3.0); }
 /// Returns the relative luminance Y for Rec. 709 primaries (ITU-R BT.709-6, §3.2).
 template <typename T> constexpr T luminance(RgbT<T> c) { return T(0.2126) * c.r + T(0.7152) * c.g + T(0.0722) * c.b; }
+/// Returns whether all channels are exactly 0.
 template <typename T> constexpr MaskOf<T> is_black(RgbT<T> c) {
     return (c.r == T(0)) & (c.g == T(0)) & (c.b == T(0));
 }
+/// Returns a where the condition holds, else b.
 template <typename T> RgbT<T> select(MaskOf<T> condition, RgbT<T> a, RgbT<T> b) {
     return {select(condition, a.r, b.r), select(condition, a.g, b.g), select(condition, a.b, b.b)};
 }
@@ -55,6 +60,7 @@ inline Rgb direction_color(Vec3 n) {
     const auto channel = [](float component) { return max((component + 1) * 0.5f, 0.0f); };
     return {channel(n.x), channel(n.y), channel(n.z)};
 }
+/// Returns whether no channel is NaN or infinite.
 template <Arithmetic T> bool is_finite(RgbT<T> c) {
     return std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b);
 }

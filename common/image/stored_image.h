@@ -33,6 +33,7 @@ struct StoredImage {
 inline constexpr int kMaxImageSide = 32768;
 inline constexpr long long kMaxImagePixels = 90'000'000;
 
+/// Holds the options of the formats that have any.
 struct WriteOptions {
     bool ascii_ppm = false; ///< P3 instead of P6
     int jpeg_quality = 95;  ///< 1 to 100

@@ -7,6 +7,7 @@
 
 namespace duet {
 
+/// Holds a sampled direction from a point p to a shape.
 template <typename T> struct SolidAngleSampleT {
     Vec3T<T> wi; ///< unit direction from p to the shape
     T distance;  ///< distance to the shape along wi

@@ -15,6 +15,7 @@
 
 namespace duet {
 
+/// ConstantEnvironment has the same radiance in all directions, in W/(m² sr).
 struct ConstantEnvironment {
     Rgb radiance{0.0f};
 };
@@ -36,6 +37,7 @@ struct ImageEnvironment {
 };
 using Environment = std::variant<ConstantEnvironment, SkyEnvironment, ImageEnvironment>;
 
+/// Holds a sampled direction to the environment, and the radiance from there in W/(m² sr).
 struct EnvironmentSample {
     Vec3 wi; ///< direction to the environment, unit
     Rgb radiance;
@@ -62,6 +64,7 @@ float pdf(const Environment& environment, Vec3 w);
 /// Returns the irradiance, in W/m², that the sampled light would cause on a surface that faced all of it. The light
 /// chooser uses it as the environment's weight. The result is 0 where nothing is sampled.
 float sampled_irradiance(const Environment& environment);
+/// Returns whether no light comes from any direction.
 bool is_black(const Environment& environment);
 /// Returns the radiance averaged over all directions. It is exact except for the bilinear filtering between an
 /// image's rows.

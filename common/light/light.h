@@ -11,6 +11,7 @@
 
 namespace duet {
 
+/// A point light emits equally in all directions.
 struct PointLight {
     Vec3 position;
     Rgb intensity; ///< W/sr

@@ -23,6 +23,7 @@ struct LightBounds {
     float intensity = 0;   ///< sum of the lights' intensities along their normals, W/sr, averaged over channels
 
     bool empty() const { return cos_normals > 1; }
+    /// Grows the bounds so that they also bound the lights of `other`, which may be empty.
     void extend(const LightBounds& other);
 };
 

@@ -8,6 +8,7 @@
 
 namespace duet {
 
+/// Holds the corners of a triangle, counter-clockwise seen from its front.
 struct LightTriangle {
     Vec3 a, b, c;
 };
@@ -22,6 +23,8 @@ QuadSeen<double> area_seen(const Quad& quad, Vec3d p);
 
 /// Flat shapes are sampled uniformly by area.
 std::optional<SolidAngleSample> sample_solid_angle(const LightTriangle& triangle, Vec3d p, Vec2d u);
+/// Returns the density by solid angle, from p, with which sample_solid_angle draws the direction to the point q of the
+/// shape.
 double solid_angle_pdf(const LightTriangle& triangle, Vec3d p, Vec3d q);
 
 std::optional<SolidAngleSample> sample_solid_angle(const Quad& quad, Vec3d p, Vec2d u);

@@ -21,6 +21,7 @@ namespace duet {
 /// Refraction scales radiance by η² and leaves importance unchanged (Veach 1997, §5.2).
 enum class TransportMode { kRadiance, kImportance };
 
+/// Holds a sampled direction wi and its weight.
 template <typename T> struct BsdfSampleT {
     Vec3T<T> wi;
     RgbT<T> weight;        ///< f·|cos θᵢ| / pdf
@@ -48,11 +49,15 @@ template <typename T> OptionalBsdfSample<T> sample_where(MaskOf<T> valid, const 
     else
         return {valid, sample};
 }
+/// Returns whether there is a sample; for a batch, in which lanes.
 inline bool has_sample(const std::optional<BsdfSample>& sample) { return sample.has_value(); }
 template <typename T> MaskOf<T> has_sample(const BsdfSampleLanes<T>& lanes) { return lanes.valid; }
 
+/// Returns the cosine between the normal and w, negative below the surface.
 template <typename T> T cos_theta(Vec3T<T> w) { return w.z; }
+/// Returns the absolute cosine between the normal and w.
 template <typename T> T abs_cos_theta(Vec3T<T> w) { return abs(w.z); }
+/// Returns whether a and b are on the same side of the surface. It is false where one of them is parallel to it.
 template <typename T> MaskOf<T> same_hemisphere(Vec3T<T> a, Vec3T<T> b) { return a.z * b.z > T(0); }
 /// Mirrors w about the normal.
 template <typename T> Vec3T<T> mirrored(Vec3T<T> w) { return {-w.x, -w.y, w.z}; }

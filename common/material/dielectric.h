@@ -47,6 +47,7 @@ extern template struct DielectricBsdfT<float>; // in dielectric.cpp
 /// would be computed from the difference of two nearly equal directions, so such boundaries are treated as smooth.
 inline bool is_index_matched(float eta) { return std::abs(eta - 1) <= 1e-3f; }
 
+/// Describes clear or tinted glass and liquids: smooth, rough or as a thin sheet.
 struct Dielectric {
     float ior = 1.5f; ///< index of refraction inside over outside, in [1, 4]
     RgbSlot tint{Rgb(1.0f)};
@@ -61,8 +62,11 @@ struct Dielectric {
 
     bool smooth() const { return roughness.constant() && sqr(roughness.value) < kSmoothAlpha; }
     bool has_interior_medium() const { return !thin && (!is_black(absorption) || priority > 0); }
+    /// Returns the smooth BSDF at a point. bsdf_at calls this function or one of the next two, as the material needs.
     DielectricBsdf at(const TextureSet& textures, const SurfacePoint& point) const;
+    /// Returns the BSDF of a thin sheet at a point.
     ThinDielectricBsdf thin_at(const TextureSet& textures, const SurfacePoint& point) const;
+    /// Returns the rough BSDF at a point.
     RoughDielectricBsdf rough_at(const TextureSet& textures, const SurfacePoint& point) const;
 };
 

@@ -31,13 +31,16 @@ template <typename T> struct DiffuseBsdfT {
 };
 using DiffuseBsdf = DiffuseBsdfT<float>;
 
+/// Describes a matte surface; where it is rough, it looks like clay or plaster.
 struct Diffuse {
     RgbSlot albedo{Rgb(0.8f)}; ///< each channel in [0, 1]
     ScalarSlot roughness{0};   ///< in [0, 1]; a value above 0 selects RoughDiffuseBsdf
 
     bool rough() const { return !roughness.constant() || roughness.value > 0; }
 
+    /// Returns Lambert's BSDF at a point.
     DiffuseBsdf at(const TextureSet& textures, const SurfacePoint& point) const;
+    /// Returns the rough BSDF at a point.
     RoughDiffuseBsdf rough_at(const TextureSet& textures, const SurfacePoint& point) const;
 };
 

@@ -6,6 +6,7 @@
 
 namespace duet {
 
+/// Describes a surface that emits light, and may also reflect some diffusely.
 struct Emissive {
     Rgb radiance{1.0f};        ///< W/(m² sr), equal in all directions of the front side; zero on the back
     bool two_sided = false;    ///< whether the back emits too
@@ -13,6 +14,7 @@ struct Emissive {
     /// This is the index into TextureSet::textures of a texture that multiplies the radiance, or −1 for none.
     std::int32_t radiance_texture = -1;
 
+    /// Returns the BSDF of the light that the surface reflects at a point.
     DiffuseBsdf at(const TextureSet& textures, const SurfacePoint& point) const;
     /// Returns the radiance that the point emits towards w (of any length), in W/(m² sr).
     Rgb emitted(const TextureSet& textures, const SurfacePoint& point, Vec3 w) const {

@@ -13,6 +13,7 @@
 
 namespace duet {
 
+/// Returns the squared sine of the angle between the normal and w.
 template <typename T> T sin2_theta(Vec3T<T> w) { return w.x * w.x + w.y * w.y; }
 
 /// Returns D(h), the density of microfacet normals by solid angle: ∫ D(h) cos θ_h dh = 1 over the hemisphere (Walter

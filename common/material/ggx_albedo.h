@@ -24,6 +24,7 @@ struct GgxAlbedo {
 // is in [0, 1]; values below 1e-4 count as 1e-4. cosine is between normal and viewer, in [0, 1]. The error of the
 // energy is at most 0.006, and that of energy·schlick_weight at most 0.015 (tested).
 
+/// Returns the directional albedo of single scattering.
 GgxAlbedo ggx_albedo(float alpha, float cosine);
 /// Returns 1 − energy: the fraction of light that single scattering misses, because it hits a second microfacet.
 float ggx_energy_loss(float alpha, float cosine);
@@ -43,6 +44,7 @@ struct GgxAverageAlbedo {
 
     float albedo(float f0) const { return f0 * (1 - energy_loss) + (1 - f0) * schlick_weight; }
 };
+/// Returns the averages over all directions.
 GgxAverageAlbedo ggx_average_albedo(float alpha);
 
 /// Returns the cosine-weighted mean over the hemisphere of Schlick's Fresnel term.

@@ -48,8 +48,11 @@ struct LayeredBsdf {
     };
     explicit LayeredBsdf(const Description& d);
 
+    /// Returns the BSDF without the cosine; black where wo and wi are on different sides.
     Rgb eval(Vec3 wo, Vec3 wi, TransportMode mode) const;
+    /// Draws wi. `lobe` in [0, 1) chooses the layer.
     std::optional<BsdfSample> sample(Vec3 wo, float lobe, Vec2 u, TransportMode mode) const;
+    /// Returns the density, by solid angle, with which sample draws wi.
     float pdf(Vec3 wo, Vec3 wi, TransportMode mode) const;
 
     /// Albedos holds the directional albedo of each layer: the fraction of uniform incident light that the layer
@@ -57,6 +60,7 @@ struct LayeredBsdf {
     struct Albedos {
         Rgb diffuse, glossy, coat;
     };
+    /// Returns the albedos for a viewer at the angle of this cosine, in [0, 1].
     Albedos albedos(float cosine) const;
 };
 

@@ -20,15 +20,19 @@ using Material = std::variant<Diffuse, Metal, Dielectric, Emissive, Principled, 
 using Bsdf = std::variant<DiffuseBsdf, RoughDiffuseBsdf, MetalBsdf, LayeredBsdf, RoughDielectricBsdf, DielectricBsdf,
                           ThinDielectricBsdf>;
 
+/// Returns the BSDF of a material at a point, where textures have been evaluated.
 Bsdf bsdf_at(const Material& material, const TextureSet& textures, const SurfacePoint& point);
 
+/// Returns the BSDF without the cosine; 0 for specular lobes.
 inline Rgb eval(const Bsdf& bsdf, Vec3 wo, Vec3 wi, TransportMode mode = TransportMode::kRadiance) {
     return std::visit([&](const auto& b) { return b.eval(wo, wi, mode); }, bsdf);
 }
+/// Draws a direction wi; nothing where the surface absorbs the light. lobe and u are in [0, 1).
 inline std::optional<BsdfSample> sample(const Bsdf& bsdf, Vec3 wo, float lobe, Vec2 u,
                                         TransportMode mode = TransportMode::kRadiance) {
     return std::visit([&](const auto& b) { return b.sample(wo, lobe, u, mode); }, bsdf);
 }
+/// Returns the density, by solid angle, with which sample draws wi; 0 for specular lobes.
 inline float pdf(const Bsdf& bsdf, Vec3 wo, Vec3 wi, TransportMode mode = TransportMode::kRadiance) {
     return std::visit([&](const auto& b) { return b.pdf(wo, wi, mode); }, bsdf);
 }

@@ -30,13 +30,16 @@ template <typename T> struct MetalBsdfT {
         : reflectance(reflectance_), alpha(alpha_), n(n_), k(k_), multiple_scattering(multiple_) {}
 
     bool smooth() const { return all(alpha < T(kSmoothAlpha)); }
+    /// Returns the reflectance of a microfacet. The cosine is that between its normal and wo.
     RgbT<T> fresnel(T cosine) const;
     /// Returns the directional albedo: the fraction of uniform incident light that is reflected to a viewer at that
     /// angle. A rough named conductor uses Schlick's term here.
     RgbT<T> directional_albedo(T cosine) const;
+    /// Returns the BSDF without the cosine; black for a smooth metal, and where wo and wi are on different sides.
     RgbT<T> eval(Vec3T<T> wo, Vec3T<T> wi, TransportMode mode) const;
     /// Draws wi. `lobe` in [0, 1) chooses between one reflection and several.
     OptionalBsdfSample<T> sample(Vec3T<T> wo, T lobe, Vec2T<T> u, TransportMode mode) const;
+    /// Returns the density, by solid angle, with which sample draws wi; 0 for a smooth metal.
     T pdf(Vec3T<T> wo, Vec3T<T> wi, TransportMode mode) const;
 
 private:
@@ -109,11 +112,13 @@ T MetalBsdfT<T>::pdf_above(Vec3T<T> wo, Vec3T<T> wi, const MicrofacetT<T>& h, T 
 }
 extern template struct MetalBsdfT<float>; // in metal.cpp
 
+/// Describes a metal by its reflectance at normal incidence, or by the complex index of a named conductor.
 struct Metal {
     RgbSlot reflectance{Rgb(0.9f)}; ///< value at normal incidence, each channel in [0, 1]
     ScalarSlot roughness{0};        ///< perceptual, in [0, 1]; GGX alpha = roughness²
     Conductor conductor{};          ///< replaces the reflectance where it exists
 
+    /// Returns the BSDF at a point.
     MetalBsdf at(const TextureSet& textures, const SurfacePoint& point) const;
 };
 

@@ -19,6 +19,7 @@ template <typename T> struct MicrofacetT {
     T cosine;
 };
 using Microfacet = MicrofacetT<float>;
+/// Returns the microfacet that reflects wo to wi.
 template <typename T> MicrofacetT<T> microfacet(Vec3T<T> wo, Vec3T<T> wi) {
     const Vec3T<T> sum = wo + wi;
     const T size = length(sum);

@@ -19,6 +19,7 @@ struct Principled {
     ScalarSlot clearcoat{0};       ///< fraction of the surface that a clear coat covers, in [0, 1]
     ScalarSlot clearcoat_roughness{0};
 
+    /// Returns the BSDF at a point.
     LayeredBsdf at(const TextureSet& textures, const SurfacePoint& point) const;
 };
 
@@ -29,6 +30,7 @@ struct Coated {
     ScalarSlot roughness{0.1f}; ///< roughness of the coat, perceptual
     float ior = 1.5f;           ///< index of refraction of the coat, in [1, 4]
 
+    /// Returns the BSDF at a point.
     LayeredBsdf at(const TextureSet& textures, const SurfacePoint& point) const;
     /// Returns the fraction of diffuse light from below that the coat reflects back down.
     float internal_reflectance() const;

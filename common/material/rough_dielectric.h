@@ -14,10 +14,12 @@ struct RoughDielectricBsdf {
     Rgb tint;    ///< factor of transmitted light at each crossing
     float alpha; ///< GGX width: roughness², at least Dielectric::kSmoothAlpha
 
+    /// Returns the BSDF without the cosine, for reflection and for refraction.
     Rgb eval(Vec3 wo, Vec3 wi, TransportMode mode) const;
     /// Draws wi: `lobe` in [0, 1) chooses among reflection and refraction at a visible microfacet, and multiple
     /// scattering.
     std::optional<BsdfSample> sample(Vec3 wo, float lobe, Vec2 u, TransportMode mode) const;
+    /// Returns the density, by solid angle, with which sample draws wi.
     float pdf(Vec3 wo, Vec3 wi, TransportMode mode) const;
 };
 

@@ -14,10 +14,12 @@ struct RoughDiffuseBsdf {
     Rgb albedo;      ///< albedo of each facet, in [0, 1]
     float roughness; ///< in [0, 1]; Oren and Nayar's deviation of slopes is at most about roughness·π/2 radians
 
+    /// Returns the BSDF without the cosine; black where wo and wi are on different sides.
     Rgb eval(Vec3 wo, Vec3 wi, TransportMode mode) const;
     /// Draws wi cosine-distributed or uniform over wo's side. The uniform part grows with roughness and towards
     /// grazing wo.
     std::optional<BsdfSample> sample(Vec3 wo, float lobe, Vec2 u, TransportMode mode) const;
+    /// Returns the density, by solid angle, with which sample draws wi.
     float pdf(Vec3 wo, Vec3 wi, TransportMode mode) const;
     /// Returns the exact directional albedo, in [0, 1]: the fraction of uniform incident light that is reflected to a
     /// viewer at this angle.

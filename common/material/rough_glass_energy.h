@@ -37,7 +37,9 @@ public:
         const RoughGlassTables::Surface* table = nullptr; ///< null: no lobe
         float mean_energy_loss = 0;
     };
+    /// Returns the lobe on the dense or on the thin side.
     Lobe lobe(bool dense) const;
+    /// Returns a lobe's energy_loss; 0 where there is no lobe. The cosine is in [0, 1].
     float energy_loss(const Lobe& lobe, float cosine) const;
 
 private:

@@ -37,6 +37,7 @@ struct ThinDielectricBsdf {
 
     Rgb eval(Vec3, Vec3, TransportMode) const { return Rgb(); }
     float pdf(Vec3, Vec3, TransportMode) const { return 0; }
+    /// Chooses between the mirrored and the straight direction, in proportion to their fractions.
     std::optional<BsdfSample> sample(Vec3 wo, float lobe, Vec2 u, TransportMode mode) const;
 };
 

@@ -40,7 +40,9 @@ constexpr std::uint64_t hash_combine(std::uint64_t state, std::uint64_t value) {
     return mix_bits((state + kGoldenGamma) ^ mix_bits(value + 0xd1b54a32d192ed03u));
 }
 
+/// Returns the upper 32 bits.
 constexpr std::uint32_t high_bits(std::uint64_t x) { return static_cast<std::uint32_t>(x >> 32); }
+/// Returns the lower 32 bits.
 constexpr std::uint32_t low_bits(std::uint64_t x) { return static_cast<std::uint32_t>(x); }
 
 /// Converts the upper 24 bits to a float in [0, 1). Each result is a multiple of 2^-24, and 1 is never reached. The

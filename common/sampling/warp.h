@@ -58,6 +58,7 @@ template <typename T> Vec3T<T> cosine_hemisphere(Vec2T<T> u) {
     const T gap = max(one - r, T(0x1p-24f));
     return {disk.x, disk.y, sqrt(gap * (one + r))};
 }
+/// Returns the density, by solid angle, of cosine_hemisphere; 0 below the surface.
 template <typename T> T cosine_hemisphere_pdf(T cos_theta) { return max(cos_theta, T(0.0f)) * T(kInvPi); }
 
 /// Returns a unit direction of the whole sphere with the uniform density 1/4π.
@@ -76,6 +77,7 @@ template <Arithmetic T> Vec3T<T> uniform_cone(Vec2T<T> u, T one_minus_cos) {
     const T r = safe_sqrt(gap * (T(2) - gap));
     return {r * circle.x, r * circle.y, T(1) - gap};
 }
+/// Returns the density, by solid angle, of uniform_cone inside the cone.
 template <Arithmetic T> T uniform_cone_pdf(T one_minus_cos) { return T(1) / (T(2 * kPiDouble) * one_minus_cos); }
 
 /// Returns the barycentric coordinates of b and c of a point that is uniform on a triangle abc (Heitz 2019, "A

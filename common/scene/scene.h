@@ -54,6 +54,7 @@ struct SceneNeeds {
     bool instances = false; ///< an object whose transform is not the identity
 };
 
+/// A Scene is all that a file describes. It does not change once it is loaded.
 struct Scene {
     std::filesystem::path path; ///< file that the scene was loaded from
     /// These are all files that were read, in order: `path`, then meshes, MTL files and images.
@@ -87,6 +88,7 @@ void finish_scene(Scene& scene);
 struct ObjectTransform {
     Mat4 to_world, to_object;
 };
+/// Returns the transform at a time in [0, 1]. Matrix entries are interpolated linearly between both ends of the motion.
 ObjectTransform object_transform(const Object& object, float time);
 
 /// Transforms a ray from world space to object space. The direction is not normalized, so t has the same meaning in
@@ -118,6 +120,7 @@ struct PrimitiveVertices {
     std::array<Vec3, 4> p;
     int count = 0;
 };
+/// Returns the vertices of a primitive of a mesh or a list of quads, not of a sphere.
 PrimitiveVertices primitive_vertices(const Shape& shape, std::uint32_t primitive);
 
 /// Loads a scene file (.json) or a bare mesh (.obj), for which it adds a camera, a ground, a sky and a sun. Throws

@@ -6,7 +6,7 @@
 
 namespace duet {
 
-/// Returns the text with \xNN for each byte of a control character (ASCII and C1, which U+0080 to U+009F encode) and
+/// Returns the text with `\xNN` for each byte of a control character (ASCII and C1, which U+0080 to U+009F encode) and
 /// for each byte that is not part of valid UTF-8. The result is one line.
 std::string escaped(std::string_view text);
 

@@ -5,6 +5,7 @@
 
 namespace duet {
 
+/// Measures wall-clock time.
 class Stopwatch {
 public:
     /// Returns the seconds since construction or the last call of restart() or lap().

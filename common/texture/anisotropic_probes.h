@@ -13,6 +13,8 @@ namespace duet {
 /// A footprint whose length exceeds its width by more than this factor is widened, so that the image blurs instead of
 /// flickering.
 inline constexpr int kMaxAnisotropy = 16;
+/// Returns the largest ratio of a footprint's length to its width that a filter resolves; 1 for filters of round
+/// footprints.
 inline int max_anisotropy(TextureFilter filter) { return filter == TextureFilter::kAnisotropic ? kMaxAnisotropy : 1; }
 
 /// AnisotropicProbesT describes `count` probes that are `step` texels of the image apart. A probe interpolates between

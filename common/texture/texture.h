@@ -14,6 +14,7 @@ namespace duet {
 /// the sample's footprint (SurfacePoint::duv_dx, duv_dy): trilinear as if it were a circle as wide as the footprint
 /// is long, and anisotropic by its true shape.
 enum class TextureFilter { kNearest, kBilinear, kTrilinear, kAnisotropic };
+/// Returns whether the filter averages over the sample's footprint.
 inline bool uses_footprint(TextureFilter filter) { return filter >= TextureFilter::kTrilinear; }
 
 /// ImageTexture is an image over uv, with (0, 0) at the lower left corner. It repeats outside [0, 1].

@@ -5,6 +5,7 @@
 
 namespace duet {
 
+/// A frame is a right-handed orthonormal basis. It converts vectors between its local space and the world.
 template <typename T> struct FrameT {
     Vec3T<T> s{T(1), T(0), T(0)}, t{T(0), T(1), T(0)}, n{T(0), T(0), T(1)};
 

@@ -41,6 +41,7 @@ template <typename T> constexpr Vec4T<T> operator*(const Mat4T<T>& m, Vec4T<T> v
     return {row(0), row(1), row(2), row(3)};
 }
 
+/// Returns the transposed matrix.
 template <typename T> constexpr Mat4T<T> transpose(const Mat4T<T>& a) {
     Mat4T<T> result;
     for (std::size_t r = 0; r < 4; ++r)
@@ -93,6 +94,7 @@ template <typename T> constexpr Mat4T<T> inverse_affine(const Mat4T<T>& a) {
     return r;
 }
 
+/// Returns the matrix that moves points by t.
 template <typename T> constexpr Mat4T<T> translation(Vec3T<T> t) {
     Mat4T<T> r;
     r[0][3] = t.x;
@@ -100,6 +102,7 @@ template <typename T> constexpr Mat4T<T> translation(Vec3T<T> t) {
     r[2][3] = t.z;
     return r;
 }
+/// Returns the matrix that scales each axis by a component of s.
 template <typename T> constexpr Mat4T<T> scaling(Vec3T<T> s) {
     Mat4T<T> r;
     r[0][0] = s.x;

@@ -23,26 +23,36 @@ concept Arithmetic = std::is_arithmetic_v<T>;
 /// MaskOf is the type of a condition on numbers of type T: bool, or a batch of one bool per lane. Conditions are
 /// combined by `&` and `|`, which batches have, too.
 template <typename T> using MaskOf = decltype(std::declval<T>() < std::declval<T>());
-/// These return whether the condition holds in any lane, in all lanes and in no lane.
+/// Returns whether the condition holds in any lane. A bool is a single lane.
 constexpr bool any(bool condition) { return condition; }
+/// Returns whether the condition holds in all lanes.
 constexpr bool all(bool condition) { return condition; }
+/// Returns whether the condition holds in no lane.
 template <typename Mask> constexpr bool none_of(const Mask& condition) { return !any(condition); }
 
 /// Returns a where the condition holds, else b. Both arguments are always evaluated.
 template <Arithmetic T> constexpr T select(bool condition, T a, T b) { return condition ? a : b; }
+/// Returns the smaller argument, and a where one is NaN.
 template <Arithmetic T> constexpr T min(T a, T b) { return b < a ? b : a; }
+/// Returns the larger argument, and a where one is NaN.
 template <Arithmetic T> constexpr T max(T a, T b) { return a < b ? b : a; }
+/// Returns the square root; NaN for a negative number.
 template <Arithmetic T> inline T sqrt(T x) { return std::sqrt(x); }
+/// Returns the absolute value.
 template <Arithmetic T> inline T abs(T x) { return std::abs(x); }
 
+/// Returns x².
 template <typename T> constexpr T sqr(T x) { return x * x; }
+/// Returns x limited to [low, high], where low <= high.
 template <typename T> constexpr T clamp(T x, T low, T high) { return min(max(x, low), high); }
 /// Interpolates linearly from a at t = 0 to b at t = 1. The result is exact at both ends.
 template <typename T> constexpr T lerp(T a, T b, T t) { return (T(1) - t) * a + t * b; }
 /// Returns the square root of max(x, 0). Use it for values that rounding may have made slightly negative.
 template <typename T> T safe_sqrt(T x) { return sqrt(max(x, T(0))); }
 
+/// Converts degrees to radians.
 constexpr double radians(double degrees) { return degrees * (kPiDouble / 180.0); }
+/// Converts radians to degrees.
 constexpr double degrees(double radians) { return radians * (180.0 / kPiDouble); }
 
 } // namespace duet

@@ -45,6 +45,7 @@ inline constexpr std::size_t kDoubleLanes = sizeof(DoubleBatch) / sizeof(double)
 /// A narrow batch has as many float lanes as a DoubleBatch has lanes.
 using NarrowBatch = FloatBatch<kDoubleLanes>;
 
+/// Widens each lane to double, which is exact.
 inline DoubleBatch to_doubles(NarrowBatch floats) {
 #if XSIMD_WITH_AVX512F
     return _mm512_cvtps_pd(floats);

@@ -7,6 +7,7 @@
 
 namespace duet {
 
+/// A Vec2 holds texture coordinates, a position in pixels, or a sample in [0, 1)².
 template <typename T> struct Vec2T {
     T x{}, y{};
 
@@ -31,6 +32,7 @@ template <typename T> struct Vec3T {
     friend bool operator==(const Vec3T&, const Vec3T&) = default;
 };
 
+/// A Vec4 holds homogeneous coordinates.
 template <typename T> struct Vec4T {
     T x{}, y{}, z{}, w{};
 
@@ -70,29 +72,37 @@ template <typename T> constexpr Vec4T<T> operator+(Vec4T<T> a, Vec4T<T> b) {
 }
 template <typename T> constexpr Vec4T<T> operator*(Vec4T<T> a, T s) { return {a.x * s, a.y * s, a.z * s, a.w * s}; }
 
+/// Returns the smaller of each pair of components.
 template <typename T> constexpr Vec3T<T> min(Vec3T<T> a, Vec3T<T> b) {
     return {min(a.x, b.x), min(a.y, b.y), min(a.z, b.z)};
 }
 /// Broadcasts a vector of scalars to all lanes of a batch.
 template <typename T, Arithmetic S> constexpr Vec3T<T> broadcast(Vec3T<S> v) { return {T(v.x), T(v.y), T(v.z)}; }
+/// Returns the larger of each pair of components.
 template <typename T> constexpr Vec3T<T> max(Vec3T<T> a, Vec3T<T> b) {
     return {max(a.x, b.x), max(a.y, b.y), max(a.z, b.z)};
 }
+/// Returns the absolute value of each component.
 template <typename T> Vec3T<T> abs(Vec3T<T> a) { return {abs(a.x), abs(a.y), abs(a.z)}; }
+/// Returns a where the condition holds, else b.
 template <typename T, typename Mask> Vec3T<T> select(Mask condition, Vec3T<T> a, Vec3T<T> b) {
     return {select(condition, a.x, b.x), select(condition, a.y, b.y), select(condition, a.z, b.z)};
 }
+/// Returns the largest component.
 template <typename T> constexpr T max_component(Vec3T<T> a) { return max(max(a.x, a.y), a.z); }
 /// Interpolates linearly from a at t = 0 to b at t = 1. The result is exact at both ends.
 template <typename T> constexpr Vec3T<T> lerp(Vec3T<T> a, Vec3T<T> b, T t) { return a * (T(1) - t) + b * t; }
 
 // Products and lengths -----------------------------------------------------------------------------------------------
 
+/// Returns the sum of the products of the components: |a| |b| times the cosine between a and b.
 template <typename T> constexpr T dot(Vec2T<T> a, Vec2T<T> b) { return a.x * b.x + a.y * b.y; }
 template <typename T> constexpr T dot(Vec3T<T> a, Vec3T<T> b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+/// Returns the vector that is perpendicular to both, as long as the parallelogram's area, by the right-hand rule.
 template <typename T> constexpr Vec3T<T> cross(Vec3T<T> a, Vec3T<T> b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+/// Returns |a|², which overflows in float for lengths beyond 1.8e19.
 template <typename T> constexpr T length_squared(Vec3T<T> a) { return dot(a, a); }
 /// Returns the Euclidean length. In float it overflows to infinity for lengths beyond 1.8e19, where the squared length
 /// does.
@@ -105,6 +115,7 @@ template <typename T> Vec3T<T> normalize_scaled(Vec3T<T> a) { return normalize(a
 /// Returns w mirrored about the unit normal n. Both w and the result point away from the surface.
 template <typename T> constexpr Vec3T<T> reflect(Vec3T<T> w, Vec3T<T> n) { return n * (T(2) * dot(w, n)) - w; }
 
+/// Returns whether no component is NaN or infinite.
 template <typename T> MaskOf<T> is_finite(Vec3T<T> a) { // NaN is below no number
     const Vec3T<T> size = abs(a);
     const T limit(std::numeric_limits<float>::infinity());

@@ -20,6 +20,7 @@ struct BaselineRow {
     bool less_accurate = false, slower = false, more_accurate = false, faster = false;
 };
 
+/// Compares the rows of two runs.
 struct BaselineComparison {
     std::vector<BaselineRow> rows;
     std::vector<std::string> unmatched; ///< rows of this run that are not in the baseline

@@ -12,6 +12,7 @@
 
 namespace duet::compare {
 
+/// Holds the options of `compare bench`.
 struct BenchOptions {
     std::vector<std::filesystem::path> scenes;
     std::filesystem::path folder;     ///< output folder for the reports and plots; empty: none

@@ -23,8 +23,9 @@ struct Estimate {
     double relative_error = 0; ///< standard error / value; infinity: a single measurement
     double dof = 1;            ///< degrees of freedom of relative_error
 
-    /// Return the ends of the confidence band; 0 and infinity if the error is unknown.
+    /// Returns the lower end of the confidence band; 0 if the error is unknown.
     double low(double confidence = 0.95) const;
+    /// Returns the upper end of the confidence band; infinity if the error is unknown.
     double high(double confidence = 0.95) const;
 };
 

@@ -48,6 +48,7 @@ struct Measurement {
     double bias_share() const;
 };
 
+/// Says how often a row is measured.
 struct BenchMeasureSettings {
     int repeats = 5;         ///< number of seeds, at least 2
     double time_limit = 600; ///< seconds after which no further round starts; two are always made

@@ -42,6 +42,7 @@ class ReferenceCache {
 public:
     explicit ReferenceCache(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
+    /// Returns the file of a reference, whether it exists or not.
     std::filesystem::path path(const std::string& scene_name, const ReferenceKey& key) const;
     /// Returns nothing if there is no file, if it cannot be read, or if it has another key.
     std::optional<Reference> find(const std::string& scene_name, const ReferenceKey& key) const;

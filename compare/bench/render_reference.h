@@ -14,6 +14,7 @@
 
 namespace duet::compare {
 
+/// Holds the settings of a reference.
 struct ReferenceSettings {
     std::filesystem::path folder; ///< cache folder
     int spp = 1024;
@@ -40,11 +41,14 @@ CachedReference reference_by(const std::string& estimator, const Scene& scene, c
 /// Number of seeds for a reference by another renderer. Each seed gets an equal fraction of the samples. The
 /// spread of the images yields the variance, with kReferenceSeeds − 1 degrees of freedom per pixel.
 inline constexpr int kReferenceSeeds = 8;
+/// Says by what a reference is rendered.
 struct EstimatorId {
     std::string name;    ///< name, version and program are as in ReferenceKey
     int version = 0;
     std::string program;
 };
+/// Returns a reference by another renderer, which `render` calls: kReferenceSeeds times, if it is not in the cache. The
+/// result is stored there.
 CachedReference reference_by_seeds(const EstimatorId& estimator, const Scene& scene, const View& view,
                                    const ReferenceSettings& settings,
                                    const std::function<ImageRgb(int spp, std::uint64_t seed)>& render,

@@ -21,6 +21,7 @@ struct IndependentCheck {
     bool failed() const { return !check.consistent() && approximations.empty(); }
 };
 
+/// Holds all rows of one scene, and the reference that they are compared with.
 struct SceneResult {
     std::string scene;      ///< file name as given
     std::string scene_hash; ///< hash_scene_files

@@ -9,6 +9,7 @@
 
 namespace duet::compare {
 
+/// Holds the options of `compare check`.
 struct CheckOptions {
     std::vector<std::string> scenes; ///< scene files; "-" stands for the names on standard input, one a line
     ImageSize size{0, 0}; ///< image size; 0 × 0: the scene's

@@ -9,6 +9,7 @@
 
 namespace duet::compare {
 
+/// Holds the options of `compare frames`.
 struct FramesOptions {
     std::vector<std::filesystem::path> files; ///< meshes, and scene files (.json) for lit frames
     std::filesystem::path texture; ///< base color of all meshes; empty: gray. The peer does not support it

@@ -20,6 +20,7 @@ struct LitRow {
     /// Wall-clock time of the stages, in the order of the frame. "other" is the rest of the frame.
     std::vector<std::pair<std::string, double>> stages;
 };
+/// Holds the frames of one scene, one row per thread count.
 struct LitScene {
     std::string name;
     double prepare = 0; ///< seconds, once per scene, with the last row's threads
@@ -35,6 +36,7 @@ LitScene measure_lit_frames(const std::filesystem::path& scene, const std::vecto
 
 /// Prints a table of frames, and one of the stages of the last row of each scene.
 void print_lit_frames(std::ostream& out, const std::vector<LitScene>& scenes, const FrameSettings& settings);
+/// Returns scene, prepare_seconds and rows: threads, frame_seconds, and the seconds of each stage.
 nlohmann::json lit_json(const LitScene& scene);
 
 } // namespace duet::compare

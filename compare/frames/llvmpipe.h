@@ -15,6 +15,7 @@ enum class FrameWork {
     kPhong, ///< clears, transforms, shades each pixel by Phong's model, encodes to 8-bit sRGB in memory
     kDepth, ///< clears, transforms, writes depth
 };
+/// Returns the name in tables, "phong" or "depth".
 const char* name(FrameWork work);
 
 /// Draws a scene of one mesh and one sun (frame_scene.h) with OpenGL. Vertices and image stay in buffers of the

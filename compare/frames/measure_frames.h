@@ -19,6 +19,7 @@ struct FrameDifference {
     bool same() const;   ///< whether both images count as the same
 };
 
+/// Holds one row of the table: a work in a view, with a number of threads.
 struct FrameRow {
     FrameWork work = FrameWork::kPhong;
     FrameView view = FrameView::kWhole;
@@ -32,6 +33,7 @@ struct FrameRow {
     ImageRgb image, peer_image; ///< Phong only, sRGB-encoded values
 };
 
+/// Says how frames are measured.
 struct FrameSettings {
     ImageSize size{1920, 1080};
     int repeats = 9;

@@ -36,6 +36,7 @@ struct UnexplainedPixel {
     std::string describe() const;
 };
 
+/// Holds the verdicts on all pixels of two images of hits.
 struct HitAgreement {
     std::int64_t pixels = 0, same = 0, edge = 0, depth_tie = 0, unexplained = 0; ///< pixels is the sum of the others
     Image<HitVerdict> verdicts;

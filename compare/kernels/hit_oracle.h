@@ -28,9 +28,11 @@ public:
 
     explicit HitOracle(const Scene& scene) : scene_(scene) {}
 
+    /// Judges a closest hit, or a miss, by tracing the ray in double precision.
     AnswerVerdict closest(const Ray& ray, const RayResult& ray_result) const;
     /// Judges a closest hit, for a caller that already knows the double-precision ray's first hit.
     AnswerVerdict closest(const Ray& ray, const RayResult& ray_result, const ReferenceHit& first) const;
+    /// Returns the first hit of the ray in double precision.
     ReferenceHit first_hit(const Ray& ray) const;
     /// Judges a shadow ray that ends at t_max and may be blocked by anything.
     AnswerVerdict occluded(const Ray& ray, bool blocked) const;
@@ -91,6 +93,7 @@ struct RayQueries {
 
     bool closest() const { return ends.empty(); }
 };
+/// Judges both results of each ray on which they differ.
 Mismatches compare_results(const HitOracle& oracle, const RayQueries& ray_queries, std::span<const RayResult> ours,
                            std::span<const RayResult> peers, int threads);
 

@@ -20,10 +20,12 @@ using TimedWork = std::function<double()>;
 /// Returns a stopwatch for work on `threads` threads: CPU time for a single thread, wall-clock time for several.
 inline WorkStopwatch work_stopwatch(int threads) { return WorkStopwatch(threads == 1); }
 
+/// Holds one peer's timings beside ours.
 struct PairedTiming {
     MedianRange ratio;           ///< peer's seconds / ours, for measurements adjacent in time: above 1, Duet is faster
     double ours = 0, theirs = 0; ///< seconds of the pair with the median ratio
 };
+/// Holds timings of Duet and of its peers, measured in turns.
 struct InterleavedTimings {
     double seconds = 0; ///< Duet's median, also without peers
     int repeats = 0;

@@ -64,7 +64,9 @@ std::string verdict(const MedianRange& ratio, int repeats);
 /// (null without a peer), best, repeats; for rays also rays and as_rendered; mismatches and leaks if they were
 /// counted.
 nlohmann::json rows_json(const KernelResults& table);
+/// Returns one entry per kernel of the watertightness test: mesh, scene, triangles, kernel, misses, and its faults.
 nlohmann::json watertight_json(const KernelResults& table);
+/// Returns one entry per work: mesh, scene, work, and the faults that the oracle found in a sample of Duet's results.
 nlohmann::json judged_json(const KernelResults& table);
 
 /// Prints one line for each work and thread count, Duet against the peer's best setting. Then prints one line

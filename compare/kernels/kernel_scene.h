@@ -17,6 +17,7 @@ enum class Arrangement {
 };
 /// Returns the arrangement "alone", "room", "clutter" or "instances". Throws Error for another name.
 Arrangement parse_arrangement(const std::string& name);
+/// Returns the name that parse_arrangement reads.
 const char* name_of(Arrangement arrangement);
 
 /// This is a scene of triangle meshes only: one mesh in world space as the single object, or instances of one mesh

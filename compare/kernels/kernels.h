@@ -9,6 +9,7 @@
 
 namespace duet::compare {
 
+/// Holds the options of `compare kernels`.
 struct KernelsOptions {
     std::vector<std::filesystem::path> meshes;
     std::vector<std::string> scenes{"alone", "room"}; ///< for bare meshes; a scene file is always "alone"

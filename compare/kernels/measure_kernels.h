@@ -15,6 +15,7 @@ namespace duet::compare {
 /// Names of the works: build, camera, camera-bulk, bounce, shadow.
 extern const std::vector<std::string> kWorks;
 
+/// Says what is measured, and for how long.
 struct KernelSettings {
     std::vector<std::string> works;   ///< some of kWorks
     std::vector<EmbreeQuality> peers; ///< empty: Duet alone

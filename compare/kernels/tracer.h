@@ -30,11 +30,14 @@ struct RayResult {
 /// Rays are traced in blocks of kBlock. Each block's results have their own cache lines. Otherwise false
 /// sharing between threads would prevent scaling.
 inline constexpr std::size_t kBlock = 256;
+/// Holds the results of one block of rays.
 struct alignas(64) RayResultBlock {
     std::array<RayResult, kBlock> ray_results;
 };
 
+/// Returns the number of blocks of a number of rays.
 inline std::size_t block_count(std::size_t rays) { return (rays + kBlock - 1) / kBlock; }
+/// Returns the rays of a block; the last one may have fewer than kBlock.
 inline std::span<const Ray> block_of(std::span<const Ray> rays, std::size_t block) {
     return rays.subspan(block * kBlock, std::min(kBlock, rays.size() - block * kBlock));
 }
@@ -50,6 +53,7 @@ struct Tracer {
 Tracer duet_closest(const raytrace::Accelerator& accelerator, std::span<const Ray> rays);
 /// Rays per call of duet_batched's tracer, as when the path tracer traces camera rays.
 inline constexpr std::size_t kBatch = 64;
+/// Returns a tracer for closest hits of kBatch rays at a time, by the accelerator's function for many rays.
 Tracer duet_batched(const raytrace::Accelerator& accelerator, std::span<const Ray> rays);
 /// Returns a tracer for occlusion. `ends` is what each ray is aimed at, which does not block it
 /// (`Accelerator::occluded`).

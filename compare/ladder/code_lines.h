@@ -7,6 +7,7 @@
 
 namespace duet::compare {
 
+/// Names a source file, and the rung whose quantity it computes.
 struct CodeFile {
     int rung;              ///< 1 to kRungCount; 0: code that belongs to no rung
     std::string_view side; ///< "raster", "raytrace", or "both" for shared code

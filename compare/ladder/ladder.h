@@ -8,6 +8,7 @@
 
 namespace duet::compare {
 
+/// Holds the options of `compare ladder`.
 struct LadderOptions {
     std::filesystem::path scene, folder;
     SceneOptions scene_options;

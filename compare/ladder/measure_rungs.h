@@ -10,11 +10,13 @@
 
 namespace duet::compare {
 
+/// Holds one pipeline's image of a quantity, and what it cost.
 struct MeasuredRender {
     ImageRgb image; ///< linear; false colors for hits
     double seconds = 0;
     int samples_per_pixel = 0;
 };
+/// Holds a quantity as both pipelines rendered it.
 struct MeasuredQuantity {
     std::string name;
     MeasuredRender raster, raytrace;

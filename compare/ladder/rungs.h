@@ -37,6 +37,7 @@ struct PreparedPair {
     raytrace::PathTracerScene raytrace;
     raytrace::PathTracerSettings raytrace_settings; ///< of the full image, with an even number of samples
 };
+/// Prepares the scene for both pipelines. It must outlive the result. An odd number of raytrace_spp is rounded up.
 PreparedPair prepare_pair(const Scene& scene, const ComparisonSettings& settings);
 
 /// A quantity that both pipelines can render separately: in Rendering::radiance or, for rung 1, in Rendering::hit.
@@ -46,6 +47,7 @@ struct RungRenderers {
     int raster_spp, raytrace_spp;
 };
 
+/// Says what both pipelines render at a rung.
 struct RungPlan {
     std::vector<RungRenderers> renderers;       ///< empty if the scene does not have the rung's light
     std::string raster_method, raytrace_method; ///< how each pipeline computes it, as a sentence

@@ -27,6 +27,7 @@ struct Shares {
     /// attribute, and all shares are 0.
     bool negligible = false;
 };
+/// Returns the shares of the causes in the difference of the images.
 Shares shares(const LadderImages& images);
 
 /// Returns, for one pixel, the numerators of the shares in Shares. They add up to |D|² at that pixel.
@@ -41,6 +42,7 @@ struct CauseMap {
     double visible = 0;                       ///< fraction of all pixels that differ by kVisibleSteps or more
 };
 inline constexpr int kVisibleSteps = 3;
+/// Returns the map of the visible differences.
 CauseMap map_causes(const LadderImages& images);
 
 /// Returns the color of a cause (sRGB-encoded, 0 to 255), from Okabe and Ito's palette for all kinds of color vision.

@@ -14,6 +14,7 @@ namespace duet::compare {
 
 using Encoding = StoredImage::Encoding;
 
+/// Holds all metrics of two images.
 struct ImageMetrics {
     ErrorMetrics errors;
     double ssim = 0;

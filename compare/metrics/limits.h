@@ -8,6 +8,7 @@
 
 namespace duet::compare {
 
+/// Holds a limit that a metric must not exceed.
 struct Limit {
     std::string metric; ///< name of one of figures()
     double value = 0;

@@ -27,6 +27,7 @@ TriangleSoup world_triangles(const Shape& shape, const Mat4& to_world);
 /// texture coordinates of sphere_uv. Its vertices lie on the sphere, at most an angle of π/rings apart. Faces
 /// lie at most 1 − cos(π/(2·rings)) below the sphere's surface.
 TriangleSoup sphere_triangles(int rings);
+/// Returns the number of triangles of sphere_triangles(rings).
 constexpr std::int64_t sphere_triangle_count(int rings) { return 4 * std::int64_t{rings} * (rings - 1); }
 
 /// Returns the total area of the triangles.

@@ -10,6 +10,7 @@
 
 namespace duet::compare {
 
+/// Holds the settings that the peer renders with.
 struct ExportSettings {
     int depth = 64;  ///< maximum number of scattering events; at least 1
     int threads = 1; ///< threads of the peer

@@ -12,6 +12,7 @@ namespace duet::compare {
 
 /// Returns the number, or null for infinity and NaN, which JSON does not have.
 nlohmann::json number_json(double value);
+/// Returns the three channels as an array of numbers, each as number_json does.
 nlohmann::json channels_json(Rgbd color);
 
 /// Returns the metrics by name; a value that is infinite or NaN becomes null. Keys: mse, rmse, mae, psnr (null

@@ -8,6 +8,7 @@
 
 namespace duet::compare {
 
+/// Says what one skip saves, and whether it changes the image.
 struct SkipMeasurement {
     struct Seconds {
         double median = 0, min = 0;
@@ -21,6 +22,7 @@ struct SkipMeasurement {
     bool proved = false;
 };
 
+/// Says how a skip is measured.
 struct SkipMeasureSettings {
     int repeats = 5;
     std::uint64_t seed = 0;

@@ -8,6 +8,7 @@
 
 namespace duet::compare {
 
+/// Holds the options of `compare skip`.
 struct SkipOptions {
     std::filesystem::path scene;
     ImageSize size{0, 0}; ///< 0 × 0: the scene's aspect ratio, with a longer side of 128 pixels

@@ -13,6 +13,7 @@
 
 namespace duet::compare {
 
+/// Says what is rendered, and how often.
 struct StopSettings {
     double error = 1e-3; ///< requested relMSE
     double time = 0;     ///< time limit in seconds for a second experiment; 0: none

@@ -10,6 +10,7 @@
 
 namespace duet::compare {
 
+/// Holds the options of `compare stop`.
 struct StopOptions {
     std::vector<std::filesystem::path> scenes;
     ImageSize size{0, 0}; ///< 0 × 0: the scene's aspect ratio, with a longer side of 96 pixels

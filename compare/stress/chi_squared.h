@@ -16,6 +16,7 @@ namespace duet::compare {
 /// statistic/2).
 double chi_squared_tail(double statistic, int degrees_of_freedom);
 
+/// Holds the result of a chi-squared test.
 struct ChiSquared {
     double p_value = 0; ///< probability of counts at least this unlikely
     std::string details; ///< statistic, degrees of freedom and worst bin, for the failure message
@@ -36,12 +37,14 @@ struct DirectionTest {
     int subdivisions = 8; ///< per cell and axis, for the quadrature of the density
     double axis_power = 1; ///< ring borders are at 1 − cos θ = 2·(i/rings)^power; larger values narrow the rings
 };
+/// Holds the result of a DirectionTest.
 struct DirectionResult {
     ChiSquared chi_squared;
     double integral = 0; ///< of the density over the sphere
 };
 using DirectionSampler = std::function<std::optional<Vec3>(Vec2)>;
 using DirectionDensity = std::function<double(Vec3)>;
+/// Runs the test. `sample` gets points of [0, 1)², and `pdf` returns the density by solid angle.
 DirectionResult test_directions(const DirectionTest& test, const DirectionSampler& sample, const DirectionDensity& pdf);
 
 } // namespace duet::compare

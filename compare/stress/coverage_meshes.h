@@ -18,6 +18,7 @@ raster::FixedPoint point_in(TrialRandom& random, const Window& window);
 /// Selects the kind of a random triangle in [0, kTriangleKinds). Its corners or edges pass near or through samples of
 /// the window.
 inline constexpr std::uint32_t kTriangleKinds = 8;
+/// Returns a triangle of a kind in [0, kTriangleKinds), of either orientation.
 GridTriangle random_triangle(TrialRandom& random, const Window& window, std::uint32_t kind);
 
 /// These meshes are topological disks whose border surrounds the window once. Whatever their inner vertices are, each

@@ -38,6 +38,7 @@ std::array<Vec3, 3> random_visible(TrialRandom& random, const TrialView& view);
 /// Corner depths are up to 10 times apart.
 std::array<Vec3, 3> random_sliver(TrialRandom& random, const TrialView& view);
 
+/// Returns a mesh of one triangle.
 inline Mesh one_triangle(const std::array<Vec3, 3>& corners) {
     Mesh mesh;
     mesh.positions.assign(corners.begin(), corners.end());

@@ -23,6 +23,7 @@ struct Placement {
     float scale = 1;
 };
 
+/// Holds a random scene and a view of it.
 struct TrialScene {
     Scene scene;
     View view; ///< from outside or inside; perspective or (one in eight) orthographic

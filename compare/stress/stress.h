@@ -29,10 +29,12 @@ struct StressOutcome {
     double worst = 0; ///< largest error, in the unit of the bound; NaN is the worst
     std::int64_t first_failure = -1; ///< lowest number of a failed trial; −1: none failed
 
+    /// Counts a trial, which fails if its error is above the bound or NaN.
     void add(std::int64_t trial, double error, double bound);
     StressOutcome& operator+=(const StressOutcome& other); ///< commutative
 };
 
+/// Holds the result of one test.
 struct StressResult {
     std::int64_t trials = 0; ///< trials that judged something
     std::int64_t least_trials = 1;      ///< least number of such trials (StressTest::required_fraction)

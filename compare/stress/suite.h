@@ -7,6 +7,7 @@
 
 namespace duet::compare {
 
+/// Holds the options of `compare stress`.
 struct StressOptions {
     double factor = 1; ///< multiplies the default number of trials, > 0
     std::vector<std::string> only; ///< names of tests or their beginnings; empty: all

@@ -15,6 +15,7 @@ struct TextbookVertex {
 };
 using TextbookTriangle = std::array<TextbookVertex, 3>;
 
+/// Projects a point of world space. Nothing is clipped.
 inline TextbookVertex textbook_project(const Mat4& world_to_pixel, Vec3 p) {
     const Vec4 v = world_to_pixel * Vec4(p, 1.0f);
     return {{v.x / v.w, v.y / v.w}, v.w};

@@ -20,6 +20,7 @@ public:
     /// Returns a uniform value in [0, 1), a multiple of 2^-24 like the samplers' values.
     float uniform() { return unit_float(high_bits(bits())); }
     float uniform(float low, float high) { return low + (high - low) * uniform(); }
+    /// Returns two uniform values in [0, 1).
     Vec2 uniform_2d();
     /// Returns a log-uniform value in [low, high]; both must be positive.
     float log_uniform(float low, float high);

@@ -20,6 +20,7 @@ using AmbientLight = std::function<RgbT<Floats>(const Vec3T<Floats>& p)>;
 AmbientLight environment_in_fog(const RasterSceneData& data, const RasterSettings& settings,
                                 const ScreenProjection& projection);
 
+/// Holds the settings of a FogGrid.
 struct FogOptions {
     float time = 0;         ///< of the shadows
     bool background = true; ///< else there is fog only in front of surfaces

@@ -47,6 +47,7 @@ using PlaneInt = Plane<std::int32_t>;
 template <typename T> xsimd::batch<T> load(const Plane<T>& plane, int x, int y) {
     return xsimd::batch<T>::load_aligned(plane.row(y) + x);
 }
+/// Stores a batch of values where load reads it.
 template <typename T> void store(Plane<T>& plane, int x, int y, const xsimd::batch<T>& values) {
     values.store_aligned(plane.row(y) + x);
 }

@@ -63,6 +63,7 @@ struct Batch {
     std::vector<Segment> fragment_segments;   ///< of `fragments`
     CullCounts culled;
 
+    /// Empties all lists, and keeps their memory.
     void clear();
     std::size_t memory_bytes() const;
 };

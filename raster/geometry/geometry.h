@@ -37,10 +37,11 @@ struct Geometry {
     double transform_seconds = 0, setup_seconds = 0, bin_seconds = 0;
     ObjectPool<Assembler> assemblers; ///< each thread takes one
 
-    /// Returns which primitive an id of a run stands for.
+    /// Identifies a primitive of the scene.
     struct Primitive {
         std::uint32_t object, primitive; ///< as in a Hit
     };
+    /// Returns which primitive an id of a run stands for.
     Primitive primitive(const Run& run, std::uint32_t id) const;
     /// Returns whether any primitive may overlap a tile.
     bool overlaps_tile(std::size_t tile) const {

@@ -9,6 +9,7 @@ namespace duet::raster {
 /// Holds one truth value per lane of T: bool, or a batch of them.
 template <typename T> using MaskOf = decltype(std::declval<T>() < std::declval<T>());
 
+/// Returns whether the condition holds in any lane.
 inline bool any_lane(bool lane) { return lane; }
 inline bool any_lane(const xsimd::batch_bool<float>& lanes) { return lane_bits(lanes) != 0; }
 

@@ -45,6 +45,7 @@ template <typename T> struct alignas(64) PacketOf {
 template <typename T> xsimd::batch<T> load(const PacketOf<T>& packet, std::size_t i) {
     return xsimd::batch<T>::load_aligned(packet.at(i));
 }
+/// Stores one batch of values from the i-th on.
 template <typename T> void store(PacketOf<T>& packet, std::size_t i, const xsimd::batch<T>& value) {
     value.store_aligned(packet.at(i));
 }
@@ -82,7 +83,9 @@ inline void stream_line(const void* first_half, const void* second_half, void* l
     for (int i = 0; i < 2; ++i) _mm_stream_si128(to + 2 + i, _mm_loadu_si128(second + i));
 #endif
 }
+/// Makes the data of earlier calls of stream_line visible before any later store.
 inline void finish_streams() { _mm_sfence(); }
+/// Returns whether an address begins a cache line of 64 bytes.
 inline bool is_line_start(const void* address) { return reinterpret_cast<std::uintptr_t>(address) % 64 == 0; }
 
 /// Returns the dot products of one batch of vectors, by fused multiply-add.

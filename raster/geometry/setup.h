@@ -16,7 +16,9 @@
 
 namespace duet::raster {
 
+/// Converts a fixed-point coordinate to the first whole pixel at or after it.
 inline int ceil_pixel(std::int32_t x) { return (x + kSubpixels - 1) >> kSubpixelBits; }
+/// Converts a fixed-point coordinate to the last whole pixel at or before it.
 inline int floor_pixel(std::int32_t x) { return x >> kSubpixelBits; }
 
 /// Represents the edge function of two grid points, an integer function of the sample position: a·x + b·y + c >= 0
@@ -78,6 +80,7 @@ struct Interpolation {
 
     Interpolation() = default;
     Interpolation(const PixelVertex& a, const PixelVertex& b, const PixelVertex& c, FixedPoint beside);
+    /// Interpolates at a position in pixels; outside of the triangle, at a nearby position inside or on its boundary.
     Interpolated at(Vec2d pixel, TriangleKind triangle_kind) const;
 
 private:
@@ -120,6 +123,7 @@ inline FixedPoint max_corner(const std::array<FixedPoint, 3>& p) {
 struct Origin {
     int x, y;
 };
+/// Returns the origin for a triangle with these snapped corners.
 inline Origin origin(const std::array<FixedPoint, 3>& p, const Viewport& viewport) {
     const FixedPoint low = min_corner(p);
     return {floor_pixel(std::clamp(low.x, 0, viewport.width * kSubpixels)),

@@ -15,6 +15,7 @@ struct PixelRect {
     int height() const { return y1 - y0; }
     friend bool operator==(const PixelRect&, const PixelRect&) = default;
 };
+/// Returns the pixels that are in both, which may be none.
 inline PixelRect intersect(const PixelRect& a, const PixelRect& b) {
     return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
 }

@@ -35,6 +35,7 @@ struct Viewport {
     double near = 0; ///< distance of the near plane, meters
     bool orthographic = false;
 };
+/// Returns the viewport of a view through a pinhole.
 Viewport viewport_of(const View& view, const Pinhole& pinhole);
 
 /// The guard band is how far beyond the image edges a vertex may lie before its primitives are clipped, in pixels.
@@ -54,11 +55,13 @@ enum Outcode : std::uint8_t {
     kFrustum = kLeft | kRight | kTop | kBottom | kNear,
     kMustClip = kNear | kGuard,
 };
+/// Returns the bits of the planes that the vertex is outside of.
 std::uint8_t outcode(const PixelVertex& vertex, const Viewport& viewport);
 
 /// Rounds a vertex to the nearest grid point. Requires w > 0 and a position within the guard band.
 FixedPoint snap(const PixelVertex& vertex);
 
+/// Represents a vertex that is rounded to the grid.
 struct SnappedVertex {
     FixedPoint p; ///< meaningless where the outcode has a bit of kMustClip
     std::uint32_t outcode = 0;

@@ -63,6 +63,7 @@ private:
 class UnclippedTriangles {
 public:
     virtual ~UnclippedTriangles() = default;
+    /// Returns the triangle of an id.
     virtual UnclippedTriangle unclipped(std::uint32_t id) const = 0;
 };
 

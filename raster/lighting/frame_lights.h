@@ -47,6 +47,7 @@ struct LightDirection {
     Vec3T<Floats> wi; ///< unit, to its middle
     Floats distance;  ///< infinite for a sun
 };
+/// Returns the direction and the distance from points relative to the eye to the light's middle.
 LightDirection direction_to(const FrameLight& light, const Vec3T<Floats>& p);
 
 /// Converts the lights that emit anything.

@@ -39,8 +39,8 @@ struct SurfaceBounds {
 };
 /// Returns the bounds of a cluster, or nothing if it has no surfaces.
 std::optional<SurfaceBounds> surface_bounds(const GBuffer& gbuffer, const Cluster& cluster);
-/// Divides a cluster by depth into at most kDepthSlices. Returns their number.
 inline constexpr std::size_t kDepthSlices = 4;
+/// Divides a cluster by depth into at most kDepthSlices, and returns their number; 0 if it has no surfaces.
 std::size_t slices_of_depth(const GBuffer& gbuffer, const Cluster& cluster, std::array<Cluster, kDepthSlices>& slices);
 /// Divides a cluster by its normals if they change abruptly, as at the edge of a box.
 std::optional<std::array<Cluster, 2>> split_at_edge(const GBuffer& gbuffer, const Cluster& cluster,

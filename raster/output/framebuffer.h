@@ -17,9 +17,10 @@ public:
     /// `multiple_samples` allows several samples per pixel; otherwise at most one may be added.
     Framebuffer(const View& view, const RasterSettings& settings, bool multiple_samples);
 
-    /// Adds one sample of a pixel, or `count` equal ones: first its auxiliary values, then its radiance. A radiance
-    /// that is NaN, infinite or negative is dropped and counted.
+    /// Adds the auxiliary values of one sample of a pixel. They come before its radiance.
     void add_aovs(const HitTile& tile, int x, int y, const ShadedSample& shaded);
+    /// Adds the radiance of one sample of a pixel, or of `count` equal ones. A radiance that is NaN, infinite or
+    /// negative is dropped and counted.
     void add(int x, int y, Rgb radiance, int count = 1);
 
     /// Divides the sums by the counts. Pixels without a sample are black.

@@ -28,6 +28,7 @@ struct StatisticsCollector {
         0; ///< of deferred shading's images
     std::size_t framebuffer_bytes = 0;
 
+    /// Adds the times, the culled primitives and the memory of a pass.
     void add(const Geometry& geometry);
     /// Adds to the seconds of a stage of deferred shading.
     void add_stage(std::string_view stage, double seconds);
@@ -48,6 +49,7 @@ void fill_statistics(RenderStatistics& statistics, const RasterSceneData& data, 
 class Progress {
 public:
     Progress(const Control& control, std::size_t steps) : control_(control), steps_(steps) {}
+    /// Counts a step. Any thread may call it.
     void step();
 
 private:

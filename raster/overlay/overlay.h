@@ -15,7 +15,9 @@ public:
     Overlay(const RasterSceneData& data, const RasterSettings& settings, const View& view)
         : data_(data), settings_(settings), sums_(view.width, view.height, 0.0f) {}
 
+    /// Adds the lines of one pass, for each of its samples.
     void add_lines(const PassView& view);
+    /// Adds the edges of one pass.
     void add_edges(const EdgeBuffer& edge_buffer);
     /// Draws the result: white lines on black, black edges on white, or black edges over the image.
     void composite(ImageRgb& shown_image) const;

@@ -35,14 +35,16 @@ public:
 
     std::vector<Face>& faces() { return faces_; }
     const std::vector<Face>& faces() const { return faces_; }
-    /// Returns the face, column and row of the pixel in a direction of any length.
+    /// Identifies a pixel of the capture by its face, column and row.
     struct Pixel {
         std::size_t face;
         int x, y;
     };
+    /// Returns the pixel in a direction of any length except zero.
     Pixel pixel(Vec3 w) const;
-    /// Returns the unit direction of a pixel of faces of side × side, and the solid angle that the pixel subtends.
+    /// Returns the unit direction of a pixel of faces of side × side.
     static Vec3 direction(const Pixel& pixel, int side);
+    /// Returns the solid angle that a pixel subtends.
     static float solid_angle(const Pixel& pixel, int side);
     /// Returns the distance of the surface at a pixel, in meters; infinity for the background.
     float distance(const Pixel& pixel) const;

@@ -34,6 +34,7 @@ using PacketShader = PacketShaderOf<ColorPacket>;
 class ShaderProgram {
 public:
     virtual ~ShaderProgram() = default;
+    /// Returns a shader for the packets of one tile. It refers to the arguments.
     virtual std::unique_ptr<PacketShader> for_tile(const RasterSceneData& data, const Geometry& geometry,
                                                    const PassView& view, const PixelRect& tile) const = 0;
     /// Returns the color of one hit of the ray through `pixel`.

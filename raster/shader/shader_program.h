@@ -15,6 +15,7 @@
 
 namespace duet::raster {
 
+/// Stores one batch from the i-th sample on.
 inline void store(ColorPacket& to, std::size_t i, const RgbT<Floats>& c) {
     store(to.r, i, c.r), store(to.g, i, c.g), store(to.b, i, c.b);
 }

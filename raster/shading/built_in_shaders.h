@@ -17,16 +17,18 @@ std::string shading_names();
 /// (raster/shading/sample_attributes.h).
 std::unique_ptr<ShaderProgram> built_in_program(Shading shading, const Camera& camera);
 
-// Each program is defined in a file of the same name.
+/// Returns the program of the shading of this name. It is defined in a file of the same name.
+///@{
 std::unique_ptr<ShaderProgram> phong_program();
 std::unique_ptr<ShaderProgram> gouraud_program();
 std::unique_ptr<ShaderProgram> flat_program();
 std::unique_ptr<ShaderProgram> toon_program();
 std::unique_ptr<ShaderProgram> wireframe_program();
 std::unique_ptr<ShaderProgram> normal_program();
-std::unique_ptr<ShaderProgram>
-smooth_normal_program(); ///< in normal_shader.cpp; ignores normal and bump maps, for edge detection
 std::unique_ptr<ShaderProgram> albedo_program();
 std::unique_ptr<ShaderProgram> depth_program(const Camera& camera);
+///@}
+/// Returns the program of normals without normal and bump maps, for edge detection. It is defined in normal_shader.cpp.
+std::unique_ptr<ShaderProgram> smooth_normal_program();
 
 } // namespace duet::raster

@@ -44,8 +44,7 @@ struct DeferredFrame {
     }
 };
 
-/// Shades the surfaces in frame.gbuffer. frame.radiance holds what they emit, and receives the radiance towards the
-/// viewer.
+/// Holds the settings of shade_gbuffer.
 struct ShadeOptions {
     float time = 0;         ///< of the shadows
     bool background = true; ///< else pixels without a surface stay black
@@ -53,6 +52,8 @@ struct ShadeOptions {
     const FogGrid* fog = nullptr; ///< of the same view, or null to compute one
     LightComponentImages* components = nullptr; ///< without fog: receives the parts of the radiance, if any
 };
+/// Shades the surfaces in frame.gbuffer. frame.radiance holds what they emit, and receives the radiance towards the
+/// viewer.
 void shade_gbuffer(const RasterSceneData& data, const RasterSettings& settings, const ShadeOptions& options,
                    DeferredFrame& frame);
 

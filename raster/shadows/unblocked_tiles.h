@@ -14,6 +14,7 @@ namespace duet::raster {
 /// outside, too, but not true for one that meets the hull.
 bool misses_shaft(const Box3d& a, const Box3d& b, const Box3d& box);
 
+/// Finds the tiles of a G-buffer whose points no object shadows, for each source of Shadows.
 class UnblockedTiles {
 public:
     /// `data` must have its shadow maps. `threads` = 0 stands for all. In scenes of more than kMostCasters casters or

@@ -20,6 +20,7 @@ Ray rounded(const Rayd& exact, float time);
 /// rasterize_drawn_blocks() leaves the samples of blocks without any primitive undefined.
 void rasterize_drawn_blocks(const Geometry& geometry, const PassView& view, SampleOffset offset, const PixelRect& rect,
                             std::size_t index, DepthTile& tile);
+/// Does the same as rasterize_drawn_blocks, and clears the blocks without any primitive.
 void rasterize_tile(const Geometry& geometry, const PassView& view, SampleOffset offset, const PixelRect& rect,
                     std::size_t index, DepthTile& tile);
 

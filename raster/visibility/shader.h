@@ -136,6 +136,7 @@ template <typename Evaluate> std::array<Floats, 3> evaluate_per_lane(std::size_t
 class ColorSource {
 public:
     virtual ~ColorSource() = default;
+    /// Returns the base color of a sample.
     virtual Rgb base_color(std::size_t sample) const = 0;
     /// Returns the base colors of one batch of samples from `first` on.
     virtual RgbT<Floats> base_colors(std::size_t first) const {
@@ -146,15 +147,19 @@ public:
     virtual Rgb emitted(std::size_t sample) const = 0; ///< emitted radiance towards the viewer
 };
 
+/// Holds what FragmentInput has only if a shader requests derivatives; else it is empty.
 template <typename V, bool kDerivatives> struct ScreenDerivatives {};
+/// Holds the derivatives, where they are requested.
 template <typename V> struct ScreenDerivatives<V, true> {
     /// These are exact screen-space derivatives of the varyings along the row and down the column, per pixel.
     V dx, dy;
 };
 
+/// Holds what FragmentInput has unless all normals are on the visible side.
 template <typename T, bool kFacing> struct VisibleSide {
     Vec3T<T> ng; ///< geometric normal on the visible side, in object space, of any length
 };
+/// Nothing is needed where all normals are on the visible side.
 template <typename T> struct VisibleSide<T, true> {};
 
 /// Holds the lights of a scene. If kSuns is true, all of them are suns.
@@ -277,12 +282,14 @@ using FragmentOf = FragmentInput<T, VaryingsOf<S, T>, wants_derivatives<S>(), kF
 /// This is the number of floats in a shader's varyings, which are interpolated one by one.
 template <typename S> inline constexpr std::size_t kVaryings =
     std::is_empty_v<VaryingsOf<S, float>> ? 0 : sizeof(VaryingsOf<S, float>) / sizeof(float);
+/// Returns a shader's varyings as an array, in the order of their declaration.
 template <typename S, typename T> std::array<T, kVaryings<S>> varying_floats(const VaryingsOf<S, T>& varyings) {
     if constexpr (kVaryings<S> == 0)
         return {};
     else
         return std::bit_cast<std::array<T, kVaryings<S>>>(varyings);
 }
+/// Returns the varyings of such an array.
 template <typename S, typename T> VaryingsOf<S, T> varyings(const std::array<T, kVaryings<S>>& floats) {
     if constexpr (kVaryings<S> == 0)
         return {};

@@ -63,6 +63,7 @@ struct alignas(kSimdLanes * sizeof(float)) SphereBlock {
         return {{center[0][lane], center[1][lane], center[2][lane]}, radius[lane]};
     }
 };
+/// Represents a leaf of the world's hierarchy: an object whose shape has a hierarchy of its own.
 struct BvhInstance {
     std::uint32_t object, shape; ///< indices into Scene::objects and Scene::shapes
 };
@@ -120,6 +121,7 @@ inline BvhRef BvhRef::node(std::uint32_t index) {
     return BvhRef(kNode | index * static_cast<std::uint32_t>(sizeof(BvhNode) / kNodeUnit));
 }
 
+/// Holds a bounding volume hierarchy with the primitives of its leaves, stored as blocks for SIMD.
 struct Bvh {
     /// This is the greatest depth of a leaf below the root. It bounds the size of a traversal stack.
     static constexpr int kMaxDepth = 96;

@@ -25,20 +25,20 @@ inline constexpr std::size_t kChunk = std::size_t{1} << 15;
 using Items = std::span<BuildItem>;
 using Float4 = Bounds::Float4;
 
-// These functions load a corner of an item's box. The fourth lane holds the value that follows in memory and is not
-// used.
+/// Returns the lower corner of an item's box. The fourth lane holds the value that follows in memory and is not used.
 inline Float4 low_corner(const BuildItem& item) {
     return Float4::load_unaligned(reinterpret_cast<const float*>(&item));
 }
+/// Returns the upper corner of an item's box, as low_corner does.
 inline Float4 high_corner(const BuildItem& item) {
     return Float4::load_unaligned(reinterpret_cast<const float*>(&item) + 3);
 }
 static_assert(offsetof(BuildItem, box) == 0 && sizeof(Box3) == 6 * sizeof(float) &&
               sizeof(BuildItem) >= 7 * sizeof(float));
-// Returns twice the center of the box, which saves a multiplication.
+/// Returns twice the center of the box, which saves a multiplication.
 inline Float4 doubled_center(const BuildItem& item) { return low_corner(item) + high_corner(item); }
 
-// Summarizes a set of items: their bounds and their kinds of primitives.
+/// Summarizes a set of items: their bounds and their kinds of primitives.
 struct Extent {
     Bounds bounds, centers; ///< of the boxes, and of their doubled centers
     unsigned kinds = 0;     ///< bit mask of the kinds that occur
@@ -58,15 +58,16 @@ struct Extent {
     bool same_kind() const { return (kinds & (kinds - 1)) == 0; }
 };
 
+/// Returns the extent of a list of items.
 inline Extent extent_of(std::span<const BuildItem> items) {
     Extent extent;
     for (const BuildItem& item : items) extent.extend(item);
     return extent;
 }
 
-// Returns the SAH cost of testing a number of primitives: 1 per block, or 1 per instance, since each instance is a
-// hierarchy of its own. (Blocks of quads take longer than blocks of spheres, but a separate cost changed none of the
-// trees that were tried.)
+/// Returns the SAH cost of testing a number of primitives: 1 per block, or 1 per instance, since each instance is a
+/// hierarchy of its own. (Blocks of quads take longer than blocks of spheres, but a separate cost changed none of the
+/// trees that were tried.)
 class LeafCost {
 public:
     explicit LeafCost(unsigned kinds)
@@ -79,8 +80,8 @@ private:
     int shift_;
 };
 
-// Maps box centers to bins of equal width on each axis. All items are in one bin on an axis along which the centers
-// have no extent.
+/// Maps box centers to bins of equal width on each axis. All items are in one bin on an axis along which the centers
+/// have no extent.
 class Binning {
 public:
     Binning(const Extent& extent, std::size_t count) : low_(extent.centers.low) {
@@ -111,6 +112,7 @@ private:
     unsigned usable_;
 };
 
+/// Summarizes the items of one bin.
 struct Bin {
     Bounds bounds;
     std::size_t count = 0;
@@ -135,7 +137,7 @@ inline void fill(Bins& bins, std::span<const BuildItem> items, const Binning& bi
     }
 }
 
-// Fills the bins in parallel chunks. The result equals that of the serial `fill`.
+/// Fills the bins in parallel chunks. The result equals that of the serial `fill`.
 inline void fill(Bins& bins, std::span<const BuildItem> items, const Binning& binning, int threads) {
     if (items.size() <= 2 * kChunk) return fill(bins, items, binning);
     std::vector<Bins> chunk_bins((items.size() + kChunk - 1) / kChunk);
@@ -148,13 +150,14 @@ inline void fill(Bins& bins, std::span<const BuildItem> items, const Binning& bi
             for (std::size_t k = 0; k < binning.bins; ++k) bins[axis][k].extend(chunk_bins[i][axis][k]);
 }
 
+/// Describes a plane between bins that divides a set.
 struct Split {
     std::size_t axis = 0;
     std::int32_t bin = 0; // items in bins up to `bin` go left
     float cost = 0;
 };
 
-// Returns the cheapest plane between bins, or nothing if all centers coincide.
+/// Returns the cheapest plane between bins, or nothing if all centers coincide.
 inline std::optional<Split> best_split(const Bins& bins, const Binning& binning, const RelativeArea& area,
                                        const LeafCost& leaf_cost, std::size_t count) {
     std::optional<Split> best;
@@ -178,16 +181,17 @@ inline std::optional<Split> best_split(const Bins& bins, const Binning& binning,
     return best;
 }
 
-// Returns the largest leaf size for a kind. Instances get a leaf each, because each is a hierarchy of its own, and a
-// box test is cheap in comparison.
+/// Returns the largest leaf size for a kind. Instances get a leaf each, because each is a hierarchy of its own, and a
+/// box test is cheap in comparison.
 inline std::size_t largest_leaf(PrimitiveKind kind) { return kind == PrimitiveKind::kInstance ? 1 : Bvh::kMaxLeaf; }
 
-// Describes a partitioned set of items, in which those of the left half come first.
+/// Describes a partitioned set of items, in which those of the left half come first.
 struct Partition {
     std::size_t left_count = 0;
     Extent left, right;
 };
 
+/// Moves the items for which goes_left(item) is true before all others.
 template <typename GoesLeft> Partition partition_items(Items items, const GoesLeft& goes_left) {
     Partition partition;
     std::size_t begin = 0, end = items.size();
@@ -201,8 +205,8 @@ template <typename GoesLeft> Partition partition_items(Items items, const GoesLe
     return partition;
 }
 
-// Splits a set that no plane divides, because all centers coincide or the node is too deep. It is split by kind if
-// only its mixed kinds keep it from being a leaf, else by count.
+/// Splits a set that no plane divides, because all centers coincide or the node is too deep. It is split by kind if
+/// only its mixed kinds keep it from being a leaf, else by count.
 inline Partition partition_without_plane(Items items, const Extent& extent) {
     if (items.size() <= Bvh::kMaxLeaf && !extent.same_kind())
         return partition_items(items, [kind = items[0].kind](const BuildItem& item) { return item.kind == kind; });

@@ -10,6 +10,7 @@
 
 namespace duet::raytrace {
 
+/// Returns the node that `ref` refers to, which must not be a leaf.
 inline const BvhNode& node_at(const Bvh& bvh, BvhRef ref) {
     return *reinterpret_cast<const BvhNode*>(reinterpret_cast<const char*>(bvh.nodes.data()) +
                                              std::size_t{ref.index()} * BvhRef::kNodeUnit);

@@ -38,6 +38,7 @@ using VertexRandomSamples = VertexRandomSamplesT<float>;
 inline std::uint32_t vertex_dimension(int depth) {
     return static_cast<std::uint32_t>(Sampler::kBlock) * static_cast<std::uint32_t>(depth + 1);
 }
+/// Returns the random samples of the vertex after `depth` scatterings.
 inline VertexRandomSamples vertex_random_samples(Sampler& sampler, int depth) {
     sampler.set_dimension(vertex_dimension(depth));
     const Sampler::Block u = sampler.get_block();

@@ -14,6 +14,7 @@ template <typename T> struct LightLiSampleT {
     T pdf{};                            ///< by solid angle, including the choice of the light; > 0
     MaskOf<T> delta = MaskOf<T>(false); ///< whether BSDF samples cannot find it
 };
+/// Holds a light sample of a single path.
 struct LightLiSample : LightLiSampleT<float> {
     float distance = 0;      ///< infinity for the sun and the environment
     std::int64_t light = -1; ///< index into Scene::lights; −1: the environment

@@ -46,6 +46,7 @@ public:
     ScatteringDistance(Interval range, float extinction);
     /// For a light at a point. The ray's direction has unit length; `extinction` may be 0.
     ScatteringDistance(const Ray& ray, Vec3 light, Interval range, float extinction);
+    /// Returns a distance t of the range, for u in [0, 1).
     float sample(float u) const;
     /// Returns the density by distance at a t of the range.
     float pdf(float t) const;

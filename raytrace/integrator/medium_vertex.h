@@ -7,6 +7,7 @@
 
 namespace duet::raytrace {
 
+/// Represents a point at which a medium scatters a path.
 struct MediumVertex {
     Vec3 p;
     Vec3 direction; ///< of the ray that arrives, unit
@@ -20,9 +21,11 @@ inline LightReceiver light_receiver(const MediumVertex& vertex) { return {vertex
 inline Rgb scattering(const MediumVertex& vertex, Vec3 wi) {
     return Rgb(phase(vertex.direction, wi, vertex.asymmetry));
 }
+/// Returns the density, by solid angle, with which the phase function is sampled. It equals the phase function.
 inline float scattering_pdf(const MediumVertex& vertex, Vec3 wi) {
     return phase(vertex.direction, wi, vertex.asymmetry);
 }
+/// Returns a ray from the point in direction w, without an offset.
 inline Ray spawn_ray(const RenderPlan&, const MediumVertex& vertex, Vec3 w) {
     Ray ray{vertex.p, w};
     ray.time = vertex.time;

@@ -67,6 +67,7 @@ inline ScatteringT<T> scatter(const AnyVertex& vertex, const VertexRandomSamples
     return next;
 }
 
+/// Holds the outcome of Russian roulette.
 template <typename T> struct RouletteT {
     T probability; ///< of survival; may exceed 1
     MaskOf<T> survives;
@@ -83,7 +84,7 @@ template <typename T> inline RouletteT<T> russian_roulette(T u, PathThroughputT<
     return {probability, MaskOf<T>(certain | lucky)};
 }
 
-// A sink receives the light that a path finds. For images, this one adds up all light, from any source.
+/// A sink receives the light that a path finds. For images, this one adds up all light, from any source.
 class RadianceSum {
 public:
     static constexpr bool kLogsEvents = false; // whether the sink has a log() of all events
@@ -97,13 +98,13 @@ private:
     Rgb total_;
 };
 
-// Replaces the medium stack in scenes without media in which no dielectric absorbs or has a priority. It is empty.
+/// Replaces the medium stack in scenes without media in which no dielectric absorbs or has a priority. It is empty.
 struct NoMediumStack {
     explicit NoMediumStack(const RenderPlan&) {}
     static constexpr float relative_index() { return 0; }
 };
 
-// Returns the random samples of the vertex at the end of a ray, if it uses any.
+/// Returns the random samples of the vertex at the end of a ray, if it uses any.
 inline VertexRandomSamples random_samples_at(const RenderPlan& plan, Sampler& sampler, const Hit& hit, int depth) {
     const bool used = (hit.valid() && depth < plan.max_depth) || plan.scene.needs.media;
     return used ? vertex_random_samples(sampler, depth) : VertexRandomSamples{};

@@ -16,18 +16,25 @@ class PathLog {
 public:
     explicit PathLog(const Scene& scene) : scene_(scene) {}
 
+    /// Logs a surface that the path meets after `depth` scatterings.
     void vertex(const Vertex& vertex, const Hit& hit, int depth);
+    /// Logs a point in a medium at which the path is scattered.
     void medium_vertex(const MediumVertex& vertex, int depth);
+    /// Logs a ray that meets nothing.
     void escape(const Ray& ray, int depth);
     /// Logs light that the ray itself has found. `weight` is its MIS weight against light samples, and `light` is
     /// what it adds.
     void light_found(Rgb emission, float weight, Rgb light);
+    /// Logs why a vertex has no light sample.
     void no_light_sample(const char* why);
     /// Logs a light sample and whether it is visible. `weight` is its MIS weight against BSDF samples, and `light`
     /// is what it adds.
     void light_sample(const LightLiSample& light_sample, Rgb scattered, bool visible, float weight, Rgb light);
+    /// Logs the direction in which the path continues, and its throughput.
     void scattered(const BsdfSample& sample, const Ray& next, const PathState& state);
+    /// Logs what Russian roulette decides.
     void roulette(float probability, bool survived);
+    /// Logs why the path ends.
     void end(const char* why);
 
     std::string text() const { return out_.str(); }

@@ -18,6 +18,7 @@ template <typename T> struct PathThroughputT {
     RgbT<T> throughput{T(1.0f)};
     T refraction = T(1.0f); ///< factor by which refractions have scaled the throughput
 };
+/// Holds the state of a single path.
 struct PathState : PathThroughputT<float> {
     PreviousVertex previous_vertex;
 };

@@ -9,6 +9,7 @@
 
 namespace duet::raytrace {
 
+/// Represents a vertex of a path on a surface.
 class Vertex {
 public:
     /// Makes the vertex at a valid hit of a ray. `footprint` is the ray's footprint there, or null if the plan needs

@@ -8,6 +8,7 @@
 
 namespace duet {
 
+/// Holds a light that was chosen at random.
 struct SampledLight {
     std::size_t index; ///< index into the list of lights
     float probability; ///< probability of this choice, > 0

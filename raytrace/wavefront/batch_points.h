@@ -13,7 +13,7 @@ static_assert(offsetof(Ray, direction) == offsetof(Ray, origin) + 3 * sizeof(flo
               offsetof(Ray, t_min) == offsetof(Ray, direction) + 3 * sizeof(float));
 static_assert(offsetof(Sphere, radius) == offsetof(Sphere, center) + 3 * sizeof(float));
 
-// Triangles and quads are mixed in a batch.
+/// Returns the surface points of hits on flat shapes. Triangles and quads are mixed in a batch.
 inline SurfaceGeometryT<Floats> flat_points(std::span<const BatchPath> paths) {
     LaneVectors corner, base, a, b; // edges are a − base and b − base
     LaneValues u, v, quad;
@@ -39,6 +39,7 @@ inline SurfaceGeometryT<Floats> flat_points(std::span<const BatchPath> paths) {
                                           v.doubles(), quad.doubles() > Doubles(0.0)));
 }
 
+/// Returns the surface points of hits on spheres.
 inline SurfaceGeometryT<Floats> round_points(std::span<const BatchPath> paths) {
     const auto sphere = [](const BatchPath& path) -> const Sphere& { return std::get<Sphere>(*path.shape); };
     const auto [ox, oy, oz, dx] =
@@ -53,6 +54,7 @@ inline SurfaceGeometryT<Floats> round_points(std::span<const BatchPath> paths) {
                                             to_doubles(Vec(ox, oy, oz)), to_doubles(Vec(wx, wy, wz)), t.doubles()));
 }
 
+/// Returns the surface points of hits on meshes with vertex normals.
 inline SurfaceGeometryT<Floats> smooth_points(std::span<const BatchPath> paths) {
     LaneVectors direction;
     std::array<LaneVectors, 3> corners, normals;

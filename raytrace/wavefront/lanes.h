@@ -19,7 +19,7 @@ using Vecd = Vec3T<Doubles>;
 using Color = RgbT<Floats>;
 using Mask = MaskOf<Floats>;
 
-// LaneValues holds one number per path, and LaneVectors holds three.
+/// Holds one number per path.
 struct LaneValues {
     alignas(sizeof(Doubles)) std::array<float, kLanes> values{};
 
@@ -29,6 +29,7 @@ struct LaneValues {
     Floats floats() const { return Floats::load_aligned(values.data()); }
     Doubles doubles() const { return load_doubles(values.data()); }
 };
+/// Holds three numbers per path: a vector or a color.
 struct LaneVectors {
     LaneValues x, y, z;
 
@@ -44,13 +45,13 @@ struct LaneVectors {
     Color colors() const { return {x.floats(), y.floats(), z.floats()}; }
 };
 
-// Calls set(lane, path) for each lane. Lanes beyond the number of paths get the first path, so that their values are
-// valid.
+/// Calls set(lane, path) for each lane. Lanes beyond the number of paths get the first path, so that their values are
+/// valid.
 template <typename Set> void for_lanes(std::span<const BatchPath> paths, const Set& set) {
     for (std::size_t i = 0; i < kLanes; ++i) set(i, paths[i < paths.size() ? i : 0]);
 }
 
-// Loads four consecutive numbers of each path, starting at first(path), into four batches.
+/// Loads four consecutive numbers of each path, starting at first(path), into four batches.
 template <typename First> std::array<Floats, 4> load_four(std::span<const BatchPath> paths, const First& first) {
     return load_columns<kLanes>([&](std::size_t i) { return &first(paths[i < paths.size() ? i : 0]); });
 }

@@ -7,6 +7,7 @@
 
 namespace duet::raytrace {
 
+/// Collects shadow rays, to trace them together.
 class ShadowRays {
 public:
     explicit ShadowRays(const RenderPlan& plan) : plan_(plan) {}

@@ -68,12 +68,15 @@ public:
 
     bool is(JsonNode::Kind kind) const { return node_->kind == kind; }
 
+    /// Returns a number. Throws Error if the value is none, or outside of the range.
     double number(JsonRange range = kAnyNumber) const;
+    /// Returns a whole number in [low, high]. Throws Error for anything else.
     int integer(int low, int high) const;
     bool boolean() const;
     const std::string& string() const; ///< throws Error for an empty string
     /// Returns an array of exactly `count` numbers.
     std::vector<double> numbers(std::size_t count, JsonRange range = kAnyNumber) const;
+    /// Returns an array of exactly three numbers of the range as a vector.
     Vec3d vec3(JsonRange range = kAnyNumber) const;
     /// Returns a color given as one number (gray) or as three.
     Rgb rgb(JsonRange range = kUnit) const;
@@ -92,8 +95,11 @@ public:
     bool has(std::string_view key) const { return find(key) != nullptr; }
     /// Returns a member. Throws Error where there is none.
     JsonValue at(std::string_view key) const;
+    /// Returns the member `key` as number() does, or the fallback where there is none.
     double number_or(std::string_view key, double fallback, JsonRange range = kAnyNumber) const;
+    /// Returns the member `key` as boolean() does, or the fallback where there is none.
     bool boolean_or(std::string_view key, bool fallback) const;
+    /// Returns the member `key` as rgb() does, or the fallback where there is none.
     Rgb rgb_or(std::string_view key, Rgb fallback, JsonRange range = kUnit) const;
 
 private:

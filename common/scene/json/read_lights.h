@@ -6,6 +6,7 @@
 
 namespace duet {
 
+/// Reads "camera". These functions throw Error with the JSON path of what they cannot use.
 Camera read_camera(const JsonValue& camera);
 /// Reads one element of "lights".
 Light read_light(const JsonValue& light);

@@ -19,17 +19,20 @@ enum class MeshNormals {
     kAuto,   ///< the file's normals; computed where it has none
 };
 
+/// Selects what load_obj takes from the files.
 struct ObjOptions {
     MeshNormals normals = MeshNormals::kFile;
     bool materials = true; ///< false: no MTL file is read, and the mesh has one material slot
 };
 
+/// Holds a material of the MTL files, converted.
 struct ObjMaterial {
     std::string name;
     Material material; ///< texture references are indices into ObjFile::textures, to be remapped to the scene's
     SurfaceMaps maps{}; ///< texture references are indices into ObjFile::textures
 };
 
+/// Holds what load_obj returns.
 struct ObjFile {
     Mesh mesh;                          ///< all groups and objects of the file; Mesh::closed is not set
     /// There is one material per slot, in order of first use, and at least one. Faces without a material use the one

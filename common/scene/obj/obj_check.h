@@ -13,6 +13,7 @@ namespace duet {
 /// No number of a mesh may be larger, so that squared lengths do not overflow in float.
 inline constexpr double kMaxMeshNumber = 1e18;
 
+/// Counts the elements of an OBJ file.
 struct ObjCounts {
     std::size_t positions = 0, texture_coordinates = 0, normals = 0, faces = 0, corners = 0;
     std::vector<std::string> material_files; ///< contents of the mtllib lines, one per entry

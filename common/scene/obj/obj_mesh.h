@@ -24,9 +24,11 @@ public:
     ObjMeshBuilder(const std::filesystem::path& path, const ObjCounts& counts, bool normals);
 
     void add_position(Vec3 p) { positions_.push_back(p); }
+    /// Adds a normal of any length, also zero.
     void add_normal(Vec3 n);
     void add_uv(Vec2 uv) { uvs_.push_back(uv); }
     void begin_face(std::uint16_t slot) { slots_.push_back(slot); }
+    /// Adds a corner to the face. Throws Error for an index that is out of range, and for a corner without a position.
     void add_corner(int position, int uv, int normal);
     void end_face() { face_ends_.push_back(corners_.size()); }
 

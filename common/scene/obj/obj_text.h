@@ -33,7 +33,7 @@ private:
     std::vector<char> block_; ///< bytes of the file
     std::string text_;        ///< text of the block where it differs from its bytes
     bool backslash_ = false;  ///< whether the last byte was a backslash that may continue its line
-    bool carriage_ = false;   ///< whether the last byte was \r, which \n may follow
+    bool carriage_ = false;   ///< whether the last byte was a carriage return, which a line end may follow
     std::size_t continued_ = 0; ///< number of lines joined into the current one
 };
 

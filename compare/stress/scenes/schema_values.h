@@ -33,6 +33,7 @@ public:
                  const SceneSizes& sizes, TrialRandom& random)
         : schema_(schema), files_(files), sizes_(sizes), random_(random) {}
 
+    /// Draws a scene.
     Json scene();
 
 private:
