@@ -1,4 +1,5 @@
-// This file samples a flat light uniformly by area (pbrt-4, §12.2.3, which samples near lights by solid angle instead).
+// This file samples a flat light uniformly by area (Physically Based Rendering, 3rd edition, §14.2.2; the 4th edition
+// samples the solid angle of near triangles instead, §6.5.4).
 // Right beside the light the density by solid angle varies without bound; multiple importance sampling with the BSDF's
 // directions keeps the contributions bounded there.
 #pragma once

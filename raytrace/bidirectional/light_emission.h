@@ -1,4 +1,5 @@
-// Light emission starts paths at the lights: it draws a light, a point on it and a direction (pbrt-4, §12.7).
+// Light emission starts paths at the lights: it draws a light, a point on it and a direction (Physically Based
+// Rendering, 3rd edition, §16.1.2).
 #pragma once
 
 #include "common/sampling/distribution.h"
