@@ -26,8 +26,8 @@ ImageRgb read_image(const std::filesystem::path& path);
 
 /// Writes a linear RGB image in the format of the file extension. The formats .png, .jpg/.jpeg, .tga and .ppm store 8
 /// bits: the image after the view transform, encoded by the sRGB curve; NaN becomes 0 there. The formats .pfm, .hdr and
-/// .exr store linear values. The file is written atomically: it is complete or absent. Throws an Error with exit code 2 for an
-/// unknown extension, and with exit code 1 if writing fails.
+/// .exr store linear values. The file is written atomically: it is complete or absent. Throws an Error with exit code 2
+/// for an unknown extension, and with exit code 1 if writing fails.
 void write_image(const std::filesystem::path& path, const ImageRgb& image, const WriteOptions& options = {});
 /// Throws an Error unless write_image supports the path's extension, its folder exists and the path is not a folder.
 /// Programs call this check before a long render.

@@ -55,8 +55,8 @@ const ToneMapping& tone_mapping(Tone tone);
 Rgb displayed(Rgb radiance, const ViewTransform& view);
 
 /// Returns the bytes of 8-bit files, 3 per pixel with rows from the top: the image after the view transform, encoded by
-/// the sRGB curve and rounded to nearest, or dithered. It uses `threads` threads (0: all). The result does not depend on
-/// their number.
+/// the sRGB curve and rounded to nearest, or dithered. It uses `threads` threads (0: all), whose number does not change
+/// the result.
 std::vector<std::uint8_t> display_bytes(const ImageRgb& image, const ViewTransform& view, int threads = 0);
 
 } // namespace duet

@@ -63,8 +63,8 @@ public:
     CommandLine& operator=(const CommandLine&) = delete;
 
     /// Adds an option; `names` is "-o,--output", or "SCENE" for a positional argument. T is std::string, int,
-    /// std::uint64_t (decimal digits only), std::int64_t, double, std::optional<double>, std::filesystem::path, ImageSize,
-    /// or a std::vector of strings, paths, ints or doubles.
+    /// std::uint64_t (decimal digits only), std::int64_t, double, std::optional<double>, std::filesystem::path,
+    /// ImageSize, or a std::vector of strings, paths, ints or doubles.
     template <typename T> Option add(const std::string& names, T& value, const std::string& help);
     /// Adds an option whose values are passed to `parse`, all at once. `parse` throws Error for values that it refuses.
     Option add_parsed(const std::string& names, const std::function<void(const std::vector<std::string>&)>& parse,

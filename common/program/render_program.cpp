@@ -3,6 +3,7 @@
 #include "common/image/image_file.h"
 #include "common/program/program.h"
 #include "common/program/statistics.h"
+#include "common/program/video.h"
 #include "common/program/view_transform_options.h"
 #include "common/system/parallel.h"
 #include "common/system/stopwatch.h"
@@ -38,19 +39,12 @@ void add_common_options(CommandLine& program, Options& options, const std::strin
                 ".exr, or EXR files beside the image");
     program
         .add("--orbit", options.orbit,
-             "Render this many frames around the camera's target; the output's name holds %04d")
+             "Render this many frames around the camera's target; the output's name holds %04d, or ends in .mp4 "
+             "(needs ffmpeg)")
         .range(1, 9999);
     add_view_transform(program, options.view_transform);
     program.add_flag("--ascii", options.ascii, "Write .ppm as text (P3)");
     program.add_flag("--quiet", options.quiet, "No progress bar");
-}
-
-// Replaces the first %04d of the pattern by the frame's number with at least four digits.
-std::string frame_path(const std::string& pattern, int frame) {
-    const std::size_t at = pattern.find("%04d");
-    std::string number = std::to_string(frame);
-    number.insert(0, 4 - std::min<std::size_t>(4, number.size()), '0');
-    return pattern.substr(0, at) + number + pattern.substr(at + 4);
 }
 
 Camera orbited(Camera camera, int frame, int frames) {
@@ -59,12 +53,20 @@ Camera orbited(Camera camera, int frame, int frames) {
     return camera;
 }
 
-void check_output(const Options& options) {
+// Returns the name of the image, or the pattern of the names of an orbit's frames.
+std::string image_name(const Options& options) {
     if (options.output.empty()) throw Error("no output: expected -o and the image's file (--help explains)");
-    if (options.orbit > 0 && options.output.find("%04d") == std::string::npos)
-        throw Error(
-            message("--orbit: the output's name must hold %04d for the frame's number, found ", options.output));
-    check_writable_image(options.output);
+    if (!is_video(options.output)) return options.output;
+    if (options.orbit == 0) throw Error(message(options.output, ": a video needs --orbit and a number of frames"));
+    return video_frames(options.output);
+}
+
+void check_output(const Options& options) {
+    const std::string name = image_name(options);
+    if (options.orbit > 0 && name.find("%04d") == std::string::npos)
+        throw Error(message("--orbit: the output's name must hold %04d for the frame's number, or end in .mp4, found ",
+                            options.output));
+    check_writable_image(name);
     if (options.ascii && std::filesystem::path(options.output).extension() != ".ppm")
         throw Error(message("--ascii: only a .ppm can be written as text, found ", options.output));
     check_json_path(options.stats);
@@ -123,7 +125,7 @@ int render_all(const RenderProgram& program, const Options& options) {
     for (int frame = 0; frame < frames && !interrupt.raised(); ++frame) {
         const View view{options.orbit > 0 ? orbited(scene.camera, frame, frames) : scene.camera, context.width,
                         context.height};
-        const std::string output = options.orbit > 0 ? frame_path(options.output, frame) : options.output;
+        const std::string output = options.orbit > 0 ? frame_path(image_name(options), frame) : options.output;
         Control control = bar.control(interrupt, static_cast<std::size_t>(frame), static_cast<std::size_t>(frames));
         watch.restart();
         const Rendering rendering = render(view, control);
@@ -134,6 +136,7 @@ int render_all(const RenderProgram& program, const Options& options) {
         all_statistics.push_back(statistics_json(context, rendering.statistics));
         if (!options.quiet) print_summary(context, rendering, output);
     }
+    if (is_video(options.output) && !interrupt.raised()) write_video(options.output, frames);
     if (!options.stats.empty() && !all_statistics.empty())
         write_json(options.stats, options.orbit > 0 ? all_statistics : all_statistics[0]);
     return interrupt.raised() ? kExitInterrupted : kExitOk;

@@ -27,8 +27,8 @@ struct SceneOptions {
 };
 /// Adds --size and --up. `options` must outlive the parsing.
 void add_scene_options(CommandLine& program, SceneOptions& options);
-/// Loads a scene like load_scene(path). Preparation depends on the size: the rasterizer renders no shadow map finer than
-/// the image can show.
+/// Loads a scene like load_scene(path). Preparation depends on the size: the rasterizer renders no shadow map finer
+/// than the image can show.
 Scene load_scene(const std::filesystem::path& path, const SceneOptions& options);
 
 /// OutputOptions say where the images are written.

@@ -11,8 +11,8 @@ enum class UpAxis { kGuessed, kX, kY, kZ };
 
 /// Returns a scene with the mesh, a ground just below it, a sky and a sun. Faces without an MTL material are clay,
 /// and missing normals are computed (smooth_normals.h). The camera looks at the mesh from the front, right and above,
-/// and all of the mesh and of its shadow is in the image. finish_scene has not been called yet. Throws Error as load_obj
-/// does.
+/// and all of the mesh and of its shadow is in the image. finish_scene has not been called yet. Throws Error as
+/// load_obj does.
 Scene default_scene_for_mesh(const std::filesystem::path& path, UpAxis up = UpAxis::kGuessed);
 
 /// Loads a scene like load_scene(path). Throws Error if `up` is given and the file is not a bare mesh.

@@ -93,8 +93,8 @@ json side_json(const ReportImage& side) {
             {"rendering", side.rendering ? rendering_json(*side.rendering) : json(nullptr)}};
 }
 
-/// Returns the tone curves by name: the matrices of ToneMapping, and a table of the curve that the page interpolates. Its
-/// steps of 1/32 of a stop are finer than a code of the display.
+/// Returns the tone curves by name: the matrices of ToneMapping, and a table of the curve that the page interpolates.
+/// Its steps of 1/32 of a stop are finer than a code of the display.
 json tones_json() {
     constexpr int kLow = -20, kHigh = 20, kStepsPerStop = 32;
     json tones = json::object();

@@ -6,11 +6,11 @@
 
 namespace duet::raster {
 
-/// Returns the unit normals of the flat surfaces in a batch of pixels, on the side of the shading normals n. They follow
-/// from the points p and those of one neighbor in the row and one in the column: of both, the one that is more nearly on
-/// a line with the next pixel, because reversed depth is linear over a triangle and bends at its edges. Where no neighbor
-/// is visible, or the result leans away from the shading normal by more than 75 degrees, and where the points are no
-/// image of a view, it is the shading normal.
+/// Returns the unit normals of the flat surfaces in a batch of pixels, on the side of the shading normals n. They
+/// follow from the points p and those of one neighbor in the row and one in the column: of both, the one that is more
+/// nearly on a line with the next pixel, because reversed depth is linear over a triangle and bends at its edges. Where
+/// no neighbor is visible, or the result leans away from the shading normal by more than 75 degrees, and where the
+/// points are no image of a view, it is the shading normal.
 inline Vec3T<Floats> facet_normals(const GBuffer& gbuffer, const Vec3T<Floats>& p, const Vec3T<Floats>& n, int x,
                                    int y) {
     if (!gbuffer.position.empty()) return n;

@@ -102,12 +102,13 @@ private:
         for (const LightField& field : std::span(fields_).first(field_count_))
             sum.exact += batch.diffuse(field.irradiance(batch.p(), batch.n()));
         if (batch.specular())
-            for (const std::uint32_t i : distant_) add(batch, lights_[i], 1, LitBatch::Lobes::kSpecular, facet, x, y, sum);
+            for (const std::uint32_t i : distant_)
+                add(batch, lights_[i], 1, LitBatch::Lobes::kSpecular, facet, x, y, sum);
         return sum;
     }
 
-    void add(const LitBatch& batch, const FrameLight& light, float weight, LitBatch::Lobes lobes, const Vec3T<Floats>& facet,
-             int x, int y, Sum& sum) const {
+    void add(const LitBatch& batch, const FrameLight& light, float weight, LitBatch::Lobes lobes,
+             const Vec3T<Floats>& facet, int x, int y, Sum& sum) const {
         RgbT<Floats> reflected = batch.reflected(light, lobes) * Floats(weight);
         if (!media_.empty()) {
             const LightDirection to = direction_to(light, batch.p());
@@ -138,8 +139,8 @@ private:
         return p + n * (load(gbuffer_.bulge, x, y) * low);
     }
 
-    /// Returns the normals of the planes that do not shade themselves. They are those of the facets, where these face the
-    /// light; a facet that smooth shading turns toward the light stands for a part of the smooth surface.
+    /// Returns the normals of the planes that do not shade themselves. They are those of the facets, where these face
+    /// the light; a facet that smooth shading turns toward the light stands for a part of the smooth surface.
     Vec3T<Floats> receiving_normal(const LitBatch& batch, const FrameLight& light, const Vec3T<Floats>& facet) const {
         constexpr float kLeastCosine = 0.05f;
         const auto faces = dot(facet, direction_to_middle(batch, light)) > Floats(kLeastCosine);

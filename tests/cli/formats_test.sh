@@ -28,6 +28,17 @@ for program in raster raytrace; do
     done
     ! cmp -s "$scratch/orbit-0000.png" "$scratch/orbit-0001.png" || fail "$program --orbit does not turn the camera"
     rm -f "$scratch"/orbit*
+    expect 2 "$bin/$program" models/cornell.json -o "$scratch/turn.mp4" --size 24x16
+    one_line_error "a video needs --orbit"
+    code=1
+    ! command -v ffmpeg >"$scratch/ffmpeg" || code=0
+    expect $code "$bin/$program" models/cornell.json -o "$scratch/turn.mp4" --orbit 3 --size 25x17 --spp 2 --quiet \
+        $cheap
+    if [ $code = 0 ]; then # the video is there and the frames are gone, or the other way round
+        [ -s "$scratch/turn.mp4" ] && [ ! -e "$scratch/turn-0000.png" ] || fail "$program wrote no video"
+    else
+        [ ! -e "$scratch/turn.mp4" ] && [ -s "$scratch/turn-0002.png" ] || fail "$program left no frames"
+    fi
 
     # Exposure, tone and dithering change 8-bit files; the command line overrides the scene; floats stay as they are.
     rm -f "$scratch/sums"
@@ -36,8 +47,8 @@ for program in raster raytrace; do
         cksum <"$scratch/view.ppm" >>"$scratch/sums"
     done
     [ "$(sort -u "$scratch/sums" | wc -l)" = 5 ] || fail "$program: two view transforms gave the same file"
-    sed "s#\"image\": {#&\"tone\": \"agx\", \"exposure\": 2, #; s#\"meshes/#\"$PWD/models/meshes/#" models/cornell.json \
-        >"$scratch/view.json"
+    sed "s#\"image\": {#&\"tone\": \"agx\", \"exposure\": 2, #; s#\"meshes/#\"$PWD/models/meshes/#" \
+        models/cornell.json >"$scratch/view.json"
     expect 0 "$bin/$program" "$scratch/view.json" -o "$scratch/view.ppm" --size 24x16 --spp 2 --quiet $cheap \
         --tone none --exposure 1
     [ "$(cksum <"$scratch/view.ppm")" = "$(sed -n 2p "$scratch/sums")" ] || fail "$program: --tone is not the last word"

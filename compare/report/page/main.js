@@ -132,7 +132,11 @@ function showWorst() {
 
 // ---- Event handlers.
 
-function setExposure(ev) { state.ev = clamp(Math.round(ev * 10) / 10, -maxStops, maxStops); updateExposure(); changed(); }
+function setExposure(ev) {
+  state.ev = clamp(Math.round(ev * 10) / 10, -maxStops, maxStops);
+  updateExposure();
+  changed();
+}
 function setTone(tone) { state.tone = tone; updateExposure(); changed(); }
 function setChannel(channel) {
   state.channel = channel;

@@ -13,8 +13,8 @@ function exposureTable(stops) {
   return table;
 }
 
-// Returns the bytes of a color: the view transform (common/image/view_transform.h) at an exposure in stops. The curve of
-// a tone is a table over the binary logarithm of its argument.
+// Returns the bytes of a color: the view transform (common/image/view_transform.h) at an exposure in stops. The curve
+// of a tone is a table over the binary logarithm of its argument.
 function displayedColor(rgb, stops) {
   if (!rgb.every(Number.isFinite)) return invalidColor;
   const { inset, outset, curve, log2_range: [low, high] } = data.tones[state.tone], gain = 2 ** stops;
