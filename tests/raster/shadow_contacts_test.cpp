@@ -188,6 +188,42 @@ TEST_SUITE("unit") {
             }
     }
 
+    TEST_CASE("a convex mesh does not shade its facets that face the light, however far their shading normals lean") {
+        // The facets of an octahedron with normals as of a sphere lean up to 55 degrees away from them.
+        Mesh octahedron;
+        octahedron.positions = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+        octahedron.normals = octahedron.positions;
+        for (const std::uint32_t x : {0u, 1u})
+            for (const std::uint32_t y : {2u, 3u})
+                for (const std::uint32_t z : {4u, 5u}) {
+                    const bool even = (x + y + z) % 2 == 0;
+                    octahedron.triangles.push_back({x, even ? y : z, even ? z : y});
+                }
+        for (const Vec3 to_sun : {Vec3(0.9f, 0.4f, 0.2f), Vec3(-0.3f, 0.9f, 0.5f), Vec3(0.2f, -0.5f, 1)}) {
+            Scene scene;
+            add(scene, octahedron);
+            scene.lights.push_back(SunLight{normalize(-to_sun), Rgb(2)});
+            scene.camera = look({1.5, 1.2, 4}, {0, 0, 0}, 30);
+            finish_scene(scene);
+            const View view{scene.camera, 160, 160};
+            raster::RasterSettings settings = direct_light_only();
+            settings.aovs.normal = true;
+            const Image<Vec3> normals = render(scene, view, settings).normal;
+            const ImageFloat light = arriving(scene, view);
+            int facing = 0, dark = 0;
+            for (std::size_t i = 0; i < light.size(); ++i) {
+                const Vec3 n = normals[i];
+                if (n == Vec3() || light[i] == 0) continue; // the background, and light from below the smooth surface
+                const Vec3 facet(std::copysign(1.0f, n.x), std::copysign(1.0f, n.y), std::copysign(1.0f, n.z));
+                if (dot(normalize(facet), normalize(to_sun)) < 0.1f) continue;
+                ++facing;
+                dark += light[i] < 0.999f;
+            }
+            CHECK(facing > 1000);
+            CHECK(dark == 0);
+        }
+    }
+
     TEST_CASE("no acne in a hollow: facets that meet at 3 to 9 degrees and face the light do not shade each other") {
         for (const int facets : {10, 30})
             for (const Vec3 way : {Vec3(0, -1, 0), Vec3(-0.2f, -1, 0.1f), Vec3(0, -1, 0.7f)}) {
