@@ -31,6 +31,8 @@ std::span<const Model> all_models() {
         {"octopus", kBuilt, {kOctopusFile}, write_octopus},
         {"octopus-hundred-thousand", kOnRequest, {kOctopusSmallFile}, write_octopus_hundred_thousand},
         {"octopus-million", kOnRequest, {kOctopusMillionFile}, write_octopus_million},
+        {"octopus-fine", kOnRequest, {kOctopusFineFile}, write_octopus_fine},
+        {"gyroid", kOnRequest, {kGyroidFile}, write_gyroid},
     };
     return models;
 }

@@ -34,6 +34,7 @@ void generate_model(const Model& model, const std::filesystem::path& folder);
 ///@{
 void write_amphora(const std::filesystem::path& folder);
 void write_bowl(const std::filesystem::path& folder);
+void write_gyroid(const std::filesystem::path& folder);
 void write_hall(const std::filesystem::path& folder);
 void write_lanterns(const std::filesystem::path& folder);
 void write_pear(const std::filesystem::path& folder);
@@ -43,5 +44,6 @@ void write_sky(const std::filesystem::path& folder);
 void write_spheres(const std::filesystem::path& folder);
 ///@}
 inline constexpr const char* kHallFile = "generated/hall.obj";
+inline constexpr const char* kGyroidFile = "generated/gyroid.obj";
 
 } // namespace duet::models

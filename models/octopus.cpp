@@ -1,6 +1,6 @@
 // This file generates octopus.obj: an octopus on the ground, with one arm wound around a ball. It is an implicit
-// surface, polygonized to about 200,000 triangles (or a hundred thousand, or a million). The scene places the eyes
-// and the ball by the constants of octopus.h.
+// surface, polygonized to about 200,000 triangles (or a hundred thousand, or a million). octopus-fine.obj has lids and
+// a finer skin. The scene places the eyes and the ball by the constants of octopus.h.
 #include "models/octopus.h"
 
 #include "models/distance_field.h"
@@ -129,9 +129,15 @@ Arm holding_arm() {
     return arm;
 }
 
+/// Octopuses differ in their eyes and skin.
+enum class Look {
+    kPlain, ///< eyes on the skin
+    kFine,  ///< eyes within lids, and small warts that only a fine mesh shows
+};
+
 class Octopus {
 public:
-    Octopus() {
+    explicit Octopus(Look look) : look_(look) {
         for (const ArmPlan& plan : kArms) add(ground_arm(plan));
         add(holding_arm());
     }
@@ -147,8 +153,10 @@ public:
             d = smooth_min(d, with_suckers(p, reach, arm), k);
         }
         d = min(d, far);
-        const double eye = length(Vec3d(std::abs(p.x), p.y, p.z) - Vec3d(kEyeX, kEyeY, kEyeZ)) - kEyeRadius;
+        const Vec3d from_eye = Vec3d(std::abs(p.x), p.y, p.z) - Vec3d(kEyeX, kEyeY, kEyeZ);
+        const double eye = length(from_eye) - kEyeRadius;
         if (std::abs(d) < 0.15) d -= skin(p) * smooth_step(0.0, 0.12, eye);
+        if (look_ == Look::kFine) return with_lids(d, from_eye);
         return smooth_max(d, -eye, 0.05);
     }
 
@@ -197,19 +205,33 @@ private:
         return d;
     }
 
+    /// Adds a lid around the eye, which leaves it open where it looks: a slot with round ends.
+    static double with_lids(double d, Vec3d from_eye) {
+        const Vec3d ahead = normalize(kEyeGaze), across = normalize(cross(Vec3d(0, 1, 0), ahead));
+        const double x = max(std::abs(dot(from_eye, across)) - 0.35 * kEyeRadius, 0.0);
+        const double y = dot(from_eye, cross(ahead, across)), z = dot(from_eye, ahead);
+        const double slot = max(std::sqrt(x * x + y * y) - (0.3 * kEyeRadius + 0.35 * max(z - 0.8 * kEyeRadius, 0.0)),
+                                -z);
+        d = smooth_min(d, length(from_eye) - 1.22 * kEyeRadius, 0.07);
+        return smooth_max(d, -slot, 0.025);
+    }
+
     /// Returns the height of the skin's wrinkles and warts.
-    static double skin(Vec3d p) {
+    double skin(Vec3d p) const {
         const double upper = smooth_step(0.5, 0.8, p.y);
         const double folds = gradient_noise(p * 5.0) * 0.012;
         const double warts = max(gradient_noise(p * 16.0 + Vec3d(7, 3, 5)) - 0.1, 0.0) * 0.022;
-        return upper * (folds + warts);
+        if (look_ == Look::kPlain) return upper * (folds + warts);
+        const double small = max(gradient_noise(p * 42.0 + Vec3d(3, 8, 1)) - 0.05, 0.0) * 0.009;
+        return upper * (folds + warts) + smooth_step(0.1, 0.6, p.y) * small;
     }
 
+    Look look_;
     std::vector<ArmShape> arms_;
 };
 
-void write_octopus_mesh(const std::filesystem::path& path, double cell) {
-    const Octopus octopus;
+void write_octopus_mesh(const std::filesystem::path& path, double cell, Look look = Look::kPlain) {
+    const Octopus octopus(look);
     const Implicit surface{[&](Vec3d p) { return octopus.value(p); }, Octopus::kLow, Octopus::kHigh};
     write_obj(path, polygonize(surface, cell), "An octopus, made by models/octopus.cpp.");
 }
@@ -222,6 +244,9 @@ void write_octopus_hundred_thousand(const std::filesystem::path& folder) {
 }
 void write_octopus_million(const std::filesystem::path& folder) {
     write_octopus_mesh(folder / kOctopusMillionFile, 0.013);
+}
+void write_octopus_fine(const std::filesystem::path& folder) {
+    write_octopus_mesh(folder / kOctopusFineFile, 0.0125, Look::kFine);
 }
 
 } // namespace duet::models

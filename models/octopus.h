@@ -10,9 +10,12 @@ namespace duet::models {
 inline constexpr const char* kOctopusFile = "generated/octopus.obj";
 inline constexpr const char* kOctopusSmallFile = "generated/octopus-hundred-thousand.obj";
 inline constexpr const char* kOctopusMillionFile = "generated/octopus-million.obj";
+inline constexpr const char* kOctopusFineFile = "generated/octopus-fine.obj";
 
 /// The eyes are spheres at (±x, y, z).
 inline constexpr double kEyeX = 0.245, kEyeY = 0.82, kEyeZ = 0.17, kEyeRadius = 0.1;
+/// Where the right eye's lids open.
+inline constexpr Vec3d kEyeGaze{0.62, 0.02, 0.78};
 /// One arm winds around this ball.
 inline constexpr Vec3d kBallCenter{0.72, 0.40, 0.78};
 inline constexpr double kBallRadius = 0.28;
@@ -22,6 +25,7 @@ inline constexpr double kBallRadius = 0.28;
 void write_octopus(const std::filesystem::path& folder);
 void write_octopus_hundred_thousand(const std::filesystem::path& folder);
 void write_octopus_million(const std::filesystem::path& folder);
+void write_octopus_fine(const std::filesystem::path& folder);
 ///@}
 
 } // namespace duet::models
