@@ -13,6 +13,7 @@ namespace duet::compare {
 void add_run(CommandLine& program);
 void add_ladder(CommandLine& program);
 void add_images(CommandLine& program);
+void add_join(CommandLine& program);
 void add_skip(CommandLine& program);
 void add_bench(CommandLine& program);
 void add_stop(CommandLine& program);

@@ -14,8 +14,8 @@ int main(int argc, char** argv) {
         program.set_footer(
             "Example:\n  compare run models/cornell.json -o out\n\n`compare SUBCOMMAND --help` explains each.");
         for (const auto add :
-             {add_run, add_ladder, add_images, add_skip, add_bench, add_stop, add_kernels, add_frames, add_stress,
-              add_check})
+             {add_run, add_ladder, add_images, add_join, add_skip, add_bench, add_stop, add_kernels, add_frames,
+              add_stress, add_check})
             add(program);
         const std::optional<int> exit_code = program.parse(argc, argv);
         return exit_code ? *exit_code : program.run_subcommand();

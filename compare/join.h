@@ -1,0 +1,28 @@
+// `compare join`: several images in one image.
+#pragma once
+
+#include "common/image/image.h"
+
+#include <filesystem>
+#include <vector>
+
+namespace duet::compare {
+
+struct JoinOptions {
+    std::vector<std::filesystem::path> images;
+    std::filesystem::path output;
+    int columns = 0; ///< of the grid; 0: all images in one row
+    int gap = 0; ///< white pixels between images
+    bool bands = false; ///< shows a band of each image in one image of their size, in place of a grid
+    double slant_degrees = 0; ///< of the lines between bands, from the vertical: they rise to the right
+};
+
+/// Returns a grid of images of one size, row by row. Cells that remain in the last row are white.
+ImageRgb image_grid(const std::vector<ImageRgb>& images, int columns, int gap);
+/// Returns one image that is made of equally wide bands, from left to right one of each image. They have one size.
+ImageRgb image_bands(const std::vector<ImageRgb>& images, double gap, double slant_degrees);
+
+/// Reads the images and writes the result. Throws Error if a file cannot be used, or the images differ in size.
+int join_images(const JoinOptions& options);
+
+} // namespace duet::compare
