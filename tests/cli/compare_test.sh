@@ -2,7 +2,7 @@
 # The program compare: help, exit codes, an interrupted run leaves nothing behind.
 . "$(dirname "$0")/support.sh"
 
-for command in "" run images ladder skip stress; do
+for command in "" run images join ladder skip stress; do
     expect 0 "$bin/compare" $command --help
     grep -q Example "$scratch/stdout" || fail "compare $command --help shows no example"
 done
