@@ -21,8 +21,12 @@ rasterize() {
     shift 2
     "$bin/raster" "models/$scene.json" -o "$work/$name.exr" --spp 16 --quiet "$@"
 }
-# picture NAME: turns $work/NAME.exr into gallery/NAME.jpg.
-picture() { "$bin/compare" join "$work/$1.exr" -o "gallery/$1.jpg"; }
+# picture NAME OPTIONS…: turns $work/NAME.exr into gallery/NAME.jpg, with the options of a view transform.
+picture() {
+    name=$1
+    shift
+    "$bin/compare" join "$work/$name.exr" -o "gallery/$name.jpg" --dither "$@"
+}
 
 trace octopus gallery/octopus --spp 512 --adaptive
 picture octopus
@@ -33,11 +37,11 @@ picture nave
 trace glass-sphere gallery/glass-sphere --integrator vcm --spp 500
 picture glass-sphere
 trace caustics caustics --integrator vcm --spp 300
-picture caustics
+picture caustics --tone filmic --exposure 0.5
 trace spheres spheres --size 960x540 --spp 700 --adaptive
 picture spheres
 trace cornell cornell --spp 512 --adaptive
-picture cornell
+picture cornell --tone filmic --exposure 1
 
 # One scene, two pipelines: the left half is rasterized, the right half is path traced.
 trace demo demo --size 800x450 --spp 400 --adaptive

@@ -65,9 +65,10 @@ int join_images(const JoinOptions& options) {
     check_writable_image(options.output);
     const std::vector<ImageRgb> images = read_images_of_one_size(options.images);
     const int columns = options.columns > 0 ? options.columns : static_cast<int>(images.size());
-    write_image(options.output, options.bands ? image_bands(images, options.gap, options.slant_degrees)
-                                              : image_grid(images, columns, options.gap));
-    return 0;
+    const ImageRgb joined = options.bands ? image_bands(images, options.gap, options.slant_degrees)
+                                          : image_grid(images, columns, options.gap);
+    write_image(options.output, joined, {.view = options.view_transform.applied_to({})});
+    return kExitOk;
 }
 
 } // namespace duet::compare

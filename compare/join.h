@@ -1,7 +1,7 @@
 // `compare join`: several images in one image.
 #pragma once
 
-#include "common/image/image.h"
+#include "common/program/view_transform_options.h"
 
 #include <filesystem>
 #include <vector>
@@ -15,6 +15,7 @@ struct JoinOptions {
     int gap = 0; ///< white pixels between images
     bool bands = false; ///< shows a band of each image in one image of their size, in place of a grid
     double slant_degrees = 0; ///< of the lines between bands, from the vertical: they rise to the right
+    ViewTransformOptions view_transform;
 };
 
 /// Returns a grid of images of one size, row by row. Cells that remain in the last row are white.

@@ -16,6 +16,7 @@ void add_join(CommandLine& program) {
     join.add("--slant", options.slant_degrees, "Degrees by which the bands lean to the right (default 0)")
         .number_range(-80, 80, "a number from -80 to 80")
         .needs("--bands");
+    add_view_transform(join, options.view_transform);
     set_footer(join, "Example:\n  compare join out/raster.png out/raytrace.png -o both.jpg --bands --slant 10 --gap 2");
 }
 
