@@ -1,0 +1,43 @@
+# What `cmake --install` installs.
+include(CMakePackageConfigHelpers)
+
+# Programs, with their manual pages and completion.
+set(programs raster raytrace)
+if(DUET_BUILD_COMPARE)
+    list(APPEND programs compare)
+endif()
+install(TARGETS ${programs} DESTINATION bin COMPONENT programs)
+foreach(program ${programs})
+    set(manual ${PROJECT_BINARY_DIR}/${program}.1.gz)
+    install(CODE "execute_process(COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/manual.sh $<TARGET_FILE:${program}>
+            ${PROJECT_VERSION} COMMAND gzip -9n OUTPUT_FILE ${manual} COMMAND_ERROR_IS_FATAL ANY)"
+        COMPONENT shared)
+    install(FILES ${manual} DESTINATION share/man/man1 COMPONENT shared)
+    install(FILES ${CMAKE_CURRENT_LIST_DIR}/completion.bash DESTINATION share/bash-completion/completions
+        RENAME ${program} COMPONENT shared)
+endforeach()
+
+# Models and pages. The pages lie as in the source tree; their links to sources lead nowhere.
+install(DIRECTORY models DESTINATION share/duet COMPONENT shared FILES_MATCHING
+    PATTERN *.json PATTERN *.obj PATTERN *.mtl PATTERN *.png PATTERN *.hdr)
+file(GLOB_RECURSE pages CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} gallery/*.svg gallery/*.jpg gallery/*.png
+    common/*.md raster/*.md raster/*.png raytrace/*.md raytrace/*.png compare/*.md compare/*.png models/*.md
+    gallery/*.md raster/*.svg raytrace/*.svg compare/*.svg)
+foreach(page README.md ${pages})
+    get_filename_component(folder ${page} DIRECTORY)
+    install(FILES ${page} DESTINATION share/doc/duet/${folder} COMPONENT shared)
+endforeach()
+install(FILES LICENSE DESTINATION share/doc/duet COMPONENT development)
+
+# Headers, libraries and the CMake package.
+foreach(library flags image common raster raytrace)
+    set_target_properties(duet_${library} PROPERTIES EXPORT_NAME ${library})
+endforeach()
+install(TARGETS duet_flags duet_image duet_common duet_raster duet_raytrace EXPORT DuetTargets COMPONENT development
+    ARCHIVE DESTINATION lib INCLUDES DESTINATION include/duet)
+install(DIRECTORY common raster raytrace DESTINATION include/duet COMPONENT development
+    FILES_MATCHING PATTERN *.h PATTERN lessons EXCLUDE)
+install(EXPORT DuetTargets NAMESPACE Duet:: DESTINATION lib/cmake/Duet COMPONENT development)
+write_basic_package_version_file(DuetConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_LIST_DIR}/DuetConfig.cmake ${PROJECT_BINARY_DIR}/DuetConfigVersion.cmake
+    DESTINATION lib/cmake/Duet COMPONENT development)
