@@ -1,4 +1,4 @@
-# What `cmake --install` installs.
+# What `cmake --install` installs, and the Debian package (common/install/README.md).
 include(CMakePackageConfigHelpers)
 
 # Programs, with their manual pages and completion.
@@ -41,3 +41,36 @@ install(EXPORT DuetTargets NAMESPACE Duet:: DESTINATION lib/cmake/Duet COMPONENT
 write_basic_package_version_file(DuetConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_LIST_DIR}/DuetConfig.cmake ${PROJECT_BINARY_DIR}/DuetConfigVersion.cmake
     DESTINATION lib/cmake/Duet COMPONENT development)
+
+# The Debian package: the programs of several builds, each with an instruction set of its own, and launchers.
+# common/install/package.sh makes the builds.
+if(NOT UNIX)
+    return()
+endif()
+add_executable(launch ${CMAKE_CURRENT_LIST_DIR}/launch_main.cpp)
+target_link_options(launch PRIVATE -s)
+install(TARGETS ${programs} DESTINATION lib/duet/${DUET_ARCH} COMPONENT level EXCLUDE_FROM_ALL)
+foreach(program ${programs})
+    install(PROGRAMS $<TARGET_FILE:launch> DESTINATION bin RENAME ${program} COMPONENT launchers EXCLUDE_FROM_ALL)
+endforeach()
+install(FILES LICENSE DESTINATION share/doc/duet RENAME copyright COMPONENT launchers EXCLUDE_FROM_ALL)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_PACKAGE_CONTACT "the Duet authors <duet@localhost>")
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+# ImageMagick and GraphicsMagick have a program of the name `compare`, too.
+set(CPACK_DEBIAN_PACKAGE_CONFLICTS "imagemagick, graphicsmagick-imagemagick-compat")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "rasterizer and path tracer that render the same scenes")
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "Duet renders one scene in two ways, by rasterization and by path tracing, and
+compares the images: what differs, where it comes from, and what each way costs.
+It is meant for courses on rendering. The package has the programs raster,
+raytrace and compare, the models, and the pages of the course.")
+set(CPACK_INSTALL_CMAKE_PROJECTS "${PROJECT_BINARY_DIR};duet;shared;/;${PROJECT_BINARY_DIR};duet;launchers;/")
+foreach(build ${DUET_PACKAGE_BUILDS})
+    list(APPEND CPACK_INSTALL_CMAKE_PROJECTS ${PROJECT_SOURCE_DIR}/${build} duet level /)
+endforeach()
+include(CPack)

@@ -1,5 +1,5 @@
 # What `cmake --install` installs: programs, models, a CMake package that another project builds with, manual pages and
-# completion.
+# completion; and the launchers of the Debian package.
 . tests/cli/support.sh
 build=$(dirname "$bin")
 prefix=$scratch/prefix
@@ -44,4 +44,24 @@ complete() {
 [ "$(complete raster --no-f)" = --no-fog ] || fail "raster --no-f is completed to: $(complete raster --no-f)"
 [ -z "$(complete raster models/de)" ] || fail "a file name is completed to: $(complete raster models/de)"
 
+# A launcher starts the program of its name and of the CPU's level, or of DUET_LEVEL. Scripts stand for the programs.
+package=$scratch/package
+expect 0 cmake --install "$build" --prefix "$package" --component launchers
+for level in x86-64-v3 x86-64-v4; do
+    mkdir -p "$package/lib/duet/$level"
+    printf '#!/bin/sh\necho "%s $# $2"\nexit 7\n' $level >"$package/lib/duet/$level/raytrace"
+    chmod +x "$package/lib/duet/$level/raytrace"
+    expect 7 env DUET_LEVEL=$level "$package/bin/raytrace" a 'b c'
+    [ "$(cat "$scratch/stdout")" = "$level 2 b c" ] || fail "the launcher started: $(cat "$scratch/stdout")"
+done
+best=x86-64-v3
+! grep -q '^flags.*avx512f.*avx512dq.*avx512cd.*avx512bw.*avx512vl' /proc/cpuinfo || best=x86-64-v4
+expect 7 env -u DUET_LEVEL "$package/bin/raytrace" a
+[ "$(cat "$scratch/stdout")" = "$best 1 " ] || fail "this CPU has $best; the launcher started: $(cat "$scratch/stdout")"
+ln -s "$package/bin/raytrace" "$scratch/link"
+expect 7 "$scratch/link" a
+expect 1 env DUET_LEVEL=x86-64-v3 "$package/bin/raster"
+one_line_error "x86-64-v3/raster: No such file or directory"
+expect 2 env DUET_LEVEL= "$package/bin/raster"
+one_line_error "lacks AVX2"
 finish

@@ -1,0 +1,39 @@
+// Implements the programs of the Debian package: each is this launcher, installed under the program's name. It starts
+// lib/duet/LEVEL/NAME beside its own folder, where LEVEL is the best that this CPU runs of the levels that the package
+// has. The environment variable DUET_LEVEL replaces the CPU's level; empty, it stands for a CPU that is too old.
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <iostream>
+#include <string>
+#include <unistd.h>
+
+namespace {
+
+/// The levels of the x86-64 psABI, by the instructions that Duet's code and its compilers use of them.
+std::string cpu_level() {
+    if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma") || !__builtin_cpu_supports("bmi2")) return "";
+    const bool v4 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+                    __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+                    __builtin_cpu_supports("avx512vl");
+    return v4 ? "x86-64-v4" : "x86-64-v3";
+}
+
+} // namespace
+
+int main(int, char** argv) {
+    const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe");
+    const char* const wanted = std::getenv("DUET_LEVEL");
+    const std::string level = wanted != nullptr ? wanted : cpu_level();
+    if (level.empty()) {
+        std::cerr << self.filename().string() << ": this CPU lacks AVX2 or fused multiply-add. Duet needs both "
+                  << "(x86-64-v3: Intel since 2013, AMD since 2015)\n";
+        return 2;
+    }
+    const std::filesystem::path program = self.parent_path().parent_path() / "lib/duet" / level / self.filename();
+    execv(program.c_str(), argv);
+    std::cerr << self.filename().string() << ": cannot start " << program.string() << ": " << std::strerror(errno)
+              << ". Reinstall the package, or unset DUET_LEVEL if it is set\n";
+    return 1;
+}

@@ -1,0 +1,13 @@
+#!/bin/sh
+# Builds the programs for x86-64-v3 and x86-64-v4, and from both a Debian package: build/duet_VERSION_amd64.deb.
+# Programs that compute tables run during the build, so the CPU must have AVX-512. Like setup.sh, it installs what is
+# missing.
+# usage: sh common/install/package.sh
+set -eu
+cd "$(dirname "$0")/../.."
+for preset in package-v4 package-v3; do
+    sh common/setup.sh $preset dpkg-dev
+    cmake --build --preset $preset
+done
+cd build
+cpack --config package-v3/CPackConfig.cmake
