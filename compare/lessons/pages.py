@@ -97,19 +97,24 @@ def end_faults(lesson, text):
     return faults
 
 
+def fill_quotes(page, write):
+    """The page's text with its quotes filled in, on disk too where `write`, and (file, line, what) of their faults."""
+    text = page.read_text(encoding="utf-8")
+    filled, _, marker_faults = quotes.fill(page, text)
+    faults = [(page, *fault) for fault in marker_faults]
+    if filled != text and write:
+        page.write_text(filled, encoding="utf-8")
+    elif filled != text:
+        line = next((i for i, (a, b) in enumerate(zip(filled.split("\n"), text.split("\n"))) if a != b), 0)
+        faults.append((page, line + 1, "a quote differs from its source: run python3 compare/lessons/pages.py --write"))
+    return filled, faults
+
+
 def lesson_faults(lesson, write):
     """(file, line, what) of all that concerns one lesson's own page; its quotes are filled in where `write`."""
     if not lesson.page.exists():
         return [(lesson.page, 0, "the lesson has no page")]
-    text = lesson.page.read_text(encoding="utf-8")
-    filled, _, marker_faults = quotes.fill(lesson.page, text)
-    faults = [(lesson.page, *fault) for fault in marker_faults]
-    if filled != text and write:
-        lesson.page.write_text(filled, encoding="utf-8")
-    elif filled != text:
-        line = next((i for i, (a, b) in enumerate(zip(filled.split("\n"), text.split("\n"))) if a != b), 0)
-        faults.append((lesson.page, line + 1,
-                       "a quote differs from its source: run python3 compare/lessons/pages.py --write"))
+    filled, faults = fill_quotes(lesson.page, write)
     faults += program_faults(lesson, filled)
     for check in (outline_faults, figure_faults, end_faults):
         faults += [(lesson.page, *fault) for fault in check(lesson, filled)]
@@ -161,7 +166,9 @@ def main():
     source = options.source.resolve()
     lessons = course.pick(options.ids, source)
     faults = [fault for lesson in lessons for fault in lesson_faults(lesson, options.write)]
-    pages = [lesson.page for lesson in lessons] + ([] if options.ids else course.other_pages(source))
+    others = [] if options.ids else course.other_pages(source)
+    faults += [fault for page in others for fault in fill_quotes(page, options.write)[1]]
+    pages = [lesson.page for lesson in lessons] + others
     more, skipped = text_faults(pages, source, options.programs)
     faults = sorted(faults + more, key=lambda fault: (str(fault[0]), fault[1]))
     print(table(lessons))

@@ -155,6 +155,7 @@ FIRST_PAGE_FAULTS = [
     ("(#a-house)", "(#the-house)", "has no heading #the-house"),
     ("build/release --target", "build/fast --target", "no such preset"),
     ("is about", "is abuot", "'abuot' is in no dictionary"),
+    ("is about", "is about\n\n<!-- quote none.h: int -->\n\n", "no file none.h beside the page"),
 ]
 
 
