@@ -65,10 +65,10 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # ImageMagick and GraphicsMagick have a program of the name `compare`, too.
 set(CPACK_DEBIAN_PACKAGE_CONFLICTS "imagemagick, graphicsmagick-imagemagick-compat")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "rasterizer and path tracer that render the same scenes")
-set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "Duet renders one scene in two ways, by rasterization and by path tracing, and
-compares the images: what differs, where it comes from, and what each way costs.
-It is meant for courses on rendering. The package has the programs raster,
-raytrace and compare, the models, and the pages of the course.")
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "Duet renders one scene in two ways, by rasterization and by path tracing. It
+compares the images: what differs, where that comes from, and what each way
+costs. It is meant for courses on rendering. The package has the programs
+raster, raytrace and compare, the models, and the pages of the course.")
 set(CPACK_INSTALL_CMAKE_PROJECTS "${PROJECT_BINARY_DIR};duet;shared;/;${PROJECT_BINARY_DIR};duet;launchers;/")
 foreach(build ${DUET_PACKAGE_BUILDS})
     list(APPEND CPACK_INSTALL_CMAKE_PROJECTS ${PROJECT_SOURCE_DIR}/${build} duet level /)
