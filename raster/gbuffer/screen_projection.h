@@ -62,6 +62,7 @@ public:
         return perspective_ ? T(length(direction_dx_)) * depth : T(length(origin_dx_));
     }
     float near() const { return near_; }
+    bool perspective() const { return perspective_; }
 
 private:
     Vec3d eye_;

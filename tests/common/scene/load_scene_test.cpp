@@ -185,7 +185,7 @@ TEST_SUITE("unit") {
             {with(R"("image": {"width": 2.5})"), "$.image.width: found 2.5"},
             {with(R"("image": [1, 2])"), "$.image: found an array of 2 elements, expected an object"},
             {with(R"("image": {"exposure": 33})"), "$.image.exposure: found 33, expected a number in [-32, 32]"},
-            {with(R"("image": {"tone": "warm"})"), "$.image.tone: found \"warm\", expected"},
+            {with(R"("image": {"tone": "warm"})"), "$.image.tone: found the string \"warm\", expected one of"},
             {with(R"("image": {"dither": 1})"), "$.image.dither: found 1"},
             {with(R"("description": 7)"), "$.description: found 7, expected a string"},
             {with_camera("7"), "$.camera: found 7, expected an object"},
