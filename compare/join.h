@@ -8,6 +8,7 @@
 
 namespace duet::compare {
 
+/// JoinOptions are the arguments of join_images().
 struct JoinOptions {
     std::vector<std::filesystem::path> images;
     std::filesystem::path output;
