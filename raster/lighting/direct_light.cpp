@@ -120,8 +120,9 @@ private:
         }
         const xsimd::batch_bool<float> lit = max_component(reflected) > Floats(0.0f);
         if (lane_bits(lit) == 0) return;
-        const Floats visible = shadows_->visibility(light.index, receiver(batch, light, x, y),
-                                                    receiving_normal(batch, light, facet), x, y, lit);
+        const Vec3T<Floats> wi = direction_to_middle(batch, light);
+        const Floats visible = shadows_->visibility(light.index, receiver(batch, wi, x, y),
+                                                    receiving_normal(batch, wi, facet), x, y, lit);
         const RgbT<Floats> seen = reflected * xsimd::select(lit, visible, Floats(0.0f));
         if (shadows_->noisy(light.index))
             sum.unshadowed += reflected, sum.shadowed += seen;
@@ -131,20 +132,18 @@ private:
 
     /// Returns the points at which a light's shadows are looked up. They lie on the smooth surface that coarse facets
     /// stand for if the light is low, or facets would shade themselves; else on the facets, for the sake of contacts.
-    Vec3T<Floats> receiver(const LitBatch& batch, const FrameLight& light, int x, int y) const {
+    Vec3T<Floats> receiver(const LitBatch& batch, const Vec3T<Floats>& wi, int x, int y) const {
         constexpr float kLow = 0.4f, kHigh = 0.8f; // cosines between which the height falls
         const Vec3T<Floats> n = batch.n(), p = batch.p();
-        const Floats cosine = dot(n, direction_to_middle(batch, light));
-        const Floats low = clamp((Floats(kHigh) - cosine) * Floats(1 / (kHigh - kLow)), Floats(0.0f), Floats(1.0f));
+        const Floats low = clamp((Floats(kHigh) - dot(n, wi)) * Floats(1 / (kHigh - kLow)), Floats(0.0f), Floats(1.0f));
         return p + n * (load(gbuffer_.bulge, x, y) * low);
     }
 
     /// Returns the normals of the planes that do not shade themselves. They are those of the facets, where these face
     /// the light; a facet that smooth shading turns toward the light stands for a part of the smooth surface.
-    Vec3T<Floats> receiving_normal(const LitBatch& batch, const FrameLight& light, const Vec3T<Floats>& facet) const {
+    static Vec3T<Floats> receiving_normal(const LitBatch& batch, const Vec3T<Floats>& wi, const Vec3T<Floats>& facet) {
         constexpr float kLeastCosine = 0.05f;
-        const auto faces = dot(facet, direction_to_middle(batch, light)) > Floats(kLeastCosine);
-        return select(faces, facet, batch.n());
+        return select(dot(facet, wi) > Floats(kLeastCosine), facet, batch.n());
     }
 
     /// Returns the unit directions from the points to the middle of the light.
