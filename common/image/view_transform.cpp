@@ -2,6 +2,7 @@
 
 #include "common/image/srgb.h"
 #include "common/system/parallel.h"
+#include "common/vec/matrix.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,18 +18,13 @@ Rgb operator*(const ColorMatrix& m, Rgb c) {
     return {row(0), row(1), row(2)};
 }
 
-// Returns the inverse, by Cramer's rule.
 ColorMatrix inverse(const ColorMatrix& m) {
-    ColorMatrix adjugate{};
-    for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t j = 0; j < 3; ++j) {
-            const std::size_t r = (j + 1) % 3, s = (j + 2) % 3, c = (i + 1) % 3, d = (i + 2) % 3;
-            adjugate[i][j] = m[r][c] * m[s][d] - m[r][d] * m[s][c];
-        }
-    const float determinant = m[0][0] * adjugate[0][0] + m[0][1] * adjugate[1][0] + m[0][2] * adjugate[2][0];
-    for (auto& row : adjugate)
-        for (float& entry : row) entry /= determinant;
-    return adjugate;
+    Mat4 a;
+    for (std::size_t i = 0; i < 3; ++i) std::copy(m[i].begin(), m[i].end(), a[i].begin());
+    const Mat4 result = inverse_affine(a);
+    ColorMatrix inverted{};
+    for (std::size_t i = 0; i < 3; ++i) std::copy_n(result[i].begin(), 3, inverted[i].begin());
+    return inverted;
 }
 
 // Scales each row to the sum 1, so that gray stays gray.
@@ -115,18 +111,18 @@ Rgb displayed(Rgb radiance, const ViewTransform& view) {
 
 std::vector<std::uint8_t> display_bytes(const ImageRgb& image, const ViewTransform& view, int threads) {
     if (view == ViewTransform{}) return srgb_encode_8bit(image, threads);
-    ImageRgb shown(image.width(), image.height());
-    std::vector<std::uint8_t> dithered(view.dither ? 3 * image.size() : 0);
+    const SrgbEncoder& encode = srgb_encoder();
+    std::vector<std::uint8_t> bytes(3 * image.size());
     const auto width = static_cast<std::size_t>(image.width());
     parallel_for(static_cast<std::size_t>(image.height()), threads, [&](std::size_t y) {
         for (std::size_t x = 0; x < width; ++x) {
             const std::size_t i = y * width + x;
-            shown[i] = displayed(image[i], view);
-            if (!view.dither) continue;
-            for (std::size_t c = 0; c < 3; ++c) dithered[3 * i + c] = dithered_code(shown[i][c], dither_noise(x, y, c));
+            const Rgb color = displayed(image[i], view);
+            for (std::size_t c = 0; c < 3; ++c)
+                bytes[3 * i + c] = view.dither ? dithered_code(color[c], dither_noise(x, y, c)) : encode(color[c]);
         }
     });
-    return view.dither ? dithered : srgb_encode_8bit(shown, threads);
+    return bytes;
 }
 
 } // namespace duet
