@@ -10,7 +10,7 @@ preset=${1:-release}
 [ $# -gt 0 ] && shift
 
 packages="g++ cmake ninja-build pkg-config libtbb-dev libxsimd-dev libopenexr-dev libtinyobjloader-dev libstb-dev \
-    doctest-dev nlohmann-json3-dev libcli11-dev $*"
+    doctest-dev nlohmann-json3-dev libcli11-dev libglfw3-dev libimgui-dev libgl-dev $*"
 
 missing=''
 for package in $packages; do

@@ -21,6 +21,7 @@ void add_kernels(CommandLine& program);
 void add_frames(CommandLine& program);
 void add_stress(CommandLine& program);
 void add_check(CommandLine& program);
+void add_view(CommandLine& program);
 ///@}
 
 /// Sets what a subcommand runs. Returns the options that it runs with, for the arguments to be written to.

@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
             "Example:\n  compare run models/cornell.json -o out\n\n`compare SUBCOMMAND --help` explains each.");
         for (const auto add :
              {add_run, add_ladder, add_images, add_join, add_skip, add_bench, add_stop, add_kernels, add_frames,
-              add_stress, add_check})
+              add_stress, add_check, add_view})
             add(program);
         const std::optional<int> exit_code = program.parse(argc, argv);
         return exit_code ? *exit_code : program.run_subcommand();

@@ -1,10 +1,7 @@
 #include "raytrace/render.h"
 
-#include "common/system/error.h"
 #include "common/system/stopwatch.h"
-#include "raytrace/bidirectional/bidirectional_pass.h"
-#include "raytrace/film/film_checkpoint.h"
-#include "raytrace/render_pass.h"
+#include "raytrace/render_state.h"
 #include "raytrace/sample_schedule.h"
 
 #include <algorithm>
@@ -13,24 +10,6 @@
 namespace duet::raytrace {
 
 namespace {
-
-void check(const View& view, const PathTracerSettings& settings) {
-    if (view.width < 1 || view.height < 1)
-        throw Error(message("image of ", view.width, " x ", view.height, " pixels: expected at least 1 x 1"));
-    if (settings.samples_per_pixel < 1)
-        throw Error(message(settings.samples_per_pixel, " samples a pixel: expected at least 1"));
-    if (!settings.film.empty() &&
-        (settings.aovs.depth || settings.aovs.normal || settings.aovs.albedo || settings.aovs.hit))
-        throw Error("a film keeps no depth, normal, albedo or hit: expected none of these auxiliary images with it");
-    if (settings.first_sample > 0 && needs_sample_count(settings.sampler))
-        throw Error(message("samples of the ", sampler_name(settings.sampler),
-                            " sampler depend on how many there are, and are not taken in parts: expected another"));
-    if (settings.adaptive && (settings.first_sample > 0 || needs_sample_count(settings.sampler)))
-        throw Error(
-            "adaptive sampling gives pixels different numbers of samples: expected no shard, and a sampler whose "
-            "samples do not depend on how many there are");
-    if (settings.max_depth < 0) throw Error(message("depth ", settings.max_depth, ": expected at least 0"));
-}
 
 // Returns the fraction of the work that is done after `samples` samples per pixel and `seconds`, as far as the
 // limits on samples and time determine it.
@@ -54,19 +33,11 @@ std::int64_t film_bytes(const Film& film) {
 
 Rendering render(const PathTracerScene& prepared, const View& view, const PathTracerSettings& settings,
                  Control& control) {
-    check(view, settings);
-    const bool bidirectional = traces_light_paths(settings.integrator);
-    if (bidirectional) check_bidirectional(prepared.data().scene, settings);
     Stopwatch watch;
     Rendering rendering;
-    const RenderPlan plan(prepared.data(), view, settings);
+    RenderState state(prepared.data(), view, settings);
     rendering.statistics.seconds.emplace_back("plan", watch.lap());
-    FilmCheckpoint checkpoint(plan.scene, view, settings);
-    Film& film = checkpoint.film();
-    AovBuffers aovs(plan, view, settings.aovs);
-    RayCounts rays;
-    const PassContext context{plan,       view, settings, control,
-                              checkpoint, aovs, rays,     rendering.statistics.first_invalid};
+    Film& film = state.checkpoint.film();
 
     RenderStatistics& statistics = rendering.statistics;
     const auto pixels = static_cast<double>(film.pixels().size());
@@ -78,7 +49,7 @@ Rendering render(const PathTracerScene& prepared, const View& view, const PathTr
         const double after = total_target(film) - static_cast<double>(samples_at_start);
         const double time = spent.samples > 0 ? spent.seconds * after / static_cast<double>(spent.samples) : 0;
         const double next = std::max(progress, fraction_done(settings, total_target(film) / pixels, time));
-        if (!(bidirectional ? render_bidirectional_pass : render_pass)(context, progress, next)) {
+        if (!state.run_pass(control, progress, next)) {
             statistics.interrupted = true;
             break;
         }
@@ -88,24 +59,26 @@ Rendering render(const PathTracerScene& prepared, const View& view, const PathTr
     }
     statistics.seconds.emplace_back("trace", watch.lap());
     if (!settings.film.empty()) {
-        checkpoint.save();
+        state.checkpoint.save();
         statistics.seconds.emplace_back("film", watch.lap());
     }
 
     rendering.radiance = film.image();
-    aovs.finish(film, rendering);
+    state.aovs.finish(film, rendering);
+    statistics.first_invalid = state.first_invalid;
     statistics.samples_per_pixel = static_cast<int>(std::lround(finished));
-    statistics.camera_rays = rays.camera;
-    statistics.indirect_rays = rays.indirect;
-    statistics.shadow_rays = rays.shadow;
-    statistics.triangles = plan.prepared.accelerator.primitives();
-    statistics.memory_bytes = plan.prepared.accelerator.memory_bytes() + film_bytes(film) + aovs.memory_bytes();
-    statistics.bvh = plan.prepared.accelerator.statistics();
+    statistics.camera_rays = state.rays.camera;
+    statistics.indirect_rays = state.rays.indirect;
+    statistics.shadow_rays = state.rays.shadow;
+    statistics.triangles = prepared.data().accelerator.primitives();
+    statistics.memory_bytes = prepared.data().accelerator.memory_bytes() + film_bytes(film) + state.aovs.memory_bytes();
+    statistics.bvh = prepared.data().accelerator.statistics();
     statistics.invalid_samples = film.invalid_samples();
     statistics.estimated_relmse = film.estimated_relmse();
-    statistics.skipped = skipped(plan, settings);
-    if (plan.russian_roulette) statistics.skipped.push_back({"paths ended by roulette", "dim ones", rays.ended});
-    statistics.approximations = approximations(plan, settings);
+    statistics.skipped = skipped(state.plan, settings);
+    if (state.plan.russian_roulette)
+        statistics.skipped.push_back({"paths ended by roulette", "dim ones", state.rays.ended});
+    statistics.approximations = approximations(state.plan, settings);
     statistics.seconds.emplace_back("resolve", watch.lap());
     return rendering;
 }

@@ -36,12 +36,12 @@ void read_image_settings(const JsonValue& image, Scene& scene) {
     view.dither = image.boolean_or("dither", false);
 }
 
-Scene read_scene(const std::filesystem::path& path) {
-    const JsonNode root = parse_json(path, read_file(path, kMaxSceneBytes));
+Scene read_scene(const std::filesystem::path& path, std::string_view text) {
+    const JsonNode root = parse_json(path, text);
     const JsonValue file(root, path);
     file.check_keys(scene_keys("scene"));
-    for (const std::string_view text : {"$schema", "description"})
-        if (file.has(text)) file.at(text).string();
+    for (const std::string_view remark : {"$schema", "description"})
+        if (file.has(remark)) file.at(remark).string();
 
     Scene scene;
     scene.path = path;
@@ -82,6 +82,12 @@ void check_reach(const Scene& scene) {
     }
 }
 
+Scene finished(Scene scene) {
+    finish_scene(scene);
+    check_reach(scene);
+    return scene;
+}
+
 } // namespace
 
 Scene load_scene(const std::filesystem::path& path) { return load_scene(path, UpAxis::kGuessed); }
@@ -92,10 +98,10 @@ Scene load_scene(const std::filesystem::path& path, UpAxis up) {
         throw Error(message(path.string(), ": expected a scene file (.json) or a mesh (.obj)"));
     if (extension == ".json" && up != UpAxis::kGuessed)
         throw Error(message(path.string(), ": --up turns a bare mesh (.obj); in a scene file a transform does it"));
-    Scene scene = extension == ".obj" ? default_scene_for_mesh(path, up) : read_scene(path);
-    finish_scene(scene);
-    check_reach(scene);
-    return scene;
+    return extension == ".obj" ? finished(default_scene_for_mesh(path, up))
+                               : parse_scene(path, read_file(path, kMaxSceneBytes));
 }
+
+Scene parse_scene(const std::filesystem::path& path, std::string_view text) { return finished(read_scene(path, text)); }
 
 } // namespace duet

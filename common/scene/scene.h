@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace duet {
@@ -27,6 +28,7 @@ struct Object {
     std::uint32_t shape = 0; ///< index into Scene::shapes
     /// These are indices into Scene::materials, one for each material slot of the shape, and at least one.
     std::vector<std::uint32_t> materials;
+    std::uint32_t entry = 0;  ///< index of the element of the file's "objects" that the object belongs to
     bool identity = true;     ///< whether to_world is the identity at all times
     bool moving = false;      ///< whether to_world_end differs from to_world
     Mat4 to_world, to_object; ///< transform at the start of the motion (time 0), and its inverse
@@ -126,5 +128,8 @@ PrimitiveVertices primitive_vertices(const Shape& shape, std::uint32_t primitive
 /// Loads a scene file (.json) or a bare mesh (.obj), for which it adds a camera, a ground, a sky and a sun. Throws
 /// Error for a file that cannot be used.
 Scene load_scene(const std::filesystem::path& path);
+/// Reads the text of a scene file, as an editor holds it. Names of files are relative to the folder of `path`, which
+/// itself is not read.
+Scene parse_scene(const std::filesystem::path& path, std::string_view text);
 
 } // namespace duet

@@ -25,10 +25,10 @@ Rendered render_timed(const RenderFunction& render, int spp, const View& view, C
 
 MeasuredQuantity measure(const RungRenderers& renderers, const Scene& scene, const View& view, int threads,
                          const NextTask& next_task) {
-    Control raster = next_task(kRasterCost * renderers.raster_spp);
-    Rendered a = render_timed(renderers.raster, renderers.raster_spp, view, raster);
-    Control raytrace = next_task(kRayCost * renderers.raytrace_spp);
-    Rendered b = render_timed(renderers.raytrace, renderers.raytrace_spp, view, raytrace);
+    Control raster = next_task(kRasterCost * renderers.raster_settings.samples_per_pixel);
+    Rendered a = render_timed(renderers.raster, renderers.raster_settings.samples_per_pixel, view, raster);
+    Control raytrace = next_task(kRayCost * renderers.raytrace_settings.samples_per_pixel);
+    Rendered b = render_timed(renderers.raytrace, renderers.raytrace_settings.samples_per_pixel, view, raytrace);
     MeasuredQuantity result{renderers.name, std::move(a.side), std::move(b.side), {}, {}};
     if (raytrace.stopped()) return result;
     if (a.hits.empty()) {
@@ -46,7 +46,8 @@ MeasuredQuantity measure(const RungRenderers& renderers, const Scene& scene, con
 double measuring_cost(const std::array<RungPlan, kRungCount>& plan) {
     double cost = 0;
     for (const RungPlan& rung : plan)
-        for (const RungRenderers& q : rung.renderers) cost += kRasterCost * q.raster_spp + kRayCost * q.raytrace_spp;
+        for (const RungRenderers& q : rung.renderers)
+            cost += kRasterCost * q.raster_settings.samples_per_pixel + kRayCost * q.raytrace_settings.samples_per_pixel;
     return cost;
 }
 

@@ -8,8 +8,8 @@ namespace {
 
 RungRenderers make_renderers(std::string name, const PreparedPair& pair, const raster::RasterSettings& raster,
                              const raytrace::PathTracerSettings& raytrace) {
-    return {std::move(name), render_function(pair.raster, raster), render_function(pair.raytrace, raytrace),
-            raster.samples_per_pixel, raytrace.samples_per_pixel};
+    return {std::move(name), raster, raytrace, render_function(pair.raster, raster),
+            render_function(pair.raytrace, raytrace)};
 }
 
 RungRenderers hit_renderers(const PreparedPair& pair) {

@@ -43,8 +43,9 @@ PreparedPair prepare_pair(const Scene& scene, const ComparisonSettings& settings
 /// A quantity that both pipelines can render separately: in Rendering::radiance or, for rung 1, in Rendering::hit.
 struct RungRenderers {
     std::string name;
-    RenderFunction raster, raytrace;
-    int raster_spp, raytrace_spp;
+    raster::RasterSettings raster_settings;
+    raytrace::PathTracerSettings raytrace_settings;
+    RenderFunction raster, raytrace; ///< with these settings
 };
 
 /// Says what both pipelines render at a rung.

@@ -91,6 +91,13 @@ class Flattener {
 public:
     Flattener(const GroupIndex& groups, Scene& scene) : groups_(&groups), scene_(&scene) {}
 
+    /// Appends the objects of an element of the file's "objects".
+    void visit_entry(const SceneNode& node, std::size_t entry) {
+        entry_ = static_cast<std::uint32_t>(entry);
+        visit(node, {}, "");
+    }
+
+private:
     void visit(const SceneNode& node, const MotionTransform& parent, const std::string& prefix) {
         if (node.hidden) return;
         const MotionTransform motion = parent * node.motion;
@@ -104,7 +111,6 @@ public:
         }
     }
 
-private:
     /// Adds the members of an instanced group. The group's own transform applies, and the names of the members start
     /// with the instance's name.
     void add_instance_members(const SceneNode& group, const MotionTransform& motion, const std::string& name) {
@@ -117,6 +123,7 @@ private:
         Object object;
         object.name = name;
         object.shape = *node.shape;
+        object.entry = entry_;
         object.materials = node.materials;
         object.to_world = Mat4(motion.start);
         object.to_world_end = Mat4(motion.end);
@@ -129,6 +136,7 @@ private:
 
     const GroupIndex* groups_;
     Scene* scene_;
+    std::uint32_t entry_ = 0;
 };
 
 } // namespace
@@ -145,7 +153,7 @@ void read_objects(const JsonValue& objects, const NameIndex& materials, ImageCac
             fail_at(scene, node, message("from here on there are more than ", kMaxObjects, " objects"));
     }
     Flattener flattener(groups, scene);
-    for (const SceneNode& node : nodes) flattener.visit(node, {}, "");
+    for (std::size_t i = 0; i < nodes.size(); ++i) flattener.visit_entry(nodes[i], i);
 }
 
 } // namespace duet

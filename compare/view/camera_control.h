@@ -1,0 +1,30 @@
+// This file moves a camera as a mouse and keys do in a window.
+#pragma once
+
+#include "common/camera/camera.h"
+#include "common/vec/box.h"
+
+namespace duet::compare {
+
+// Each function returns the moved camera. Its numbers are rounded to a millionth of its distance from what it looks at,
+// so that a scene file that is saved holds the very camera that was seen, in few digits.
+
+/// Turns the eye around what it looks at: `right` and `up` in radians. The camera stops just before it looks along its
+/// up vector.
+Camera orbit(Camera camera, double right, double up);
+/// Turns what the camera looks at around the eye: `right` and `up` in radians.
+Camera look_around(Camera camera, double right, double up);
+/// Moves the camera sideways. (1, 0) moves it to the right by the height of what the image shows around the look-at
+/// point, (0, 1) upward.
+Camera pan(const Camera& camera, double right, double up);
+/// Moves the eye to `factor` times its distance, above 0. An orthographic camera shows `factor` times the height.
+Camera dolly(Camera camera, double factor);
+/// Moves the camera by a fraction of its distance: along its view, to the right and upward.
+Camera fly(const Camera& camera, double forward, double right, double up);
+/// Looks at a point, and sets the plane of focus there.
+Camera look_at_point(Camera camera, Vec3d point);
+/// Moves the eye along its view, so that the whole box is in an image of this aspect ratio (width / height). An empty
+/// box changes nothing.
+Camera frame_box(Camera camera, const Box3& box, double aspect);
+
+} // namespace duet::compare

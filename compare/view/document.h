@@ -1,0 +1,74 @@
+// A SceneDocument is a scene file that is being edited: its text, the camera, and every step that led there.
+#pragma once
+
+#include "common/program/render_program.h"
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace duet::compare {
+
+/// Holds a scene file while it is edited. Edits go to the text, so that what they leave alone is saved as it was
+/// typed. A bare mesh has no text: its camera can be moved, and nothing can be saved.
+class SceneDocument {
+public:
+    /// Reads the file. Throws Error if it cannot be read, or is no valid scene.
+    SceneDocument(std::filesystem::path path, const SceneOptions& options);
+
+    const std::filesystem::path& path() const { return path_; }
+    bool editable() const { return !now().text.empty(); }
+    const std::string& text() const { return now().text; }
+    /// The text, parsed; null for a bare mesh.
+    const nlohmann::ordered_json& json() const { return json_; }
+    const Camera& camera() const { return now().camera; }
+    /// The image size and the view transform of the file.
+    ImageSize image_size() const { return image_size_; }
+    const ViewTransform& view_transform() const { return view_transform_; }
+
+    /// Changes the camera or the text. Changes until commit() are one step for undo().
+    void set_camera(const Camera& camera);
+    void set_text(std::string text);
+    void commit();
+    /// Goes one step back or forth. Returns false if there is none.
+    bool undo();
+    bool redo();
+
+    /// Returns whether there is something to save.
+    bool changed() const;
+    /// Writes the text, with the camera. Throws Error if the file cannot be written, or for a bare mesh.
+    void save(const std::filesystem::path& path);
+    /// Starts anew from the file, with an empty history.
+    void reload();
+    /// Returns a function that makes the scene of the present text, once, and can run on another thread.
+    std::function<Scene()> reader();
+
+private:
+    struct State {
+        std::string text;
+        Camera camera;
+    };
+    const State& now() const { return states_[current_]; }
+    State& change(); // the state that changes go to
+    void parse();
+
+    std::filesystem::path path_;
+    SceneOptions options_;
+    std::vector<State> states_; // the steps, from the file's state on
+    std::size_t current_ = 0;
+    bool open_ = false; // whether the current step has not been committed
+    std::string saved_; // the text with the camera, as it is in the file
+    nlohmann::ordered_json json_;
+    ImageSize image_size_{};
+    ViewTransform view_transform_;
+    std::shared_ptr<Scene> file_scene_; // the scene as reload() has read it; null once a reader has it
+};
+
+/// Returns the text of a scene file, whose camera is `before`, with another camera. Numbers that are equal stay as they
+/// were typed. Its projection, its up vector and its shutter must be those of `before`.
+std::string with_camera(std::string text, const Camera& before, const Camera& camera);
+
+} // namespace duet::compare

@@ -1,0 +1,56 @@
+#include "compare/view/latest_job.h"
+
+#include <utility>
+
+namespace duet::compare {
+
+LatestJob::LatestJob() : thread_([this] { run(); }) {}
+
+LatestJob::~LatestJob() {
+    {
+        const std::lock_guard lock(mutex_);
+        ended_ = true;
+        stop_ = true;
+    }
+    changed_.notify_all();
+    thread_.join();
+}
+
+void LatestJob::start(Job job) {
+    {
+        const std::lock_guard lock(mutex_);
+        waiting_ = std::move(job);
+        stop_ = true;
+    }
+    changed_.notify_all();
+}
+
+void LatestJob::stop() {
+    std::unique_lock lock(mutex_);
+    waiting_ = nullptr;
+    stop_ = true;
+    changed_.wait(lock, [this] { return !running_; });
+}
+
+bool LatestJob::busy() const {
+    const std::lock_guard lock(mutex_);
+    return running_ || waiting_;
+}
+
+void LatestJob::run() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+        changed_.wait(lock, [this] { return waiting_ || ended_; });
+        if (ended_) return;
+        const Job job = std::exchange(waiting_, nullptr);
+        running_ = true;
+        stop_ = false;
+        lock.unlock();
+        job(stop_);
+        lock.lock();
+        running_ = false;
+        changed_.notify_all();
+    }
+}
+
+} // namespace duet::compare

@@ -1,0 +1,115 @@
+// LiveView renders a scene with both pipelines in the background, for a window that shows what they have.
+#pragma once
+
+#include "compare/renderer.h"
+#include "compare/view/latest_job.h"
+#include "raytrace/progressive_render.h"
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace duet::compare {
+
+/// A scene as one pipeline has prepared it. It keeps the scene alive.
+template <typename Prepared> struct PreparedScene {
+    unsigned id; ///< different for every preparation
+    std::shared_ptr<const Scene> scene;
+    Prepared prepared;
+    double seconds; ///< time of the preparation
+};
+
+/// What is known of the scene that was loaded last.
+struct LoadedScene {
+    std::shared_ptr<const Scene> scene; ///< null until a scene has been loaded
+    /// The rasterizer places probes and shadow maps for the scene's camera. This scene has another camera than `scene`
+    /// once the camera has moved and come to rest.
+    std::shared_ptr<const PreparedScene<raster::RasterScene>> raster;
+    std::shared_ptr<const PreparedScene<raytrace::PathTracerScene>> raytrace;
+    std::string error;       ///< why the newest text could not be loaded; empty: it could, and `scene` is of it
+    double load_seconds = 0; ///< time of reading files
+};
+
+/// What the window wants to see. `version` differs from that of the wish before if anything else does.
+struct Wish {
+    unsigned version = 0;
+    View view;
+    raster::RasterSettings raster;
+    raytrace::PathTracerSettings raytrace; ///< stops at samples_per_pixel
+};
+
+/// An image of the rasterizer.
+struct RasterFrame {
+    unsigned version = 0, prepared = 0; ///< Wish::version and PreparedScene::id
+    double scale = 1;                   ///< width over that of the wish; below 1 while the camera moves
+    double seconds = 0;
+    Rendering rendering{};
+    std::string error{}; ///< why there is no image
+};
+
+/// The path tracer's image so far.
+struct TracerFrame {
+    unsigned version = 0, prepared = 0;
+    bool preview = false; ///< whether it has a quarter of the width, for a first look
+    std::uint32_t samples = 0;
+    double seconds = 0; ///< since the first sample
+    ImageRgb image{};
+    double estimated_relmse = -1;                   ///< see Film::estimated_relmse
+    std::vector<std::pair<double, double>> curve{}; ///< seconds and estimated_relmse so far
+    std::string error{};                            ///< why there is no image
+};
+
+/// A LiveView owns three threads: one loads and prepares scenes, and one for each pipeline renders. `wake` is called
+/// from them whenever there is something new.
+class LiveView {
+public:
+    LiveView(int threads, std::function<void()> wake);
+
+    /// Loads a scene in the background, to be seen in this view. Until it is prepared, and if `read` throws, the scene
+    /// before stays.
+    void load(const View& view, std::function<Scene()> read);
+    LoadedScene loaded() const;
+
+    /// Renders what is wanted, unless this happens already. Call it for every frame of the window. A frame of the
+    /// rasterizer is smaller while wishes change faster than it renders. Once the camera rests, the scene is prepared
+    /// anew for it, so that the images are those that the programs render from there.
+    void show(const Wish& wish);
+    /// While the path tracer is paused it adds no samples.
+    void pause(bool paused) { paused_ = paused; }
+    bool paused() const { return paused_; }
+
+    /// The latest images; null at first.
+    std::shared_ptr<const RasterFrame> raster_frame() const;
+    std::shared_ptr<const TracerFrame> tracer_frame() const;
+    /// Returns whether both images show the wish in full: the rasterizer's size, the path tracer's samples.
+    bool finished(const Wish& wish) const;
+
+private:
+    void publish(const std::function<void()>& change); // under the lock; then calls wake_
+    template <typename Prepared, typename Settings>
+    std::shared_ptr<const PreparedScene<Prepared>> prepared(const std::shared_ptr<const Scene>& scene);
+    void prepare_for(const View& view, const LoadedScene& loaded);
+    void show_raster(const Wish& wish, const LoadedScene& scene);
+    void render_raster(const Wish& wish, const LoadedScene& scene, double scale, const std::atomic<bool>& stop);
+    void render_traced(const Wish& wish, const LoadedScene& scene, const std::atomic<bool>& stop);
+
+    const int threads_;
+    std::atomic<unsigned> preparations_ = 0;
+    const std::function<void()> wake_;
+    std::atomic<bool> paused_ = false;
+    mutable std::mutex mutex_; // guards the results
+    LoadedScene loaded_;
+    std::shared_ptr<const RasterFrame> raster_frame_;
+    std::shared_ptr<const TracerFrame> tracer_frame_;
+    // The last renders that were started.
+    struct Started {
+        unsigned version = 0, prepared = 0;
+        double scale = 1;
+        friend bool operator==(const Started&, const Started&) = default;
+    } raster_started_, tracer_started_;
+    std::atomic<double> pixel_seconds_ = 0; // time of a frame of the rasterizer by its pixels; 0: unknown
+    LatestJob loader_, raster_, tracer_;    // last: their threads use the members above
+};
+
+} // namespace duet::compare

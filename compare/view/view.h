@@ -1,0 +1,26 @@
+// `compare view`: a window that shows a scene rendered both ways, live.
+#pragma once
+
+#include "common/program/render_program.h"
+#include "common/program/view_transform_options.h"
+
+#include <filesystem>
+
+namespace duet::compare {
+
+/// Holds the options of `compare view`.
+struct ViewOptions {
+    std::filesystem::path scene;
+    SceneOptions scene_options; ///< a size other than 0 × 0 is the images'; else they fill the window
+    ImageSize window{1600, 900};
+    std::filesystem::path folder = "."; ///< where screenshots and images are written
+    int spp = 4096;                     ///< the path tracer's samples per pixel at most
+    int raster_spp = 1, max_depth = 64, threads = 0;
+    ViewTransformOptions view_transform;
+};
+
+/// Opens the window, and returns the program's exit code once it is closed. Throws Error for a scene that cannot be
+/// used, without a screen, and in builds without the libraries of the window.
+int view(const ViewOptions& options);
+
+} // namespace duet::compare

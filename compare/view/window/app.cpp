@@ -1,0 +1,216 @@
+#include "compare/view/window/app.h"
+
+#include "common/image/image_file.h"
+#include "common/program/program.h"
+#include "common/system/error.h"
+#include "common/system/file.h"
+#include "compare/arguments.h"
+#include "compare/view/camera_control.h"
+#include "compare/view/edits.h"
+
+#include <GLFW/glfw3.h>
+
+#include <iostream>
+
+namespace duet::compare {
+
+namespace {
+
+/// How often the scene file is looked at for changes by another program, in seconds.
+constexpr double kFileCheckSeconds = 1;
+
+std::filesystem::file_time_type write_time(const std::filesystem::path& path) {
+    std::error_code error;
+    const auto time = std::filesystem::last_write_time(path, error);
+    return error ? std::filesystem::file_time_type() : time;
+}
+
+} // namespace
+
+App::App(const ViewOptions& options, Window& window)
+    : options_(options), window_(window), document_(options.scene, options.scene_options),
+      live_(options.threads, Window::wake) {
+    view_transform_ = options.view_transform.applied_to(document_.view_transform());
+    ComparisonSettings settings{.raster_spp = options.raster_spp,
+                                .raytrace_spp = options.spp,
+                                .max_depth = options.max_depth,
+                                .threads = options.threads};
+    settings_ = {raster_settings(settings), path_tracer_settings(settings)};
+    settings_.raster.aovs.hit = true;
+    settings_.raytrace.aovs.variance = true; // two replicates, from which the error is estimated
+    use_settings();
+    file_time_ = write_time(document_.path());
+}
+
+bool App::draw() {
+    handle_keys();
+    for (const std::filesystem::path& file : window_.dropped()) open(file);
+    reload_if_changed();
+
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    constexpr float kPanelWidth = 380;
+    ImGui::SetNextWindowPos({0, 0});
+    ImGui::SetNextWindowSize(size);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+    ImGui::Begin("root", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove);
+    ImGui::BeginChild("images", {std::max(64.0f, size.x - kPanelWidth), 0}, false,
+                      ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoScrollWithMouse);
+    draw_images();
+    ImGui::EndChild();
+    ImGui::PopStyleVar();
+    ImGui::SameLine(0, 0);
+    ImGui::BeginChild("panel", {0, 0}, true);
+    draw_panel();
+    ImGui::EndChild();
+    ImGui::End();
+    if (help_) draw_help();
+
+    if (!loaded_once_) load();
+    loaded_once_ = true;
+    live_.show(wish_);
+    return fly_by_keys();
+}
+
+void App::load() { live_.load(wish_.view, document_.reader()); }
+
+void App::changed_camera(const Camera& camera) {
+    document_.set_camera(camera);
+    follow_document();
+}
+
+void App::follow_document() {
+    wish_.view.camera = document_.camera();
+    ++wish_.version;
+}
+
+void App::edit(std::string text) {
+    document_.set_text(std::move(text));
+    load();
+}
+
+void App::undo(bool back) {
+    const std::string before = document_.text();
+    if (!(back ? document_.undo() : document_.redo())) {
+        message_ = back ? "Nothing to undo." : "Nothing to redo.";
+        return;
+    }
+    follow_document();
+    if (document_.text() != before) load();
+}
+
+void App::attempt(const std::function<void()>& action) {
+    try {
+        action();
+    } catch (const std::exception& error) {
+        message_ = error.what();
+    }
+}
+
+void App::open(const std::filesystem::path& path) {
+    attempt([&] {
+        if (lower_case_extension(path) == ".obj" && document_.editable()) {
+            edit(with_new_mesh(document_.text(), std::filesystem::absolute(path).string()));
+            document_.commit();
+            return;
+        }
+        document_ = SceneDocument(path, options_.scene_options);
+        selected_ = -1;
+        file_time_ = write_time(path);
+        follow_document();
+        load();
+        message_ = "Opened " + path.string() + ".";
+    });
+}
+
+void App::reload_if_changed() {
+    const double now = glfwGetTime();
+    if (now < file_checked_ + kFileCheckSeconds) return;
+    file_checked_ = now;
+    const auto time = write_time(document_.path());
+    if (time == file_time_) return;
+    file_time_ = time;
+    if (document_.changed()) {
+        message_ = "The file has changed on disk, and here, too. R reads it anew.";
+        return;
+    }
+    reload();
+}
+
+void App::reload() {
+    attempt([&] {
+        document_.reload();
+        file_time_ = write_time(document_.path());
+        follow_document();
+        load();
+        message_ = "Read the file anew.";
+    });
+}
+
+void App::save() {
+    attempt([&] {
+        document_.commit();
+        document_.save(document_.path());
+        file_time_ = write_time(document_.path());
+        message_ = "Saved " + document_.path().string() + ".";
+    });
+}
+
+void App::write_images() {
+    attempt([&] {
+        const auto raster = live_.raster_frame();
+        const auto traced = live_.tracer_frame();
+        if (!live_.loaded().raster || !raster || !traced) throw Error("no image has been rendered yet");
+        write_image(options_.folder / "raster.exr", raster->rendering.radiance);
+        write_image(options_.folder / "raytrace.exr", traced->image);
+        message_ = message("Wrote raster.exr and raytrace.exr (", traced->samples, " samples) to ",
+                           options_.folder.string(), ".");
+    });
+}
+
+void App::write_screenshot(const ImageRgb& pixels) {
+    wants_screenshot_ = false;
+    attempt([&] {
+        const std::filesystem::path file = options_.folder / "view.png";
+        write_image(file, pixels);
+        message_ = "Wrote " + file.string() + ".";
+    });
+}
+
+void App::handle_keys() {
+    for (const KeyPress& press : window_.keys()) {
+        if (press.control) {
+            if (press.key == GLFW_KEY_Z) undo(!press.shift);
+            if (press.key == GLFW_KEY_Y) undo(false);
+            if (press.key == GLFW_KEY_S) save();
+            if (press.key == GLFW_KEY_Q) window_.close();
+            if (press.key == GLFW_KEY_D) duplicate_selected();
+            continue;
+        }
+        if (press.key >= GLFW_KEY_1 && press.key <= GLFW_KEY_5) show_ = static_cast<Show>(press.key - GLFW_KEY_1);
+        if (press.key == GLFW_KEY_SPACE) live_.pause(!live_.paused());
+        if (press.key == GLFW_KEY_F) frame_selected();
+        if (press.key == GLFW_KEY_DELETE) delete_selected();
+        if (press.key == GLFW_KEY_ESCAPE) selected_ = -1;
+        if (press.key == GLFW_KEY_P) write_images();
+        if (press.key == GLFW_KEY_F12) wants_screenshot_ = true;
+        if (press.key == GLFW_KEY_R) reload();
+        if (press.key == GLFW_KEY_SLASH || press.key == GLFW_KEY_F1) help_ = !help_;
+    }
+}
+
+int view(const ViewOptions& options) {
+    Window window("Duet: " + options.scene.string(), options.window);
+    App app(options, window);
+    const InterruptFlag interrupt;
+    bool moves = true;
+    while (!interrupt.raised() && window.begin_frame(moves ? 0 : 0.25)) {
+        moves = app.draw();
+        const ImageRgb pixels = window.end_frame(app.wants_screenshot());
+        if (!pixels.empty()) app.write_screenshot(pixels);
+    }
+    return interrupt.raised() ? kExitInterrupted : kExitOk;
+}
+
+} // namespace duet::compare

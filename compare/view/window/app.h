@@ -1,0 +1,148 @@
+// The state of the window of `compare view`, and what it draws.
+#pragma once
+
+#include "compare/ladder/rungs.h"
+#include "compare/view/document.h"
+#include "compare/view/live_view.h"
+#include "compare/view/scene_text.h"
+#include "compare/view/view.h"
+#include "compare/view/window/window.h"
+
+#include <imgui.h>
+
+#include <array>
+#include <optional>
+
+namespace duet::compare {
+
+/// What the image area shows.
+enum class Show { kSplit, kRaster, kTraced, kDifference, kFlip };
+inline constexpr std::array<const char*, 5> kShowNames{"split", "raster", "path tracer", "difference", "FLIP"};
+
+/// Where the window shows an image of the wish's size, in pixels of the window.
+struct ImageArea {
+    ImVec2 low, size;
+    bool hovered = false; ///< whether the pointer is on the image
+    Vec2d pixel;          ///< position of the pointer in pixels of the image
+};
+
+/// The difference of both images, as bytes for a texture.
+struct Comparison {
+    std::shared_ptr<const RasterFrame> raster{};
+    std::shared_ptr<const TracerFrame> traced{};
+    Show show = Show::kDifference;
+    std::vector<std::uint8_t> bytes{};
+    int width = 0, height = 0;
+    double figure = 0; ///< luminance of full orange or blue; for FLIP the mean
+};
+
+/// The window's state. Each frame, draw() draws everything, and passes on to the live view what is wanted.
+class App {
+public:
+    App(const ViewOptions& options, Window& window);
+    /// Draws a frame. Returns whether the next one shall follow at once, because something moves.
+    bool draw();
+    /// Returns whether a screenshot of this frame is wanted.
+    bool wants_screenshot() const { return wants_screenshot_; }
+    /// Writes the screenshot that is wanted.
+    void write_screenshot(const ImageRgb& pixels);
+
+private:
+    // image_area.cpp
+    void draw_images();
+    void fit_images(ImVec2 low, ImVec2 size);
+    Vec2d pixel_at(ImVec2 position) const;
+    void update_textures();
+    void compare_frames();
+    void draw_textures();
+    void navigate();
+    void drag();
+    bool fly_by_keys();
+    void select_at(Vec2d pixel);
+    // gizmo.cpp
+    void draw_gizmo();
+    void drag_object();
+    std::optional<ImVec2> on_screen(Vec3d point) const;
+    // side_panel.cpp
+    void draw_panel();
+    void draw_display();
+    void draw_renderers();
+    void draw_inspector();
+    void draw_timings();
+    void draw_curve();
+    void draw_help();
+    // scene_panel.cpp
+    void draw_scene();
+    void draw_camera();
+    void draw_members(const char* key);
+    void apply(const JsonPath& path, const nlohmann::ordered_json& changed);
+    void draw_selected();
+    void draw_turns();
+    void draw_additions();
+    void duplicate_selected();
+    void delete_selected();
+    void frame_selected();
+    Box3 selected_bounds();
+
+    void handle_keys();
+    void open(const std::filesystem::path& path);
+    void reload();
+    void reload_if_changed();
+    void load();
+    void changed_camera(const Camera& camera);
+    void follow_document(); // shows the document's camera
+    void edit(std::string text);
+    void undo(bool back);
+    void save();
+    void write_images();
+    void attempt(const std::function<void()>& action); // shows the message of an Error
+    void use_settings();
+    void set_quantity(const RungRenderers& quantity);
+    std::vector<RungRenderers> quantities() const;
+    JsonPath selected_path() const;
+
+    ViewOptions options_;
+    Window& window_;
+    SceneDocument document_;
+    LiveView live_;
+    Wish wish_;
+    ViewTransform view_transform_;
+    Show show_ = Show::kSplit;
+    float split_ = 0.5f;
+    enum class Drag { kNone, kCamera, kSplit, kObject } drag_ = Drag::kNone;
+    bool help_ = false, loaded_once_ = false, flying_ = false, double_click_ = false, wants_screenshot_ = false;
+    static constexpr const char* kWholeImage = "everything"; // of the ladder's quantities
+    std::string quantity_ = kWholeImage;
+    struct Settings {
+        raster::RasterSettings raster;
+        raytrace::PathTracerSettings raytrace;
+    } settings_;        // of the whole image
+    int selected_ = -1; // index in "objects"
+    struct {
+        std::shared_ptr<const Scene> scene;
+        int selected = -1;
+        Box3 box;
+    } bounds_; // of the selected object, as it was found last
+    struct Gizmo {
+        int axis = -1; // under the pointer or dragged
+        Vec3d center;
+        double length = 0, dragged = 0; // in meters
+        std::string text;               // before the drag
+    } gizmo_;
+    double turn_degrees_ = 15, scale_factor_ = 1.1;
+    std::string message_, path_log_; // of the last action; of the path under the last click
+    ImageArea area_;
+    std::filesystem::file_time_type file_time_;
+    double file_checked_ = 0;
+
+    // What the textures show.
+    std::shared_ptr<const RasterFrame> shown_raster_;
+    std::shared_ptr<const TracerFrame> shown_traced_;
+    ViewTransform shown_transform_;
+    Texture raster_texture_, traced_texture_, comparison_texture_;
+    std::mutex comparison_mutex_;                                                // guards comparison_
+    std::shared_ptr<const Comparison> comparison_, shown_comparison_, compared_; // compared_: the last that was begun
+    LatestJob comparer_;
+};
+
+} // namespace duet::compare

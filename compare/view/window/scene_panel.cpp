@@ -1,0 +1,273 @@
+// The part of the panel that edits the scene: the selected object, materials, lights, environment and camera.
+#include "compare/view/edits.h"
+#include "compare/view/window/app.h"
+
+#include <imgui_stdlib.h>
+
+#include <cmath>
+
+namespace duet::compare {
+
+using nlohmann::ordered_json;
+
+namespace {
+
+/// Edits a value in place and returns whether it has changed. Numbers, colors, words, and all that consists of them.
+class JsonEditor {
+public:
+    /// `materials` are the words that a member "material" may have.
+    explicit JsonEditor(const ordered_json& materials) : materials_(materials) {}
+
+    bool edit(const std::string& key, ordered_json& value) const {
+        ImGui::PushID(key.c_str());
+        const bool changed = edit_value(key, value);
+        ImGui::PopID();
+        return changed;
+    }
+
+private:
+    bool edit_value(const std::string& key, ordered_json& value) const {
+        const char* label = key.c_str();
+        if (value.is_boolean()) return edit_boolean(label, value);
+        if (value.is_number()) return edit_numbers(label, value);
+        if (value.is_string()) return key == "material" ? edit_material(value) : edit_text(label, value);
+        const bool numbers = value.is_array() && !value.empty() && value.size() <= 4 &&
+                             std::all_of(value.begin(), value.end(), [](const auto& x) { return x.is_number(); });
+        if (numbers) return is_color(key, value) ? edit_color(label, value) : edit_numbers(label, value);
+        if (!value.is_structured() || !ImGui::TreeNode(label)) return false;
+        bool changed = false;
+        for (const auto& [name, child] : value.items()) changed |= edit(name, child);
+        ImGui::TreePop();
+        return changed;
+    }
+
+    static bool is_color(const std::string& key, const ordered_json& value) {
+        return value.size() == 3 && (key == "albedo" || key == "base_color" || key == "tint" || key == "reflectance");
+    }
+
+    static bool edit_boolean(const char* label, ordered_json& value) {
+        bool on = value.get<bool>();
+        if (!ImGui::Checkbox(label, &on)) return false;
+        value = on;
+        return true;
+    }
+
+    static bool edit_numbers(const char* label, ordered_json& value) {
+        const bool one = value.is_number();
+        std::vector<double> numbers = one ? std::vector{value.get<double>()} : value.get<std::vector<double>>();
+        double largest = 0;
+        for (const double x : numbers) largest = std::max(largest, std::abs(x));
+        const auto speed = static_cast<float>(std::max(largest, 0.1) * 0.005);
+        if (!ImGui::DragScalarN(label, ImGuiDataType_Double, numbers.data(), static_cast<int>(numbers.size()), speed,
+                                nullptr, nullptr, "%.5g"))
+            return false;
+        for (double& x : numbers) x = typed_number(x);
+        value = one ? ordered_json(numbers.front()) : ordered_json(numbers);
+        return true;
+    }
+
+    static bool edit_color(const char* label, ordered_json& value) {
+        std::array<float, 3> channels{};
+        for (std::size_t i = 0; i < 3; ++i) channels[i] = value.at(i).get<float>();
+        if (!ImGui::ColorEdit3(label, channels.data(), ImGuiColorEditFlags_Float)) return false;
+        for (std::size_t i = 0; i < 3; ++i) value.at(i) = std::round(static_cast<double>(channels[i]) * 1000) / 1000;
+        return true;
+    }
+
+    static bool edit_text(const char* label, ordered_json& value) {
+        std::string text = value.get<std::string>();
+        if (!ImGui::InputText(label, &text, ImGuiInputTextFlags_EnterReturnsTrue)) return false;
+        value = text;
+        return true;
+    }
+
+    bool edit_material(ordered_json& value) const {
+        const std::string now = value.get<std::string>();
+        bool changed = false;
+        if (!ImGui::BeginCombo("material", now.c_str())) return false;
+        for (const auto& [name, material] : materials_.items())
+            if (ImGui::Selectable(name.c_str(), name == now) && name != now) value = name, changed = true;
+        ImGui::EndCombo();
+        return changed;
+    }
+
+    const ordered_json& materials_;
+};
+
+std::string name_of(const ordered_json& element, int index) {
+    if (element.contains("name")) return element.at("name").get<std::string>();
+    return element.at("type").get<std::string>() + " " + std::to_string(index);
+}
+
+} // namespace
+
+JsonPath App::selected_path() const { return {"objects", std::to_string(selected_)}; }
+
+void App::draw_scene() {
+    draw_camera();
+    if (!document_.editable()) return ImGui::TextDisabled("A bare mesh: write a scene file to edit more.");
+    draw_additions();
+    draw_selected();
+    draw_members("materials");
+    draw_members("lights");
+    draw_members("media");
+    draw_members("environment");
+    if (ImGui::IsMouseReleased(0)) document_.commit();
+    ImGui::Separator();
+    ImGui::BeginDisabled(!document_.changed());
+    if (ImGui::Button("save (Ctrl+S)")) save();
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    if (ImGui::Button("undo")) undo(true);
+    ImGui::SameLine();
+    if (ImGui::Button("redo")) undo(false);
+}
+
+void App::draw_camera() {
+    if (!ImGui::TreeNode("camera")) return;
+    Camera camera = document_.camera();
+    const auto drag = [](const char* name, double& value, float speed, double low, double high) {
+        return ImGui::DragScalar(name, ImGuiDataType_Double, &value, speed, &low, &high, "%.5g");
+    };
+    const double distance = length(camera.look_at - camera.eye);
+    const auto step = static_cast<float>(0.002 * distance);
+    bool changed = false;
+    if (camera.projection == Camera::Projection::kOrthographic) {
+        changed |= drag("height", camera.height, static_cast<float>(0.005 * camera.height), 1e-6, 1e6);
+    } else {
+        changed |= drag("field of view", camera.fov_degrees, 0.1f, 1, 170);
+        changed |= drag("lens radius", camera.aperture_radius, 0.1f * step, 0, distance);
+        double focus = camera.focus_distance > 0 ? camera.focus_distance : distance;
+        if (drag("focus distance", focus, step, 1e-3 * distance, 1e3 * distance))
+            camera.focus_distance = focus, changed = true;
+    }
+    for (double* number : {&camera.fov_degrees, &camera.height, &camera.aperture_radius, &camera.focus_distance})
+        *number = typed_number(*number);
+    if (changed) changed_camera(camera);
+    ImGui::TreePop();
+}
+
+void App::draw_members(const char* key) {
+    const ordered_json& scene = document_.json();
+    if (!scene.contains(key) || !ImGui::TreeNode(key)) return;
+    ordered_json value = scene.at(key);
+    const JsonEditor editor(scene.contains("materials") ? scene.at("materials") : ordered_json::object());
+    std::vector<std::pair<JsonPath, ordered_json>> changes;
+    const bool list = std::string_view(key) != "environment";
+    int index = 0;
+    for (auto& [name, child] : value.items()) {
+        ordered_json changed = child;
+        const std::string label = value.is_array() ? name_of(child, index++) : name;
+        if (editor.edit(list ? label : name, changed)) changes.emplace_back(JsonPath{key, name}, std::move(changed));
+    }
+    ImGui::TreePop();
+    for (const auto& [path, changed] : changes) apply(path, changed);
+}
+
+// Writes only the members that differ, so that the others stay as they were typed.
+void App::apply(const JsonPath& path, const ordered_json& changed) {
+    const ordered_json old = ordered_json::parse(value_text(document_.text(), path));
+    std::string text = document_.text();
+    if (!changed.is_object()) {
+        text = with_value(text, path, changed);
+    } else {
+        for (const auto& [name, value] : changed.items()) {
+            JsonPath member = path;
+            member.push_back(name);
+            if (old.at(name) != value) text = with_value(text, member, value);
+        }
+    }
+    attempt([&] { edit(std::move(text)); });
+}
+
+void App::draw_selected() {
+    const ordered_json& scene = document_.json();
+    const ordered_json& objects = scene.at("objects");
+    if (selected_ >= static_cast<int>(objects.size())) selected_ = -1;
+    const std::string now =
+        selected_ < 0 ? "none" : name_of(objects.at(static_cast<std::size_t>(selected_)), selected_);
+    if (ImGui::BeginCombo("object", now.c_str())) {
+        for (int i = 0; i < static_cast<int>(objects.size()); ++i) {
+            ImGui::PushID(i);
+            if (ImGui::Selectable(name_of(objects.at(static_cast<std::size_t>(i)), i).c_str(), i == selected_))
+                selected_ = i;
+            ImGui::PopID();
+        }
+        ImGui::EndCombo();
+    }
+    if (selected_ < 0) return;
+    ordered_json element = objects.at(static_cast<std::size_t>(selected_));
+    const JsonEditor editor(scene.contains("materials") ? scene.at("materials") : ordered_json::object());
+    bool changed = false;
+    ImGui::Indent();
+    for (auto& [name, child] : element.items())
+        if (name != "type") changed |= editor.edit(name, child);
+    if (changed) apply(selected_path(), element);
+    draw_turns();
+    if (ImGui::Button("duplicate (Ctrl+D)")) duplicate_selected();
+    ImGui::SameLine();
+    if (ImGui::Button("delete (Del)")) delete_selected();
+    ImGui::Unindent();
+}
+
+// Turns and scales the object about its center.
+void App::draw_turns() {
+    const Box3 box = selected_bounds();
+    if (box.empty()) return;
+    const Vec3d center = (Vec3d(box.low) + Vec3d(box.high)) / 2.0;
+    const auto apply_map = [&](const Mat4d& map) {
+        attempt([&] {
+            edit(transformed(document_.text(), selected_path(), translation(center) * map * translation(-center)));
+            document_.commit();
+        });
+    };
+    ImGui::SetNextItemWidth(120);
+    ImGui::InputDouble("degrees", &turn_degrees_, 0, 0, "%.4g");
+    constexpr std::array<const char*, 3> kTurns{"turn x", "turn y", "turn z"};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3d axis(i == 0, i == 1, i == 2);
+        if (i > 0) ImGui::SameLine();
+        if (ImGui::Button(kTurns[i])) apply_map(rotation(axis, radians(turn_degrees_)));
+    }
+    ImGui::SetNextItemWidth(120);
+    ImGui::InputDouble("factor", &scale_factor_, 0, 0, "%.4g");
+    ImGui::SameLine();
+    if (ImGui::Button("scale")) apply_map(scaling(Vec3d(scale_factor_, scale_factor_, scale_factor_)));
+}
+
+void App::draw_additions() {
+    if (!ImGui::BeginCombo("add", "...")) return;
+    const Camera& camera = document_.camera();
+    for (std::size_t i = 0; i < kNewElementNames.size(); ++i) {
+        if (!ImGui::Selectable(kNewElementNames[i])) continue;
+        attempt([&] {
+            const double size = 0.1 * length(camera.look_at - camera.eye);
+            edit(with_new_element(document_.text(), static_cast<NewElement>(i), camera.look_at, size));
+            document_.commit();
+            if (static_cast<NewElement>(i) != NewElement::kPointLight)
+                selected_ = static_cast<int>(document_.json().at("objects").size()) - 1;
+        });
+    }
+    ImGui::TextDisabled("Drop an .obj on the window to add a mesh.");
+    ImGui::EndCombo();
+}
+
+void App::duplicate_selected() {
+    if (selected_ < 0 || !document_.editable()) return;
+    attempt([&] {
+        edit(duplicated(document_.text(), selected_path()));
+        document_.commit();
+        selected_ = static_cast<int>(document_.json().at("objects").size()) - 1;
+    });
+}
+
+void App::delete_selected() {
+    if (selected_ < 0 || !document_.editable()) return;
+    attempt([&] {
+        edit(without_value(document_.text(), selected_path()));
+        document_.commit();
+        selected_ = -1;
+    });
+}
+
+} // namespace duet::compare

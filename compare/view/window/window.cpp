@@ -1,0 +1,125 @@
+#include "compare/view/window/window.h"
+
+#include "common/image/srgb.h"
+#include "common/system/error.h"
+
+#define GLFW_INCLUDE_GLEXT
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+namespace duet::compare {
+
+namespace {
+
+Window& window_of(GLFWwindow* window) { return *static_cast<Window*>(glfwGetWindowUserPointer(window)); }
+
+[[noreturn]] void fail(const char* what) {
+    const char* reason = nullptr;
+    glfwGetError(&reason);
+    const std::string text = reason ? reason : "no reason was given";
+    glfwTerminate();
+    throw Error(message(what, ": ", text, " (view needs a screen, and OpenGL 3.3; `compare run` needs neither)"));
+}
+
+// Returns the pixels that are drawn and not yet shown.
+ImageRgb drawn_pixels(int width, int height) {
+    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, bytes.data());
+    ImageRgb image(width, height);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const int from_bottom = height - 1 - y;
+            const std::uint8_t* pixel = &bytes[3 * static_cast<std::size_t>(from_bottom * width + x)];
+            image(x, y) = {srgb_decode_8bit(pixel[0]), srgb_decode_8bit(pixel[1]), srgb_decode_8bit(pixel[2])};
+        }
+    return image;
+}
+
+} // namespace
+
+Window::Window(const std::string& title, ImageSize size) {
+    if (!glfwInit()) fail("no window can be opened");
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    window_ = glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
+    if (!window_) fail("no window can be opened");
+    glfwMakeContextCurrent(window_);
+    glfwSwapInterval(1);
+    glfwSetWindowUserPointer(window_, this);
+    // Dear ImGui keeps these callbacks and calls them before its own.
+    glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int mods) {
+        if (action == GLFW_RELEASE || ImGui::GetIO().WantTextInput) return;
+        window_of(window).keys_.push_back({key, (mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0});
+    });
+    glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
+        window_of(window).dropped_.insert(window_of(window).dropped_.end(), paths, paths + count);
+    });
+    ImGui::CreateContext();
+    ImGui::GetIO().IniFilename = nullptr; // nothing is left behind in the folder
+    ImGui_ImplGlfw_InitForOpenGL(window_, true);
+    ImGui_ImplOpenGL3_Init("#version 330");
+}
+
+Window::~Window() {
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+    glfwDestroyWindow(window_);
+    glfwTerminate();
+}
+
+bool Window::begin_frame(double seconds) {
+    keys_.clear();
+    dropped_.clear();
+    if (seconds > 0)
+        glfwWaitEventsTimeout(seconds);
+    else
+        glfwPollEvents();
+    if (glfwWindowShouldClose(window_)) return false;
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+    return true;
+}
+
+ImageRgb Window::end_frame(bool screenshot) {
+    ImGui::Render();
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window_, &width, &height);
+    glViewport(0, 0, width, height);
+    glClearColor(0.11f, 0.11f, 0.12f, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    ImageRgb pixels = screenshot ? drawn_pixels(width, height) : ImageRgb();
+    glfwSwapBuffers(window_);
+    return pixels;
+}
+
+void Window::wake() { glfwPostEmptyEvent(); }
+void Window::close() { glfwSetWindowShouldClose(window_, GLFW_TRUE); }
+void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
+
+bool Window::held(int key) const { return !ImGui::GetIO().WantTextInput && glfwGetKey(window_, key) == GLFW_PRESS; }
+
+Texture::~Texture() {
+    if (name_ != 0) glDeleteTextures(1, &name_);
+}
+
+void Texture::set(const std::vector<std::uint8_t>& bytes, int width, int height) {
+    if (name_ == 0) glGenTextures(1, &name_);
+    glBindTexture(GL_TEXTURE_2D, name_);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, width, height, 0, GL_RGB, GL_UNSIGNED_BYTE, bytes.data());
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+}
+
+void* Texture::id() const { return reinterpret_cast<void*>(static_cast<std::uintptr_t>(name_)); }
+
+} // namespace duet::compare

@@ -1,0 +1,71 @@
+// This file wraps the libraries of the window: GLFW opens it and reads keys and mouse, Dear ImGui draws into it.
+#pragma once
+
+#include "common/image/image.h"
+#include "common/program/command_line.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+struct GLFWwindow;
+
+namespace duet::compare {
+
+/// A key that was pressed, as GLFW names it (GLFW_KEY_A …).
+struct KeyPress {
+    int key = 0;
+    bool control = false, shift = false;
+};
+
+/// A Window has an OpenGL context. Only one may exist, on the main thread.
+class Window {
+public:
+    /// Opens a window. Throws Error if the system has none, or no OpenGL 3.3.
+    Window(const std::string& title, ImageSize size);
+    ~Window();
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
+
+    /// Waits for events for at most `seconds`, then begins a frame. Returns false once the user has closed the window.
+    bool begin_frame(double seconds);
+    /// Draws the frame. Returns its pixels if a screenshot is asked for, else an empty image.
+    ImageRgb end_frame(bool screenshot = false);
+    /// Ends the wait of begin_frame. Any thread may call it.
+    static void wake();
+    void close();
+    void set_title(const std::string& title);
+
+    /// The keys that were pressed and the files that were dropped on the window since the frame before. Keys that a
+    /// text field receives are left out.
+    const std::vector<KeyPress>& keys() const { return keys_; }
+    const std::vector<std::filesystem::path>& dropped() const { return dropped_; }
+    /// Returns whether a key is held down, and no text field receives it.
+    bool held(int key) const;
+
+private:
+    GLFWwindow* window_;
+    std::vector<KeyPress> keys_;
+    std::vector<std::filesystem::path> dropped_;
+};
+
+/// A Texture is an image on the graphics card. It must not outlive the window.
+class Texture {
+public:
+    Texture() = default;
+    ~Texture();
+    Texture(const Texture&) = delete;
+    Texture& operator=(const Texture&) = delete;
+
+    /// Sets the pixels, 3 bytes each, with rows from the top.
+    void set(const std::vector<std::uint8_t>& bytes, int width, int height);
+    bool empty() const { return name_ == 0; }
+    /// Returns the texture as Dear ImGui names it.
+    void* id() const;
+
+private:
+    unsigned name_ = 0;
+};
+
+} // namespace duet::compare

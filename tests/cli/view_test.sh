@@ -1,0 +1,91 @@
+#!/bin/sh
+# compare view: help and errors; then a real window on a virtual screen, driven by a mouse and keys: select, move, undo,
+# orbit, edit, save. The saved files say what was done, and the images are those of the programs.
+. "$(dirname "$0")/support.sh"
+
+expect 0 "$bin/compare" view --help
+grep -q Example "$scratch/stdout" || fail "compare view --help shows no example"
+expect 2 "$bin/compare" view
+one_line_error SCENE
+if env -u DISPLAY -u WAYLAND_DISPLAY "$bin/compare" view models/cornell.json 2>&1 | grep -q 'built without'; then
+    [ -n "${CI:-}" ] && fail "this build has no window"
+    echo "SKIPPED: this build has no window"
+    exit 77
+fi
+expect 2 env -u DISPLAY -u WAYLAND_DISPLAY "$bin/compare" view models/cornell.json
+one_line_error "needs a screen"
+command -v Xvfb >/dev/null && command -v xdotool >/dev/null || {
+    [ -n "${CI:-}" ] && fail "Xvfb or xdotool is missing" && finish
+    echo "SKIPPED: no Xvfb or no xdotool"
+    exit 77
+}
+
+mkdir -p "$scratch/models/meshes"
+cp models/cornell.json "$scratch/models/"
+cp models/meshes/cornell-*.obj "$scratch/models/meshes/"
+scene=$scratch/models/cornell.json
+
+mkfifo "$scratch/display"
+Xvfb -displayfd 3 -screen 0 1280x800x24 -nolisten tcp 3>"$scratch/display" 2>"$scratch/xvfb.txt" &
+server=$!
+read -r number <"$scratch/display"
+export DISPLAY=":$number"
+"$bin/compare" view "$scene" --window 1180x800 --size 200x200 --spp 8 -o "$scratch" 2>"$scratch/view.txt" &
+process=$!
+trap 'kill $process $server 2>/dev/null' EXIT
+
+# until SECONDS COMMAND…: runs it again and again until it succeeds.
+until_true() {
+    end=$(($(date +%s) + $1))
+    shift
+    until "$@"; do
+        [ "$(date +%s)" -lt "$end" ] || return 1
+        sleep 0.3
+    done
+}
+window=$(xdotool search --sync --onlyvisible --name 'Duet' | head -n 1)
+xdotool windowmove "$window" 0 0 windowfocus "$window"
+
+key() { xdotool key --window 0 "$@"; sleep 0.4; }
+# drag FROM_X FROM_Y BY_X BY_Y: in steps, as a hand does.
+drag() {
+    xdotool mousemove "$1" "$2"
+    sleep 0.4
+    xdotool mousedown 1
+    sleep 0.2
+    for step in 1 2 3 4 5; do
+        xdotool mousemove $(($1 + $3 * step / 5)) $(($2 + $4 * step / 5))
+        sleep 0.1
+    done
+    xdotool mouseup 1
+    sleep 0.4
+}
+click() { xdotool mousemove "$1" "$2"; sleep 0.3; xdotool mousedown 1; sleep 0.2; xdotool mouseup 1; sleep 0.4; }
+saved() { key ctrl+s; ! cmp -s "$scene" "$1"; }
+
+# Writes the window's images until they are final: those that the programs render from the saved scene.
+images_match() {
+    key p
+    [ -f "$scratch/raytrace.exr" ] || return 1
+    for program in raster raytrace; do
+        "$bin/compare" images "$scratch/$program.exr" "$scratch/expected-$program.exr" --quiet --max rmse=0 ||
+            return 1
+    done
+}
+check_images() {
+    "$bin/raster" "$scene" -o "$scratch/expected-raster.exr" --size 200x200 --spp 1 --quiet 2>"$scratch/stderr"
+    "$bin/raytrace" "$scene" -o "$scratch/expected-raytrace.exr" --size 200x200 --spp 8 --aov variance --quiet \
+        2>"$scratch/stderr"
+    until_true 60 images_match || fail "$1: the images are not those of raster and raytrace"
+}
+
+# The image is 800 pixels wide, from the left; the tall box stands left of its middle.
+check_images "at first"
+key F12
+[ -s "$scratch/view.png" ] || fail "F12 wrote no view.png"
+
+cp "$scene" "$scratch/original.json"
+click 320 520
+drag 375 520 60 0 # TODO position of the arrow
+saved "$scratch/original.json" || fail "moving the box changed nothing"
+finish

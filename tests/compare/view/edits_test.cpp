@@ -1,0 +1,119 @@
+// These tests check the edits that the window offers, by what the edited scenes hold.
+#include "compare/view/edits.h"
+
+#include "common/scene/motion_bounds.h"
+#include "common/system/file.h"
+
+#include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
+
+using namespace duet;
+using namespace duet::compare;
+
+namespace {
+
+const std::filesystem::path kPath = std::filesystem::path(DUET_SOURCE_DIR) / "models" / "edited.json"; // never written
+
+const std::string kText = R"({
+  "camera": {"eye": [0, 1, 6], "look_at": [0, 1, 0]},
+  "materials": {"white": {"type": "diffuse", "albedo": 0.7}},
+  "objects": [
+    {"type": "sphere", "center": [0, 1, 0], "radius": 0.5, "material": "white"},
+    {"type": "box", "low": [1, 0, 0], "high": [2, 1, 1], "material": "white"},
+    {"type": "quad", "corner": [0, 0, 0], "u": [1, 0, 0], "v": [0, 1, 0], "material": "white"},
+    {"type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "white", "transform": [{"scale": 2}]},
+    {"type": "group", "objects": [{"type": "sphere", "center": [5, 0, 0], "radius": 1, "material": "white"}],
+     "transform": [{"translate": [0, 1, 0]}], "transform_end": [{"translate": [0, 2, 0]}]}
+  ],
+  "lights": [
+    {"type": "point", "position": [0, 3, 0], "intensity": 5},
+    {"type": "sun", "direction": [0, -1, 0], "irradiance": 2}
+  ]
+})";
+
+Box3 bounds_of(const std::string& text, std::uint32_t entry) {
+    const Scene scene = parse_scene(kPath, text);
+    Box3 box;
+    for (const Object& object : scene.objects)
+        if (object.entry == entry) box.extend(motion_bounds(object, scene.shapes[object.shape]));
+    return box;
+}
+
+void check_near(Vec3 a, Vec3 b) { CHECK(length(a - b) < 1e-5f); }
+
+} // namespace
+
+TEST_SUITE("unit") {
+    TEST_CASE("every kind of object moves by the vector, and nothing else changes") {
+        const Vec3d by(0.25, -0.5, 2);
+        for (std::uint32_t entry = 0; entry < 5; ++entry) {
+            CAPTURE(entry);
+            const std::string text =
+                moved(moved(kText, {"objects", std::to_string(entry)}, by), {"objects", std::to_string(entry)},
+                      by); // the second goes to the same numbers
+            for (std::uint32_t other = 0; other < 5; ++other) {
+                const Box3 before = bounds_of(kText, other), after = bounds_of(text, other);
+                const Vec3 shift = other == entry ? Vec3(2.0 * by) : Vec3();
+                check_near(after.low, before.low + shift);
+                check_near(after.high, before.high + shift);
+            }
+        }
+        CHECK(moved(kText, {"objects", "0"}, by).size() < kText.size() + 12); // no transform was added
+    }
+
+    TEST_CASE("a point light moves, a sun does not") {
+        const std::string text = moved(kText, {"lights", "0"}, {1, 1, 1});
+        CHECK(value_text(text, {"lights", "0", "position"}) == "[1.0, 4.0, 1.0]");
+        CHECK(moved(kText, {"lights", "1"}, {1, 1, 1}) == kText);
+    }
+
+    TEST_CASE("maps are applied after the object's own transform, and collect in one matrix") {
+        const Mat4d turn = rotation(Vec3d(0, 0, 1), radians(90.0));
+        const std::string once = transformed(kText, {"objects", "1"}, turn);
+        const Box3 box = bounds_of(once, 1); // (1..2, 0..1) becomes (−1..0, 1..2)
+        check_near(box.low, {-1, 1, 0});
+        check_near(box.high, {0, 2, 1});
+        const std::string twice = transformed(once, {"objects", "1"}, turn);
+        CHECK(nlohmann::json::parse(twice)["objects"][1]["transform"].size() == 1);
+        check_near(bounds_of(twice, 1).low, {-2, -1, 0});
+        const Box3 scaled = bounds_of(transformed(kText, {"objects", "3"}, scaling(Vec3d(3, 1, 1))), 3);
+        CHECK(scaled.high.x == doctest::Approx(6));
+        CHECK(scaled.high.y == doctest::Approx(2));
+    }
+
+    TEST_CASE("a copy is the same object once more") {
+        const std::string text = duplicated(kText, {"objects", "1"});
+        CHECK(bounds_of(text, 5).low == bounds_of(kText, 1).low);
+        CHECK(parse_scene(kPath, text).objects.size() == 6);
+    }
+
+    TEST_CASE("new elements are where they shall be, in every scene") {
+        const std::string bare = R"({"camera": {"eye": [0, 0, 5], "look_at": [0, 0, 0]}, "objects": []})";
+        for (const std::string& text : {kText, bare})
+            for (std::size_t i = 0; i < kNewElementNames.size(); ++i) {
+                CAPTURE(kNewElementNames[i]);
+                const Scene before = parse_scene(kPath, text);
+                const auto element = static_cast<NewElement>(i);
+                const Scene scene = parse_scene(kPath, with_new_element(text, element, {1, 2, 3}, 0.5));
+                if (element == NewElement::kPointLight) {
+                    const auto* light = std::get_if<PointLight>(&scene.lights[scene.first_surface_light - 1]);
+                    REQUIRE(light != nullptr);
+                    check_near(light->position, {1, 2, 3});
+                    continue;
+                }
+                REQUIRE(scene.objects.size() == before.objects.size() + 1);
+                const Object& object = scene.objects.back();
+                const Box3 box = motion_bounds(object, scene.shapes[object.shape]);
+                check_near((box.low + box.high) / 2.0f, {1, 2, 3});
+                CHECK(box.high.x - box.low.x == doctest::Approx(0.5));
+                CHECK((scene.lights.size() > before.lights.size()) == (element == NewElement::kAreaLight));
+            }
+    }
+
+    TEST_CASE("a typed number holds seven digits") {
+        CHECK(typed_number(0.1f) == 0.1);
+        CHECK(typed_number(-1234567.89) == -1234568);
+        CHECK(typed_number(1.0 / 3) == 0.3333333);
+        CHECK(typed_number(0) == 0);
+    }
+}
