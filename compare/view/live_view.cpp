@@ -60,39 +60,53 @@ void LiveView::publish(const std::function<void()>& change) {
 }
 
 template <typename Prepared, typename Settings>
-std::shared_ptr<const PreparedScene<Prepared>> LiveView::prepared(const std::shared_ptr<const Scene>& scene) {
+std::shared_ptr<const PreparedScene<Prepared>> LiveView::prepared(unsigned load,
+                                                                  const std::shared_ptr<const Scene>& scene) {
     Settings settings;
     settings.threads = threads_;
     const Stopwatch watch;
     Prepared result = prepare(*scene, settings);
     return std::make_shared<const PreparedScene<Prepared>>(
-        PreparedScene<Prepared>{++preparations_, scene, std::move(result), watch.seconds()});
+        PreparedScene<Prepared>{++preparations_, load, scene, std::move(result), watch.seconds()});
 }
 
-void LiveView::load(const View& view, std::function<Scene()> read) {
-    loader_.start([=, this](const std::atomic<bool>& stop) {
+// Runs a job on the loader's thread, and reports why it failed.
+void LiveView::start_loading(LatestJob::Job job) {
+    loader_.start([this, job = std::move(job)](const std::atomic<bool>& stop) {
         try {
-            const Stopwatch watch;
-            LoadedScene next;
-            next.scene = std::make_shared<const Scene>(seen_in(view, read()));
-            next.load_seconds = watch.seconds();
-            next.raytrace = prepared<raytrace::PathTracerScene, raytrace::PathTracerSettings>(next.scene);
-            if (stop) return;
-            next.raster = prepared<raster::RasterScene, raster::RasterSettings>(next.scene);
-            publish([&] { loaded_ = next; });
+            job(stop);
         } catch (const std::exception& error) {
             publish([&] { loaded_.error = error.what(); });
         }
     });
 }
 
-void LiveView::prepare_for(const View& view, const LoadedScene& loaded) {
-    loader_.start([=, this](const std::atomic<bool>&) {
-        const auto scene = std::make_shared<const Scene>(seen_in(view, *loaded.scene));
-        const auto next = prepared<raster::RasterScene, raster::RasterSettings>(scene);
+void LiveView::load(const View& view, std::function<Scene()> read) {
+    start_loading([=, this](const std::atomic<bool>& stop) {
+        const Stopwatch watch;
+        LoadedScene next;
+        next.scene = std::make_shared<const Scene>(seen_in(view, read()));
+        next.load_seconds = watch.seconds();
+        next.load = ++loads_;
+        next.raytrace = prepared<raytrace::PathTracerScene, raytrace::PathTracerSettings>(next.load, next.scene);
         publish([&] {
-            if (loaded_.scene == loaded.scene) loaded_.raster = next;
+            next.raster = loaded_.raster;
+            loaded_ = next;
         });
+        if (!stop) prepare_raster(next.load, next.scene);
+    });
+}
+
+void LiveView::prepare_raster(unsigned load, const std::shared_ptr<const Scene>& scene) {
+    const auto next = prepared<raster::RasterScene, raster::RasterSettings>(load, scene);
+    publish([&] {
+        if (loaded_.load == load) loaded_.raster = next;
+    });
+}
+
+void LiveView::prepare_for(const View& view, const LoadedScene& loaded) {
+    start_loading([=, this](const std::atomic<bool>&) {
+        prepare_raster(loaded.load, std::make_shared<const Scene>(seen_in(view, *loaded.scene)));
     });
 }
 
@@ -113,9 +127,8 @@ std::shared_ptr<const TracerFrame> LiveView::tracer_frame() const {
 
 void LiveView::show(const Wish& wish) {
     const LoadedScene scene = loaded();
-    if (!scene.raster) return;
-    show_raster(wish, scene);
-    if (tracer_started_ == Started{wish.version, scene.raytrace->id, 1}) return;
+    if (scene.raster) show_raster(wish, scene);
+    if (!scene.raytrace || tracer_started_ == Started{wish.version, scene.raytrace->id, 1}) return;
     tracer_started_ = Started{wish.version, scene.raytrace->id, 1};
     tracer_.start([=, this](const std::atomic<bool>& stop) { render_traced(wish, scene, stop); });
 }
@@ -123,7 +136,8 @@ void LiveView::show(const Wish& wish) {
 void LiveView::show_raster(const Wish& wish, const LoadedScene& scene) {
     const Started full{wish.version, scene.raster->id, 1};
     if (raster_started_ == full) {
-        if (!raster_.busy() && !loader_.busy() && !same(wish.view, *scene.raster->scene)) prepare_for(wish.view, scene);
+        const bool outdated = scene.raster->load != scene.load || !same(wish.view, *scene.raster->scene);
+        if (outdated && !raster_.busy() && !loader_.busy()) prepare_for(wish.view, scene);
         return;
     }
     // A frame that is smaller runs to its end, or nothing would be seen while the camera moves.
@@ -200,7 +214,9 @@ void LiveView::render_traced(const Wish& wish, const LoadedScene& scene, const s
 bool LiveView::finished(const Wish& wish) const {
     if (loader_.busy()) return false;
     const std::lock_guard lock(mutex_);
-    if (!loaded_.raster || !raster_frame_ || !tracer_frame_ || !same(wish.view, *loaded_.raster->scene)) return false;
+    if (!loaded_.raster || loaded_.raster->load != loaded_.load || !raster_frame_ || !tracer_frame_ ||
+        !same(wish.view, *loaded_.raster->scene))
+        return false;
     const bool raster = raster_frame_->version == wish.version && raster_frame_->prepared == loaded_.raster->id &&
                         raster_frame_->scale == 1;
     const bool traced = tracer_frame_->version == wish.version && tracer_frame_->prepared == loaded_.raytrace->id &&

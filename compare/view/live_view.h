@@ -14,7 +14,8 @@ namespace duet::compare {
 
 /// A scene as one pipeline has prepared it. It keeps the scene alive.
 template <typename Prepared> struct PreparedScene {
-    unsigned id; ///< different for every preparation
+    unsigned id;   ///< different for every preparation
+    unsigned load; ///< LoadedScene::load
     std::shared_ptr<const Scene> scene;
     Prepared prepared;
     double seconds; ///< time of the preparation
@@ -22,11 +23,12 @@ template <typename Prepared> struct PreparedScene {
 
 /// What is known of the scene that was loaded last.
 struct LoadedScene {
-    std::shared_ptr<const Scene> scene; ///< null until a scene has been loaded
-    /// The rasterizer places probes and shadow maps for the scene's camera. This scene has another camera than `scene`
-    /// once the camera has moved and come to rest.
+    unsigned load = 0;                                                        ///< number of scenes loaded so far
+    std::shared_ptr<const Scene> scene;                                       ///< null until a scene has been loaded
+    std::shared_ptr<const PreparedScene<raytrace::PathTracerScene>> raytrace; ///< of `scene`
+    /// The rasterizer takes longer to prepare a scene; until then this is of the scene before. It places probes and
+    /// shadow maps for the scene's camera, so that it is prepared anew when the camera has moved and come to rest.
     std::shared_ptr<const PreparedScene<raster::RasterScene>> raster;
-    std::shared_ptr<const PreparedScene<raytrace::PathTracerScene>> raytrace;
     std::string error;       ///< why the newest text could not be loaded; empty: it could, and `scene` is of it
     double load_seconds = 0; ///< time of reading files
 };
@@ -88,14 +90,16 @@ public:
 private:
     void publish(const std::function<void()>& change); // under the lock; then calls wake_
     template <typename Prepared, typename Settings>
-    std::shared_ptr<const PreparedScene<Prepared>> prepared(const std::shared_ptr<const Scene>& scene);
+    std::shared_ptr<const PreparedScene<Prepared>> prepared(unsigned load, const std::shared_ptr<const Scene>& scene);
+    void start_loading(LatestJob::Job job);
+    void prepare_raster(unsigned load, const std::shared_ptr<const Scene>& scene);
     void prepare_for(const View& view, const LoadedScene& loaded);
     void show_raster(const Wish& wish, const LoadedScene& scene);
     void render_raster(const Wish& wish, const LoadedScene& scene, double scale, const std::atomic<bool>& stop);
     void render_traced(const Wish& wish, const LoadedScene& scene, const std::atomic<bool>& stop);
 
     const int threads_;
-    std::atomic<unsigned> preparations_ = 0;
+    std::atomic<unsigned> loads_ = 0, preparations_ = 0;
     const std::function<void()> wake_;
     std::atomic<bool> paused_ = false;
     mutable std::mutex mutex_; // guards the results

@@ -120,9 +120,10 @@ std::string with_value(std::string_view text, const JsonPath& path, const ordere
     if (all.empty()) return replaced(text, {parent.begin + 1, parent.end - 1}, member);
     // The new child is set off as the last one is: on a line of its own, or not.
     const std::size_t before = all.size() > 1 ? all[all.size() - 2].whole.end : parent.begin;
-    const std::string_view gap = text.substr(before + 1, all.back().whole.begin - before - 1);
+    std::string gap(text.substr(before + 1, all.back().whole.begin - before - 1));
+    if (all.size() == 1 && gap.empty()) gap = " "; // the gap behind a bracket differs from that behind a comma
     const std::size_t end = all.back().whole.end;
-    return replaced(text, {end, end}, message(",", gap.empty() ? " " : gap, member));
+    return replaced(text, {end, end}, message(",", gap, member));
 }
 
 std::string without_value(std::string_view text, const JsonPath& path) {

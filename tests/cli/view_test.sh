@@ -61,31 +61,79 @@ drag() {
     sleep 0.4
 }
 click() { xdotool mousemove "$1" "$2"; sleep 0.3; xdotool mousedown 1; sleep 0.2; xdotool mouseup 1; sleep 0.4; }
-saved() { key ctrl+s; ! cmp -s "$scene" "$1"; }
+changed_from() {
+    key ctrl+s
+    ! cmp -s "$scene" "$1"
+}
 
 # Writes the window's images until they are final: those that the programs render from the saved scene.
 images_match() {
     key p
     [ -f "$scratch/raytrace.exr" ] || return 1
     for program in raster raytrace; do
-        "$bin/compare" images "$scratch/$program.exr" "$scratch/expected-$program.exr" --quiet --max rmse=0 ||
-            return 1
+        "$bin/compare" images "$scratch/$program.exr" "$scratch/expected-$program.exr" --quiet \
+            --fail-above rmse=0 >/dev/null 2>&1 || return 1
     done
 }
 check_images() {
-    "$bin/raster" "$scene" -o "$scratch/expected-raster.exr" --size 200x200 --spp 1 --quiet 2>"$scratch/stderr"
-    "$bin/raytrace" "$scene" -o "$scratch/expected-raytrace.exr" --size 200x200 --spp 8 --aov variance --quiet \
-        2>"$scratch/stderr"
-    until_true 60 images_match || fail "$1: the images are not those of raster and raytrace"
+    "$bin/raster" "$scene" -o "$scratch/expected-raster.exr" --size 200x200 --spp 1 --quiet
+    "$bin/raytrace" "$scene" -o "$scratch/expected-raytrace.exr" --size 200x200 --spp 8 --aov variance --quiet
+    until_true 120 images_match || fail "$1: the images are not those of raster and raytrace"
+}
+same_as() {
+    key ctrl+s
+    cmp -s "$scene" "$1"
 }
 
-# The image is 800 pixels wide, from the left; the tall box stands left of its middle.
+# The image is 800 pixels wide, from the left; the tall box stands left of its middle, its arrow along x at (290, 531).
+cp "$scene" "$scratch/original.json"
 check_images "at first"
+click 330 480
+drag 340 531 60 0
+until_true 30 changed_from "$scratch/original.json" || fail "moving the box changed nothing"
+python3 - "$scratch/original.json" "$scene" <<'CHECK' || fail "the box was not moved along x alone"
+import json, sys
+before, after = (json.load(open(path)) for path in sys.argv[1:])
+box = next(o for o in after["objects"] if o["name"] == "tall box")
+(step,) = box.pop("transform")
+x, y, z = step["translate"]
+assert 0.1 < x < 0.3 and y == z == 0, step
+assert before == after
+CHECK
+[ "$(diff "$scratch/original.json" "$scene" | grep -c '^>')" = 1 ] || fail "more than one line of the file has changed"
+check_images "after the move"
+
+key ctrl+z
+until_true 30 same_as "$scratch/original.json" || fail "the move was not undone"
+
+drag 600 300 100 -40
+until_true 30 changed_from "$scratch/original.json" || fail "the orbit changed nothing"
+[ "$(diff "$scratch/original.json" "$scene" | grep '^>' | grep -c '"camera"')" = 1 ] || fail "the camera was not saved"
+[ "$(diff "$scratch/original.json" "$scene" | grep -c '^>')" = 1 ] || fail "the orbit changed more than the camera"
+check_images "after the orbit"
+
+cp "$scene" "$scratch/turned.json"
+key ctrl+z
+until_true 30 same_as "$scratch/original.json" || fail "the orbit was not undone"
+click 330 480
+key ctrl+d
+until_true 30 changed_from "$scratch/original.json" || fail "no copy was made"
+[ "$(grep -c '"tall box"' "$scene")" = 2 ] || fail "the copy is not one of the tall box"
+key Delete
+until_true 30 same_as "$scratch/original.json" || fail "the copy was not deleted"
+
+# Another program writes the file: a broken one is reported, a good one is shown.
+echo '{"camera": ' >"$scene"
+sleep 2
 key F12
+kill -0 $process || fail "a broken file ended the window"
+cp "$scratch/turned.json" "$scene"
+check_images "after another program has changed the file"
 [ -s "$scratch/view.png" ] || fail "F12 wrote no view.png"
 
-cp "$scene" "$scratch/original.json"
-click 320 520
-drag 375 520 60 0 # TODO position of the arrow
-saved "$scratch/original.json" || fail "moving the box changed nothing"
+key ctrl+q
+code=0
+wait $process || code=$?
+[ "$code" -eq 0 ] || fail "exit code $code"
+[ -s "$scratch/view.txt" ] && fail "$(cat "$scratch/view.txt")"
 finish

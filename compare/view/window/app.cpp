@@ -43,7 +43,6 @@ App::App(const ViewOptions& options, Window& window)
 }
 
 bool App::draw() {
-    handle_keys();
     for (const std::filesystem::path& file : window_.dropped()) open(file);
     reload_if_changed();
 
@@ -66,6 +65,7 @@ bool App::draw() {
     ImGui::EndChild();
     ImGui::End();
     if (help_) draw_help();
+    handle_keys(); // after the mouse: a key that follows the end of a drag sees its result
 
     if (!loaded_once_) load();
     loaded_once_ = true;
@@ -91,6 +91,7 @@ void App::edit(std::string text) {
 }
 
 void App::undo(bool back) {
+    drag_ = Drag::kNone;
     const std::string before = document_.text();
     if (!(back ? document_.undo() : document_.redo())) {
         message_ = back ? "Nothing to undo." : "Nothing to redo.";

@@ -211,7 +211,7 @@ bool App::fly_by_keys() {
     };
     const int forward = axis(GLFW_KEY_W, GLFW_KEY_S), right = axis(GLFW_KEY_D, GLFW_KEY_A),
               up = axis(GLFW_KEY_E, GLFW_KEY_Q);
-    const bool flies = !ImGui::GetIO().KeyCtrl && (forward != 0 || right != 0 || up != 0);
+    const bool flies = forward != 0 || right != 0 || up != 0;
     if (flies) {
         const double step = kFlyPerSecond * std::min(static_cast<double>(ImGui::GetIO().DeltaTime), 0.1);
         changed_camera(fly(document_.camera(), step * forward, step * right, step * up));

@@ -166,7 +166,7 @@ void App::draw_inspector() {
     if (shown_raster_ && shown_raster_->error.empty()) {
         row("raster", color(at_pointer(shown_raster_->rendering.radiance)));
         if (!shown_raster_->rendering.hit.empty() && shown_raster_->prepared == loaded.raster->id)
-            row("its hit", hit_text(*loaded.scene, at_pointer(shown_raster_->rendering.hit)));
+            row("its hit", hit_text(*loaded.raster->scene, at_pointer(shown_raster_->rendering.hit)));
     }
     if (shown_traced_ && shown_traced_->error.empty()) row("path tracer", color(at_pointer(shown_traced_->image)));
     const Hit hit = trace(loaded.raytrace->prepared, CameraModel(wish_.view).ray({x + 0.5, y + 0.5}));

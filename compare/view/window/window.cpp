@@ -52,8 +52,12 @@ Window::Window(const std::string& title, ImageSize size) {
     glfwSetWindowUserPointer(window_, this);
     // Dear ImGui keeps these callbacks and calls them before its own.
     glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int mods) {
+        Window& self = window_of(window);
+        const bool control = (mods & GLFW_MOD_CONTROL) != 0;
+        if (action == GLFW_RELEASE) self.held_.erase(key);
         if (action == GLFW_RELEASE || ImGui::GetIO().WantTextInput) return;
-        window_of(window).keys_.push_back({key, (mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0});
+        if (!control) self.held_.insert(key); // Ctrl + S, released late, must not be taken for S
+        self.keys_.push_back({key, control, (mods & GLFW_MOD_SHIFT) != 0});
     });
     glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
         window_of(window).dropped_.insert(window_of(window).dropped_.end(), paths, paths + count);
@@ -102,8 +106,6 @@ ImageRgb Window::end_frame(bool screenshot) {
 void Window::wake() { glfwPostEmptyEvent(); }
 void Window::close() { glfwSetWindowShouldClose(window_, GLFW_TRUE); }
 void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
-
-bool Window::held(int key) const { return !ImGui::GetIO().WantTextInput && glfwGetKey(window_, key) == GLFW_PRESS; }
 
 Texture::~Texture() {
     if (name_ != 0) glDeleteTextures(1, &name_);

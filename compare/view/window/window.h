@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -41,12 +42,13 @@ public:
     /// text field receives are left out.
     const std::vector<KeyPress>& keys() const { return keys_; }
     const std::vector<std::filesystem::path>& dropped() const { return dropped_; }
-    /// Returns whether a key is held down, and no text field receives it.
-    bool held(int key) const;
+    /// Returns whether a key is held down that was pressed without Ctrl, and outside of text fields.
+    bool held(int key) const { return held_.contains(key); }
 
 private:
     GLFWwindow* window_;
     std::vector<KeyPress> keys_;
+    std::set<int> held_;
     std::vector<std::filesystem::path> dropped_;
 };
 
