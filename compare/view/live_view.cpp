@@ -17,9 +17,9 @@ constexpr double kMovingFrameSeconds = 1.0 / 30;
 constexpr double kLeastScale = 0.25;
 /// The path tracer's first image has this fraction of the width.
 constexpr double kPreviewScale = 0.25;
-/// A pass of the path tracer takes about this long, in seconds: short enough to watch it converge, and long enough for
-/// copies of the image not to count.
-constexpr double kPassSeconds = 0.4;
+/// A pass of the path tracer takes about this long at first, in seconds, and later this part of the time so far: short
+/// enough to watch it converge, and long enough for copies of the image not to count.
+constexpr double kPassSeconds = 0.3, kPassPart = 0.1;
 /// A pass adds at most this many samples per pixel, as passes of raytrace do.
 constexpr std::uint32_t kPassSamples = 16;
 
@@ -140,8 +140,7 @@ void LiveView::show_raster(const Wish& wish, const LoadedScene& scene) {
         if (outdated && !raster_.busy() && !loader_.busy()) prepare_for(wish.view, scene);
         return;
     }
-    // A frame that is smaller runs to its end, or nothing would be seen while the camera moves.
-    if (raster_.busy() && raster_started_.scale < 1) return;
+    if (raster_started_.version == wish.version && raster_started_.scale < 1 && raster_.busy()) return;
     Started next = full;
     if (raster_started_.version != wish.version && pixel_seconds_ > 0)
         next.scale =
@@ -156,6 +155,7 @@ void LiveView::render_raster(const Wish& wish, const LoadedScene& scene, double 
         const Stopwatch watch;
         const View view = scaled(wish.view, scale);
         Control control;
+        // A smaller frame runs to its end, or nothing would be seen while the camera moves.
         if (scale == 1) control.stop = &stop;
         frame.rendering = render(scene.raster->prepared, view, wish.raster, control);
         frame.seconds = watch.seconds();
@@ -170,11 +170,16 @@ void LiveView::render_raster(const Wish& wish, const LoadedScene& scene, double 
     }
 }
 
+void LiveView::wait_while_paused(const std::atomic<bool>& stop) const {
+    while (paused_ && !stop) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+}
+
 void LiveView::render_traced(const Wish& wish, const LoadedScene& scene, const std::atomic<bool>& stop) {
     TracerFrame frame{.version = wish.version, .prepared = scene.raytrace->id};
     const Stopwatch watch;
     const auto publish_frame = [&] { publish([&] { tracer_frame_ = std::make_shared<const TracerFrame>(frame); }); };
     try {
+        wait_while_paused(stop);
         Control to_the_end, stoppable{.stop = &stop, .progress = {}};
         raytrace::ProgressiveRender preview(scene.raytrace->prepared, scaled(wish.view, kPreviewScale), wish.raytrace);
         preview.add_samples(1, to_the_end);
@@ -190,8 +195,9 @@ void LiveView::render_traced(const Wish& wish, const LoadedScene& scene, const s
         frame.preview = false;
         frame.samples = 0;
         for (double sample_seconds = 0; frame.samples < limit;) {
-            while (paused_ && !stop) std::this_thread::sleep_for(std::chrono::milliseconds(20));
-            const auto fitting = static_cast<std::uint32_t>(sample_seconds > 0 ? kPassSeconds / sample_seconds : 1);
+            wait_while_paused(stop);
+            const double pass_seconds = std::max(kPassSeconds, kPassPart * watch.seconds());
+            const auto fitting = static_cast<std::uint32_t>(sample_seconds > 0 ? pass_seconds / sample_seconds : 1);
             const std::uint32_t more =
                 std::min({std::max(fitting, 1u), kPassSamples, std::max(frame.samples, 1u), limit - frame.samples});
             const Stopwatch pass;

@@ -77,7 +77,7 @@ public:
     /// rasterizer is smaller while wishes change faster than it renders. Once the camera rests, the scene is prepared
     /// anew for it, so that the images are those that the programs render from there.
     void show(const Wish& wish);
-    /// While the path tracer is paused it adds no samples.
+    /// While the path tracer is paused it renders nothing, and its image may show another view.
     void pause(bool paused) { paused_ = paused; }
     bool paused() const { return paused_; }
 
@@ -96,6 +96,7 @@ private:
     void prepare_for(const View& view, const LoadedScene& loaded);
     void show_raster(const Wish& wish, const LoadedScene& scene);
     void render_raster(const Wish& wish, const LoadedScene& scene, double scale, const std::atomic<bool>& stop);
+    void wait_while_paused(const std::atomic<bool>& stop) const;
     void render_traced(const Wish& wish, const LoadedScene& scene, const std::atomic<bool>& stop);
 
     const int threads_;

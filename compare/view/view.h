@@ -5,6 +5,7 @@
 #include "common/program/view_transform_options.h"
 
 #include <filesystem>
+#include <string>
 
 namespace duet::compare {
 
@@ -17,6 +18,8 @@ struct ViewOptions {
     int spp = 4096;                     ///< the path tracer's samples per pixel at most
     int raster_spp = 1, max_depth = 64, threads = 0;
     ViewTransformOptions view_transform;
+    double measure = 0; ///< seconds of a turn of the camera that is measured; 0: the window waits for its user
+    std::string stats;  ///< file of the measurement as JSON; "-" for standard output; empty: none
 };
 
 /// Opens the window, and returns the program's exit code once it is closed. Throws Error for a scene that cannot be

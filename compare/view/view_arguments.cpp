@@ -21,6 +21,11 @@ void add_view(CommandLine& program) {
         .range(0, 1 << 20);
     view.add("--threads", options.threads, "Threads (default: all)").range(1, 1024);
     add_view_transform(view, options.view_transform);
+    view.add("--measure", options.measure,
+             "Turn the camera once around in this many seconds, print how fast the window is, and close it")
+        .positive();
+    view.add("--stats", options.stats, "Write the figures of --measure to this file (-: standard output)")
+        .needs("--measure");
     set_footer(
         view, "Mouse: drag orbits (Shift: pans, Ctrl: looks around), the wheel moves closer, a click selects, a double "
               "click looks there.\nKeys: ? lists them all.\n\nExample:\n  compare view models/cornell.json");

@@ -7,6 +7,7 @@
 #include "compare/arguments.h"
 #include "compare/view/camera_control.h"
 #include "compare/view/edits.h"
+#include "compare/view/window/measure.h"
 
 #include <GLFW/glfw3.h>
 
@@ -78,6 +79,11 @@ void App::load() { live_.load(wish_.view, document_.reader()); }
 void App::changed_camera(const Camera& camera) {
     document_.set_camera(camera);
     follow_document();
+}
+
+void App::turn(double angle) {
+    changed_camera(orbit(document_.camera(), angle, 0));
+    document_.commit();
 }
 
 void App::follow_document() {
@@ -204,6 +210,10 @@ void App::handle_keys() {
 int view(const ViewOptions& options) {
     Window window("Duet: " + options.scene.string(), options.window);
     App app(options, window);
+    if (options.measure > 0) {
+        measure(app, window, options);
+        return kExitOk;
+    }
     const InterruptFlag interrupt;
     bool moves = true;
     while (!interrupt.raised() && window.begin_frame(moves ? 0 : 0.25)) {

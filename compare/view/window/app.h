@@ -42,6 +42,10 @@ public:
     App(const ViewOptions& options, Window& window);
     /// Draws a frame. Returns whether the next one shall follow at once, because something moves.
     bool draw();
+    /// Turns the camera around what it looks at, by an angle in radians.
+    void turn(double angle);
+    LiveView& live() { return live_; }
+    const Wish& wish() const { return wish_; }
     /// Returns whether a screenshot of this frame is wanted.
     bool wants_screenshot() const { return wants_screenshot_; }
     /// Writes the screenshot that is wanted.

@@ -155,7 +155,7 @@ void App::draw_textures() {
     draw(raster_texture_, 0, split);
     draw(traced_texture_, split, 1);
     if (split > 0) label("raster", false);
-    if (split < 1) label("path tracer", true);
+    if (split < 1) label(live_.paused() ? "path tracer, paused" : "path tracer", true);
     if (show_ != Show::kSplit) return;
     const float x = low.x + split * area_.size.x;
     list.AddLine({x, low.y}, {x, high.y}, IM_COL32(255, 255, 255, 200), 2);
