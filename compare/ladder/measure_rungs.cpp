@@ -47,7 +47,8 @@ double measuring_cost(const std::array<RungPlan, kRungCount>& plan) {
     double cost = 0;
     for (const RungPlan& rung : plan)
         for (const RungRenderers& q : rung.renderers)
-            cost += kRasterCost * q.raster_settings.samples_per_pixel + kRayCost * q.raytrace_settings.samples_per_pixel;
+            cost +=
+                kRasterCost * q.raster_settings.samples_per_pixel + kRayCost * q.raytrace_settings.samples_per_pixel;
     return cost;
 }
 

@@ -29,12 +29,15 @@ public:
     ImageSize image_size() const { return image_size_; }
     const ViewTransform& view_transform() const { return view_transform_; }
 
-    /// Changes the camera or the text. Changes until commit() are one step for undo().
+    /// Changes the camera. Changes of camera and text until commit() are one step for undo().
     void set_camera(const Camera& camera);
+    /// Replaces the text, which must be valid JSON.
     void set_text(std::string text);
+    /// Ends a step, if one has begun.
     void commit();
-    /// Goes one step back or forth. Returns false if there is none.
+    /// Goes one step back. Returns false if there is none.
     bool undo();
+    /// Goes one step forth. Returns false if there is none.
     bool redo();
 
     /// Returns whether there is something to save.

@@ -22,6 +22,7 @@ public:
     LatestJob(const LatestJob&) = delete;
     LatestJob& operator=(const LatestJob&) = delete;
 
+    /// Runs a job as soon as the one that runs has ended.
     void start(Job job);
     /// Stops the job that runs, drops the one that waits, and returns when none runs.
     void stop();

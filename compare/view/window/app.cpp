@@ -1,17 +1,12 @@
 #include "compare/view/window/app.h"
 
 #include "common/image/image_file.h"
-#include "common/program/program.h"
 #include "common/system/error.h"
 #include "common/system/file.h"
-#include "compare/arguments.h"
 #include "compare/view/camera_control.h"
 #include "compare/view/edits.h"
-#include "compare/view/window/measure.h"
 
 #include <GLFW/glfw3.h>
-
-#include <iostream>
 
 namespace duet::compare {
 
@@ -123,6 +118,7 @@ void App::open(const std::filesystem::path& path) {
             return;
         }
         document_ = SceneDocument(path, options_.scene_options);
+        window_.set_title(window_title(path));
         selected_ = -1;
         file_time_ = write_time(path);
         follow_document();
@@ -205,23 +201,6 @@ void App::handle_keys() {
         if (press.key == GLFW_KEY_R) reload();
         if (press.key == GLFW_KEY_SLASH || press.key == GLFW_KEY_F1) help_ = !help_;
     }
-}
-
-int view(const ViewOptions& options) {
-    Window window("Duet: " + options.scene.string(), options.window);
-    App app(options, window);
-    if (options.measure > 0) {
-        measure(app, window, options);
-        return kExitOk;
-    }
-    const InterruptFlag interrupt;
-    bool moves = true;
-    while (!interrupt.raised() && window.begin_frame(moves ? 0 : 0.25)) {
-        moves = app.draw();
-        const ImageRgb pixels = window.end_frame(app.wants_screenshot());
-        if (!pixels.empty()) app.write_screenshot(pixels);
-    }
-    return interrupt.raised() ? kExitInterrupted : kExitOk;
 }
 
 } // namespace duet::compare

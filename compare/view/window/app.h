@@ -36,6 +36,9 @@ struct Comparison {
     double figure = 0; ///< luminance of full orange or blue; for FLIP the mean
 };
 
+/// Returns the title of the window that shows a scene.
+inline std::string window_title(const std::filesystem::path& scene) { return "Duet: " + scene.filename().string(); }
+
 /// The window's state. Each frame, draw() draws everything, and passes on to the live view what is wanted.
 class App {
 public:

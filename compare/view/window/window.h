@@ -31,11 +31,13 @@ public:
 
     /// Waits for events for at most `seconds`, then begins a frame. Returns false once the user has closed the window.
     bool begin_frame(double seconds);
-    /// Draws the frame. Returns its pixels if a screenshot is asked for, else an empty image.
+    /// Draws the frame. With `screenshot`, returns its pixels, else an empty image.
     ImageRgb end_frame(bool screenshot = false);
     /// Ends the wait of begin_frame. Any thread may call it.
     static void wake();
+    /// Makes begin_frame return false, as if the user had closed the window.
     void close();
+    /// Sets the text above the window.
     void set_title(const std::string& title);
 
     /// The keys that were pressed and the files that were dropped on the window since the frame before. Keys that a
