@@ -1,5 +1,6 @@
 #include "common/image/image_file.h"
 #include "common/scene/default_scene.h"
+#include "common/scene/file_cache.h"
 #include "common/scene/json/json_reader.h"
 #include "common/scene/json/read_lights.h"
 #include "common/scene/json/read_materials.h"
@@ -36,7 +37,7 @@ void read_image_settings(const JsonValue& image, Scene& scene) {
     view.dither = image.boolean_or("dither", false);
 }
 
-Scene read_scene(const std::filesystem::path& path, std::string_view text) {
+Scene read_scene(const std::filesystem::path& path, std::string_view text, FileCache* cache) {
     const JsonNode root = parse_json(path, text);
     const JsonValue file(root, path);
     file.check_keys(scene_keys("scene"));
@@ -48,7 +49,7 @@ Scene read_scene(const std::filesystem::path& path, std::string_view text) {
     scene.files = {path};
     scene.camera = read_camera(file.at("camera"));
     if (file.has("image")) read_image_settings(file.at("image"), scene);
-    ImageCache images(scene);
+    ImageCache images(scene, cache);
     NameIndex textures, materials;
     if (file.has("textures")) textures = read_textures(file.at("textures"), scene, images);
     if (file.has("materials")) materials = read_materials(file.at("materials"), textures, scene);
@@ -102,6 +103,12 @@ Scene load_scene(const std::filesystem::path& path, UpAxis up) {
                                : parse_scene(path, read_file(path, kMaxSceneBytes));
 }
 
-Scene parse_scene(const std::filesystem::path& path, std::string_view text) { return finished(read_scene(path, text)); }
+Scene parse_scene(const std::filesystem::path& path, std::string_view text) {
+    return finished(read_scene(path, text, nullptr));
+}
+
+Scene parse_scene(const std::filesystem::path& path, std::string_view text, FileCache& cache) {
+    return finished(read_scene(path, text, &cache));
+}
 
 } // namespace duet

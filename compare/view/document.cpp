@@ -83,7 +83,7 @@ std::function<Scene()> SceneDocument::reader() {
     const std::shared_ptr<Scene> scene = std::exchange(file_scene_, nullptr);
     if (scene && current_ == 0) return [scene] { return std::move(*scene); };
     if (!editable()) return [path = path_, options = options_] { return load_scene(path, options); };
-    return [path = path_, text = now().text] { return parse_scene(path, text); };
+    return [path = path_, text = now().text, cache = cache_] { return parse_scene(path, text, *cache); };
 }
 
 std::string with_camera(std::string text, const Camera& before, const Camera& camera) {

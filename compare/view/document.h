@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/program/render_program.h"
+#include "common/scene/file_cache.h"
 
 #include <filesystem>
 #include <functional>
@@ -46,7 +47,8 @@ public:
     void save(const std::filesystem::path& path);
     /// Starts anew from the file, with an empty history.
     void reload();
-    /// Returns a function that makes the scene of the present text, once, and can run on another thread.
+    /// Returns a function that makes the scene of the present text, once, and can run on another thread. Only one of
+    /// them may run at a time: they share a cache of meshes and images.
     std::function<Scene()> reader();
 
 private:
@@ -67,6 +69,7 @@ private:
     nlohmann::ordered_json json_;
     ImageSize image_size_{};
     ViewTransform view_transform_;
+    std::shared_ptr<FileCache> cache_ = std::make_shared<FileCache>();
     std::shared_ptr<Scene> file_scene_; // the scene as reload() has read it; null once a reader has it
 };
 

@@ -1,5 +1,6 @@
 #include "common/scene/json/read_materials.h"
 
+#include "common/scene/file_cache.h"
 #include "common/scene/json/scene_keys.h"
 #include "common/system/error.h"
 
@@ -20,19 +21,28 @@ std::string canonical_key(const fs::path& path) {
     return (error ? path : canonical).string();
 }
 
-std::uint32_t ImageCache::load(const fs::path& file, ChannelSelection selection) {
-    std::vector<ImageRgb>& images = scene_->textures.images;
-    const std::string key = message(canonical_key(file), '\n', static_cast<int>(selection.values), ' ',
-                                    static_cast<int>(selection.channel));
-    const auto [entry, added] = index_.try_emplace(key, static_cast<std::uint32_t>(images.size()));
-    if (!added) return entry->second;
+namespace {
+
+ImageRgb read_reflectances(const fs::path& file, ChannelSelection selection) {
     ImageRgb image = select_channels(read_stored_image(file), selection);
     for (Rgb& pixel : image.pixels()) {
         if (!is_finite(pixel))
             throw Error(message(file.string(), ": holds a value that is not finite, which no texture may"));
         pixel = {clamp(pixel.r, 0.0f, 1.0f), clamp(pixel.g, 0.0f, 1.0f), clamp(pixel.b, 0.0f, 1.0f)};
     }
-    images.push_back(std::move(image));
+    return image;
+}
+
+} // namespace
+
+std::uint32_t ImageCache::load(const fs::path& file, ChannelSelection selection) {
+    std::vector<ImageRgb>& images = scene_->textures.images;
+    const std::string key = message(canonical_key(file), '\n', static_cast<int>(selection.values), ' ',
+                                    static_cast<int>(selection.channel));
+    const auto [entry, added] = index_.try_emplace(key, static_cast<std::uint32_t>(images.size()));
+    if (!added) return entry->second;
+    const auto read = [&] { return FileCache::Read<ImageRgb>{read_reflectances(file, selection), {file}}; };
+    images.push_back(files_ ? *files_->get<ImageRgb>("image " + key, read) : read().value);
     if (std::find(scene_->files.begin(), scene_->files.end(), file) == scene_->files.end())
         scene_->files.push_back(file);
     return entry->second;

@@ -11,17 +11,24 @@
 
 namespace duet {
 
+class FileCache; // common/scene/file_cache.h
+
 /// An ImageCache loads the images of a scene and stores each only once.
 class ImageCache {
 public:
-    explicit ImageCache(Scene& scene) : scene_(&scene) {}
+    /// With `files`, images come from that cache, which must outlive this one.
+    explicit ImageCache(Scene& scene, FileCache* files = nullptr) : scene_(&scene), files_(files) {}
     /// Returns the index in TextureSet::images of the file's image, loading it if necessary. Values are clamped to
     /// [0, 1], because they are reflectances. Throws Error for a file that cannot be read or holds a value that is
     /// not finite.
     std::uint32_t load(const std::filesystem::path& file, ChannelSelection selection = {});
 
+    /// Returns the cache of files, or null if there is none.
+    FileCache* files() const { return files_; }
+
 private:
     Scene* scene_;
+    FileCache* files_;
     std::map<std::string, std::uint32_t> index_; ///< index by canonical path and selection
 };
 

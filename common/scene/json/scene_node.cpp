@@ -1,5 +1,6 @@
 #include "common/scene/json/scene_node.h"
 
+#include "common/scene/file_cache.h"
 #include "common/scene/json/read_media.h"
 #include "common/scene/json/scene_keys.h"
 #include "common/scene/obj/add_obj_materials.h"
@@ -27,6 +28,17 @@ Shape read_box(const JsonValue& value) {
     const Box3 box{Vec3(value.at("low").vec3()), Vec3(value.at("high").vec3())};
     check_corners(value, box);
     return box_quads(box.low, box.high);
+}
+
+ObjFile read_obj(const std::filesystem::path& file, const ObjOptions& options, FileCache* cache) {
+    if (!cache) return load_obj(file, options);
+    const std::string key = message("mesh ", canonical_key(file), '\n', static_cast<int>(options.normals), ' ',
+                                    options.materials);
+    return *cache->get<ObjFile>(key, [&] {
+        ObjFile obj = load_obj(file, options);
+        std::vector<std::filesystem::path> files = obj.files;
+        return FileCache::Read<ObjFile>{std::move(obj), std::move(files)};
+    });
 }
 
 } // namespace
@@ -98,7 +110,7 @@ const SceneNodeReader::LoadedMesh& SceneNodeReader::load_mesh(const JsonValue& v
     const auto found = meshes_.find(key);
     if (found != meshes_.end()) return found->second;
     try {
-        ObjFile obj = load_obj(file, {kKinds[kind], !own_material});
+        ObjFile obj = read_obj(file, {kKinds[kind], !own_material}, images_->files());
         scene_->files.insert(scene_->files.end(), obj.files.begin(), obj.files.end());
         LoadedMesh mesh{static_cast<std::uint32_t>(scene_->shapes.size()), {}, obj.materials.size()};
         if (!own_material) mesh.materials = add_obj_materials(file, obj, *images_, *scene_);

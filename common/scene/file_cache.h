@@ -1,0 +1,49 @@
+// This file keeps what a scene is made of while it is read again and again, as an editor does after each change.
+#pragma once
+
+#include "common/scene/scene.h"
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace duet {
+
+/// A FileCache returns values that it has read before, unless one of their files has changed since. It keeps every
+/// value. Only one thread may use it at a time.
+class FileCache {
+public:
+    /// A value and the files that it was made of.
+    template <typename Value> struct Read {
+        Value value;
+        std::vector<std::filesystem::path> files;
+    };
+    /// Returns the value of a key, made by `read` if it is not in the cache. A key always stands for the same type.
+    template <typename Value>
+    std::shared_ptr<const Value> get(const std::string& key, const std::function<Read<Value>()>& read) {
+        return std::static_pointer_cast<const Value>(find(key, [&read] {
+            Read<Value> made = read();
+            return Read<std::shared_ptr<const void>>{std::make_shared<const Value>(std::move(made.value)),
+                                                     std::move(made.files)};
+        }));
+    }
+
+private:
+    struct Entry {
+        std::shared_ptr<const void> value;
+        /// The files, and when each was written.
+        std::vector<std::pair<std::filesystem::path, std::filesystem::file_time_type>> files;
+    };
+    std::shared_ptr<const void> find(const std::string& key,
+                                     const std::function<Read<std::shared_ptr<const void>>()>& read);
+
+    std::map<std::string, Entry> entries_;
+};
+
+/// Reads the text of a scene file as parse_scene(path, text) does, and takes its meshes and images from the cache.
+Scene parse_scene(const std::filesystem::path& path, std::string_view text, FileCache& cache);
+
+} // namespace duet
