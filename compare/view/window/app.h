@@ -67,7 +67,10 @@ private:
     bool fly_by_keys();
     void select_at(Vec2d pixel);
     // gizmo.cpp
+    enum class Handle { kNone, kMove, kTurn, kScale };
+    void place_gizmo(const Box3& box);
     void draw_gizmo();
+    void draw_handle(Handle handle, std::size_t axis, const std::vector<Vec3d>& points);
     void drag_object();
     std::optional<ImVec2> on_screen(Vec3d point) const;
     // side_panel.cpp
@@ -131,10 +134,13 @@ private:
         Box3 box;
     } bounds_; // of the selected object, as it was found last
     struct Gizmo {
-        int axis = -1; // under the pointer or dragged
+        Handle handle = Handle::kNone; // under the pointer or dragged
+        std::size_t axis = 0;
+        double angle = 0; // of the grabbed point of a ring
         Vec3d center;
-        double length = 0, dragged = 0; // in meters
-        std::string text;               // before the drag
+        double length = 0;  // of the arrows, in meters
+        double dragged = 0; // in meters, in radians, or the logarithm of a factor
+        std::string text;   // before the drag
     } gizmo_;
     double turn_degrees_ = 15, scale_factor_ = 1.1;
     std::string message_, path_log_; // of the last action; of the path under the last click

@@ -1,4 +1,5 @@
-// The handles of the selected object: three arrows along the world's axes, which move it.
+// The handles of the selected object: arrows move it along the world's axes, rings turn it about them, and the square
+// in the middle scales it.
 #include "compare/view/edits.h"
 #include "compare/view/window/app.h"
 
@@ -8,8 +9,12 @@ namespace duet::compare {
 
 namespace {
 
-constexpr double kArrowOfHeight = 0.15; // length of an arrow, as a fraction of what the image shows at the object
-constexpr float kGrabPixels = 8;        // distance from which an arrow is grabbed
+constexpr double kLengthOfHeight = 0.15; // length of an arrow, as a fraction of what the image shows at the object
+constexpr double kRingOfLength = 0.75;   // radius of a ring
+constexpr float kGrabPixels = 7;         // distance from which a handle is grabbed
+constexpr double kScalePerPixel = 0.01;  // logarithm of the factor
+constexpr double kSnapDegrees = 15, kSnapFactor = 0.1;
+constexpr int kRingPoints = 48;
 constexpr std::array<Vec3d, 3> kAxes{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};
 constexpr std::array<ImU32, 3> kColors{IM_COL32(235, 90, 70, 255), IM_COL32(120, 200, 80, 255),
                                        IM_COL32(80, 140, 240, 255)};
@@ -22,6 +27,22 @@ float distance_to_line(ImVec2 p, ImVec2 a, ImVec2 b) {
     return std::hypot(p.x - a.x - along * x, p.y - a.y - along * y);
 }
 
+/// Returns how far the mouse has moved along the line from `from` to `to`, as a fraction of its length, or 0 for a line
+/// shorter than `least` pixels, which points at the viewer.
+double along(ImVec2 mouse, ImVec2 from, ImVec2 to, float least) {
+    const float x = to.x - from.x, y = to.y - from.y, square = x * x + y * y;
+    return square > least * least ? static_cast<double>((mouse.x * x + mouse.y * y) / square) : 0;
+}
+
+Vec3d ring_point(std::size_t axis, double angle) {
+    return std::cos(angle) * kAxes[(axis + 1) % 3] + std::sin(angle) * kAxes[(axis + 2) % 3];
+}
+
+double snapped(double value, double step) { return std::round(value / step) * step; }
+
+/// Returns the power of ten that is a hundredth to a tenth of a length.
+double snap_length(double length) { return std::pow(10, std::floor(std::log10(length)) - 1); }
+
 } // namespace
 
 std::optional<ImVec2> App::on_screen(Vec3d point) const {
@@ -32,44 +53,88 @@ std::optional<ImVec2> App::on_screen(Vec3d point) const {
                   area_.low.y + static_cast<float>(projected.y / wish_.view.height) * area_.size.y};
 }
 
+void App::place_gizmo(const Box3& box) {
+    const Camera& camera = wish_.view.camera;
+    gizmo_.handle = Handle::kNone;
+    gizmo_.center = (Vec3d(box.low) + Vec3d(box.high)) / 2.0;
+    const double height = camera.projection == Camera::Projection::kOrthographic
+                              ? camera.height
+                              : 2 * length(gizmo_.center - camera.eye) * std::tan(radians(camera.fov_degrees) / 2);
+    gizmo_.length = kLengthOfHeight * height;
+}
+
 void App::draw_gizmo() {
-    if (drag_ != Drag::kObject) gizmo_.axis = -1;
     const Box3 box = selected_bounds();
+    if (drag_ != Drag::kObject) place_gizmo(box); // while a handle is dragged, the scene that is loaded lags behind
     if (selected_ < 0 || box.empty() || !document_.editable()) return;
-    if (drag_ != Drag::kObject) { // while an arrow is dragged, the scene that is loaded lags behind
-        gizmo_.center = (Vec3d(box.low) + Vec3d(box.high)) / 2.0;
-        const Camera& camera = wish_.view.camera;
-        gizmo_.length =
-            kArrowOfHeight * (camera.projection == Camera::Projection::kOrthographic
-                                  ? camera.height
-                                  : 2 * length(gizmo_.center - camera.eye) * std::tan(radians(camera.fov_degrees) / 2));
+    const bool moves = drag_ == Drag::kObject && gizmo_.handle == Handle::kMove;
+    const Vec3d center = moves ? gizmo_.center + gizmo_.dragged * kAxes[gizmo_.axis] : gizmo_.center;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        draw_handle(Handle::kMove, axis, {center, center + gizmo_.length * kAxes[axis]});
+        std::vector<Vec3d> ring;
+        for (int i = 0; i <= kRingPoints; ++i)
+            ring.push_back(center + kRingOfLength * gizmo_.length * ring_point(axis, 2 * kPiDouble * i / kRingPoints));
+        draw_handle(Handle::kTurn, axis, ring);
     }
-    Vec3d center = gizmo_.center;
-    if (drag_ == Drag::kObject) center = center + gizmo_.dragged * kAxes[static_cast<std::size_t>(gizmo_.axis)];
-    const std::optional<ImVec2> from = on_screen(center);
-    if (!from) return;
+    draw_handle(Handle::kScale, 0, {center, center});
+}
+
+// Draws a handle, and takes it where it is the first under the pointer.
+void App::draw_handle(Handle handle, std::size_t axis, const std::vector<Vec3d>& points) {
+    std::vector<ImVec2> line;
+    for (const Vec3d& point : points) {
+        const std::optional<ImVec2> pixel = on_screen(point);
+        if (!pixel) return;
+        line.push_back(*pixel);
+    }
+    if (drag_ == Drag::kNone && area_.hovered && (gizmo_.handle == Handle::kNone || handle == Handle::kScale))
+        for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+            if (distance_to_line(ImGui::GetIO().MousePos, line[i], line[i + 1]) > kGrabPixels) continue;
+            gizmo_.handle = handle;
+            gizmo_.axis = axis;
+            gizmo_.angle = 2 * kPiDouble * static_cast<double>(i) / kRingPoints;
+            break;
+        }
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    for (std::size_t i = 0; i < 3; ++i) {
-        const std::optional<ImVec2> to = on_screen(center + gizmo_.length * kAxes[i]);
-        if (!to) continue;
-        if (drag_ == Drag::kNone && area_.hovered && gizmo_.axis < 0 &&
-            distance_to_line(ImGui::GetIO().MousePos, *from, *to) < kGrabPixels)
-            gizmo_.axis = static_cast<int>(i);
-        const bool active = gizmo_.axis == static_cast<int>(i);
-        list.AddLine(*from, *to, active ? IM_COL32_WHITE : kColors[i], active ? 4.0f : 3.0f);
-        list.AddCircleFilled(*to, active ? 7.0f : 5.0f, active ? IM_COL32_WHITE : kColors[i]);
-    }
+    const bool active = gizmo_.handle == handle && gizmo_.axis == axis;
+    const ImU32 color = active                     ? IM_COL32_WHITE
+                        : handle == Handle::kScale ? IM_COL32(220, 220, 90, 255)
+                                                   : kColors[axis];
+    list.AddPolyline(line.data(), static_cast<int>(line.size()), color, ImDrawFlags_None,
+                     handle == Handle::kTurn ? 1.5f : 3.0f);
+    if (handle == Handle::kMove) list.AddCircleFilled(line.back(), active ? 7.0f : 5.0f, color);
+    if (handle == Handle::kScale)
+        list.AddRectFilled({line[0].x - 5, line[0].y - 5}, {line[0].x + 5, line[0].y + 5}, color);
 }
 
 void App::drag_object() {
-    const Vec3d axis = kAxes[static_cast<std::size_t>(gizmo_.axis)];
-    const std::optional<ImVec2> from = on_screen(gizmo_.center), to = on_screen(gizmo_.center + gizmo_.length * axis);
-    if (!from || !to) return;
     const ImVec2 mouse = ImGui::GetIO().MouseDelta;
-    const float x = to->x - from->x, y = to->y - from->y;
-    if (!(x * x + y * y > 1)) return; // the axis points at the viewer
-    gizmo_.dragged += gizmo_.length * static_cast<double>((mouse.x * x + mouse.y * y) / (x * x + y * y));
-    attempt([&] { edit(moved(gizmo_.text, selected_path(), typed_number(gizmo_.dragged) * axis)); });
+    const Vec3d center = gizmo_.center, axis = kAxes[gizmo_.axis];
+    const bool snaps = ImGui::GetIO().KeyCtrl;
+    Mat4d map;
+    if (gizmo_.handle == Handle::kMove) {
+        const std::optional<ImVec2> from = on_screen(center), to = on_screen(center + gizmo_.length * axis);
+        if (from && to) gizmo_.dragged += gizmo_.length * along(mouse, *from, *to, 1);
+        const double by = snaps ? snapped(gizmo_.dragged, snap_length(gizmo_.length)) : gizmo_.dragged;
+        attempt([&] { edit(moved(gizmo_.text, selected_path(), typed_number(by) * axis)); });
+        return;
+    }
+    if (gizmo_.handle == Handle::kTurn) {
+        constexpr double kStep = 0.01; // of the angle, along the tangent
+        const auto point = [&](double angle) {
+            return on_screen(center + kRingOfLength * gizmo_.length * ring_point(gizmo_.axis, angle));
+        };
+        const double angle = gizmo_.angle + gizmo_.dragged;
+        const std::optional<ImVec2> from = point(angle - kStep / 2), to = point(angle + kStep / 2);
+        if (from && to) gizmo_.dragged += along(mouse, *from, *to, 0.05f) * kStep;
+        map = rotation(axis, snaps ? snapped(gizmo_.dragged, radians(kSnapDegrees)) : gizmo_.dragged);
+    } else {
+        gizmo_.dragged += kScalePerPixel * static_cast<double>(mouse.x - mouse.y);
+        const double factor = std::exp(gizmo_.dragged);
+        const double size = snaps ? std::max(snapped(factor, kSnapFactor), kSnapFactor) : factor;
+        map = scaling(Vec3d(size, size, size));
+    }
+    attempt([&] { edit(transformed(gizmo_.text, selected_path(), translation(center) * map * translation(-center))); });
 }
 
 } // namespace duet::compare

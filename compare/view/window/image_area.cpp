@@ -168,7 +168,7 @@ void App::navigate() {
     if (area_.hovered && pressed) {
         const float line = area_.low.x + split_ * area_.size.x;
         drag_ = show_ == Show::kSplit && std::abs(io.MousePos.x - line) < kSplitGrip ? Drag::kSplit
-                : gizmo_.axis >= 0                                                   ? Drag::kObject
+                : gizmo_.handle != Handle::kNone                                     ? Drag::kObject
                                                                                      : Drag::kCamera;
         double_click_ = ImGui::IsMouseDoubleClicked(0);
         gizmo_.dragged = 0;

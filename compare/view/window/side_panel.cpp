@@ -51,7 +51,7 @@ constexpr std::pair<const char*, const char*> kHelp[] = {
     {"W A S D Q E", "fly forward, left, back, right, down, up"},
     {"click", "select the object; print its path"},
     {"double click", "look there, and focus there"},
-    {"drag an arrow", "move the object along an axis"},
+    {"drag a handle", "arrow: move, ring: turn, square: scale; Ctrl snaps"},
     {"F", "frame the selected object, or everything"},
     {"1 to 5", "split, raster, path tracer, difference, FLIP"},
     {"space", "pause the path tracer"},
