@@ -42,7 +42,9 @@ Rendering render(const PathTracerScene& prepared, const View& view, const PathTr
     RenderStatistics& statistics = rendering.statistics;
     const auto pixels = static_cast<double>(film.pixels().size());
     const std::int64_t samples_at_start = film.total_samples_taken();
-    double finished = film.min_samples_taken(), progress = 0; // finished: mean samples per pixel
+    const auto mean_samples = [&] { return static_cast<double>(film.total_samples_taken()) / pixels; };
+    // An interrupted pass does not count, but with adaptive sampling the least number of samples says nothing.
+    double finished = settings.adaptive ? mean_samples() : film.min_samples_taken(), progress = 0;
     for (;;) {
         const SpentBudget spent{watch.seconds(), film.total_samples_taken() - samples_at_start};
         if (film.complete() && !plan_pass(settings, spent, film)) break;
@@ -53,7 +55,7 @@ Rendering render(const PathTracerScene& prepared, const View& view, const PathTr
             statistics.interrupted = true;
             break;
         }
-        finished = static_cast<double>(film.total_samples_taken()) / pixels;
+        finished = mean_samples();
         progress = next;
         ++statistics.passes;
     }
