@@ -1,5 +1,6 @@
 #include "models/generate.h"
 
+#include "models/nave.h"
 #include "models/octopus.h"
 #include "models/test_ball.h"
 
@@ -33,6 +34,8 @@ std::span<const Model> all_models() {
         {"octopus-million", kOnRequest, {kOctopusMillionFile}, write_octopus_million},
         {"octopus-fine", kOnRequest, {kOctopusFineFile}, write_octopus_fine},
         {"gyroid", kOnRequest, {kGyroidFile}, write_gyroid},
+        {"nave", kOnRequest, {kNaveFile}, write_nave},
+        {"tracery", kOnRequest, {kTraceryFile}, write_tracery},
     };
     return models;
 }
