@@ -32,8 +32,8 @@ trace octopus gallery/octopus --spp 512 --adaptive
 picture octopus
 trace lantern gallery/lantern --spp 512 --adaptive
 picture lantern
-rasterize nave gallery/nave
-picture nave
+rasterize nave gallery/nave --shadow-map 8192
+picture nave --tone filmic --exposure -0.55
 trace glass-sphere gallery/glass-sphere --integrator vcm --spp 500
 picture glass-sphere
 trace caustics caustics --integrator vcm --spp 300
