@@ -34,6 +34,7 @@ std::span<const Model> all_models() {
         {"octopus-million", kOnRequest, {kOctopusMillionFile}, write_octopus_million},
         {"octopus-fine", kOnRequest, {kOctopusFineFile}, write_octopus_fine},
         {"gyroid", kOnRequest, {kGyroidFile}, write_gyroid},
+        {"menger", kOnRequest, {kMengerFile}, write_menger},
         {"nave", kOnRequest, {kNaveFile}, write_nave},
         {"tracery", kOnRequest, {kTraceryFile}, write_tracery},
     };

@@ -37,6 +37,7 @@ void write_bowl(const std::filesystem::path& folder);
 void write_gyroid(const std::filesystem::path& folder);
 void write_hall(const std::filesystem::path& folder);
 void write_lanterns(const std::filesystem::path& folder);
+void write_menger(const std::filesystem::path& folder);
 void write_pear(const std::filesystem::path& folder);
 void write_plinth(const std::filesystem::path& folder);
 void write_ring(const std::filesystem::path& folder);
@@ -45,5 +46,6 @@ void write_spheres(const std::filesystem::path& folder);
 ///@}
 inline constexpr const char* kHallFile = "generated/hall.obj";
 inline constexpr const char* kGyroidFile = "generated/gyroid.obj";
+inline constexpr const char* kMengerFile = "generated/menger.obj";
 
 } // namespace duet::models
