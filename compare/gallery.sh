@@ -30,6 +30,12 @@ picture() {
 
 trace octopus gallery/octopus --spp 512 --adaptive
 picture octopus
+# The frames around it make a looping picture; this needs ffmpeg with libwebp. In some of them the corner of a light
+# shows in the top row of pixels.
+mkdir -p $work/orbit
+"$bin/raster" models/gallery/orbit.json --orbit 72 --spp 16 -o "$work/orbit/%04d.png" --quiet
+ffmpeg -loglevel error -y -framerate 15 -i "$work/orbit/%04d.png" -vf crop=320:178:0:2 -c:v libwebp_anim -quality 75 \
+    -loop 0 gallery/orbit.webp
 trace lantern gallery/lantern --spp 512 --adaptive
 picture lantern
 rasterize nave gallery/nave --shadow-map 8192
