@@ -38,6 +38,8 @@ ffmpeg -loglevel error -y -framerate 15 -i "$work/orbit/%04d.png" -vf crop=320:1
     -loop 0 gallery/orbit.webp
 trace lantern gallery/lantern --spp 512 --adaptive
 picture lantern
+trace menger gallery/menger --spp 220 --adaptive
+picture menger --tone filmic --exposure 0.5
 rasterize nave gallery/nave --shadow-map 8192
 picture nave --tone filmic --exposure -0.55
 trace glass-sphere gallery/glass-sphere --integrator vcm --spp 500
