@@ -1,0 +1,166 @@
+"""The figures of raster/measurements.md."""
+import draw
+from catalog import figure, median, ms, number, scene, stem, table
+from measure import Failed
+
+LIT_SCENES = ("cornell", "veach", "everything", "demo", "spheres", "hall", "glass")
+MESHES = ("models/meshes/amphora.obj", "models/generated/octopus.obj", "models/generated/octopus-million.obj")
+
+
+def lit_frames(run):
+    return run("compare", "frames", *map(scene, LIT_SCENES), "--repeats", 9).data["lit"]
+
+
+@figure("lit-frames", 2)
+def lit_frames_table(run):
+    """whole frames of `lit`, and their preparation"""
+    rows = []
+    for result in lit_frames(run):
+        one, every = result["rows"][0], result["rows"][-1]
+        rows.append([f"`{result['scene']}`", ms(every["frame_seconds"]), ms(one["frame_seconds"]),
+                     number(one["frame_seconds"] / every["frame_seconds"]), ms(result["prepare_seconds"])])
+    return table(["scene", "ms, all cores", "one core", "scaling", "prepare, ms"], rows)
+
+
+@figure("lit-stages", 2)
+def lit_stages(run):
+    """the stages of `lit` (the frames of lit-frames)"""
+    frames = {result["scene"]: result["rows"][-1]["stages"] for result in lit_frames(run)}
+    scenes = ("cornell", "veach", "demo", "spheres", "glass")
+    least = 5e-4  # seconds: stages that take less in every scene are left out
+    stages = sorted({stage for name in scenes for stage, seconds in frames[name].items() if seconds > least})
+    return table(["stage, ms"] + [f"`{name}`" for name in scenes],
+                 [[stage] + [ms(frames[name].get(stage, 0), 2) for name in scenes] for stage in stages])
+
+
+def axis_ms(seconds):
+    return f"{ms(seconds, 2)} ms"
+
+
+def phong_frames(run):
+    run.generate("octopus-million")
+    rows = run("compare", "frames", *MESHES, "--repeats", 9).data["rows"]
+    if not rows[0]["peer"]:
+        raise Failed("the programs were built without llvmpipe (compare/README.md, Peers)")
+    return rows
+
+
+@figure("llvmpipe", 3)
+def llvmpipe(run):
+    """frames of meshes beside Mesa's llvmpipe, with a plot"""
+    rows, pairs, rates = [], [], {}
+    for row in phong_frames(run):
+        rates.setdefault((row["mesh"], row["triangles"], row["view"], row["work"]), []).append(row)
+    for (mesh, triangles, view, work), measured in rates.items():
+        one, every = measured[0], measured[-1]  # numbers of threads
+        rows.append([f"`{mesh}`, {triangles:,}", view, work] + [ms(1 / each["ours"]) for each in (one, every)]
+                    + [f"{number(each['ratio']['median'])} ({number(each['ratio']['min'])} to "
+                       f"{number(each['ratio']['max'])})" for each in (one, every)])
+        if view == "whole":
+            pairs.append((f"{mesh}, {work}", (1 / every["ours"], 1 / every["peer"])))
+    peer = next(iter(rates.values()))[0]["peer_name"]
+    plot = draw.pairs("A frame at 1920 × 1080", ("Duet's rasterizer", "Mesa's llvmpipe"), axis_ms, pairs)
+    return (table(["mesh, triangles", "view", "work", "ms, one core", "all cores",
+                   "llvmpipe's time over ours, one core", "all cores"], rows)
+            + f"\n\nPeer: {peer}. Medians, and in brackets the least and the largest of all repeats.\n\n"
+            "![Milliseconds per frame of three meshes by llvmpipe and, to the left of it, by Duet]"
+            "(gallery/llvmpipe.svg)", {"gallery/llvmpipe.svg": plot})
+
+
+@figure("tinyrenderer", 1)
+def tinyrenderer(run):
+    """a textured frame; that of tinyrenderer is quoted"""
+    frame = ("compare", "frames", MESHES[0], "--size", "1024x1024", "--threads", 1, "--view", "whole", "--work",
+             "phong", "--no-peer", "--repeats", 21)
+    plain = run(*frame).data["rows"][0]
+    textured = run(*frame, "--texture", "models/textures/amphora.png").data["rows"][0]
+    return table(["one thread, 1024 × 1024", "ms per frame"], [
+        ["Duet, Phong's model, one color", ms(1 / plain["ours"])],
+        ["Duet, the same with a texture, filtered anisotropically", ms(1 / textured["ours"])],
+        ["tinyrenderer, its own textured shader, 5,022 triangles with a floor (quoted: github.com/ssloy/tinyrenderer, "
+         "g++ 12 with `-O3 -march=native`, 2026-11-21, on a processor 1.3 times as fast)", "80.5"]])
+
+
+@figure("multisampling", 3)
+def multisampling(run):
+    """--msaa beside shading each of the same samples"""
+    rows = []
+    for samples in (4, 8, 16):
+        ratios, memory = [], 0
+        for shading in ("lit", "phong"):
+            command = ("raster", scene("demo"), "--size", "640x360", "--shading", shading, "--quiet", "--msaa", samples)
+            seconds = {way: [] for way in ((), ("--sample-shading",))}
+            for seed in range(3):
+                for way, found in seconds.items():
+                    data = run(*command, *way, "--seed", seed, output=".png").data
+                    found.append(data["seconds"]["render"])
+                    memory = data["memory_bytes"] if not way and shading == "lit" else memory
+            ratios.append(number(median(seconds["--sample-shading",]) / median(seconds[()])))
+        rows.append([samples, *ratios, f"{memory / 1e6:.0f} MB"])
+    return table(["samples", "times as fast, `lit`", "`phong`", "memory, `lit`"], rows)
+
+
+def raster_bench(run):
+    return run("compare", "bench", *map(scene, LIT_SCENES), "--techniques", "raster,path", "--samplers", "sobol",
+               "--spp", "1,4,16", "--repeats", 3, output="")
+
+
+@figure("raster-error", 4)
+def raster_error(run):
+    """error and time of both pipelines, and the path tracer's time to the same error"""
+    rows = []
+    for result in raster_bench(run).data["scenes"]:
+        line = [f"`{stem(result['scene'])}`"]
+        for row in result["rows"]:
+            if row["technique"] == "raster" and row["spp"] < 16:
+                line += [f"{ms(row['seconds']['value'], 2)}, {number(row['relmse']['value'])}", dominates(row)]
+        rows.append(line)
+    return table(["scene", "1 sample: ms, relMSE", "dominates", "4 samples: ms, relMSE", "dominates"], rows)
+
+
+def dominates(row):
+    """The path tracer's time to the error of a row over the row's time, as words."""
+    found = row["dominates"]
+    return f"{'at most ' if found['at_most'] else ''}{number(found['ratio']['value'])}" if found else "–"
+
+
+@figure("error-against-time", 4)
+def error_plot(run):
+    """the plot of the demo scene (the measurement of raster-error)"""
+    plot = (run.source / raster_bench(run).output / "demo.svg").read_text(encoding="utf-8")
+    return ("![Relative squared error over seconds of the demo scene: the rasterizer starts lower, the path tracer "
+            "goes on falling](gallery/error-against-time.svg)", {"gallery/error-against-time.svg": plot})
+
+
+@figure("equal-error", 4)
+def equal_error(run):
+    """the time of both pipelines to the same error (the measurement of raster-error)"""
+    pairs = []
+    for result in raster_bench(run).data["scenes"]:
+        row = next(row for row in result["rows"] if row["technique"] == "raster" and row["spp"] == 1)
+        if row["dominates"] and not row["dominates"]["at_most"]:
+            ours = row["seconds"]["value"]
+            pairs.append((stem(result["scene"]), (ours, ours * row["dominates"]["ratio"]["value"])))
+    plot = draw.pairs("Time to the error of one rasterized sample", ("rasterizer", "path tracer"), axis_ms, pairs)
+    return ("![In each scene the rasterizer's milliseconds at one sample, and those of the path tracer to the same "
+            "error](gallery/equal-error.svg)", {"gallery/equal-error.svg": plot})
+
+
+EFFECTS = ("--no-shadows", "--no-ambient-occlusion", "--no-indirect", "--no-fog")
+
+
+@figure("light-effects", 4)
+def light_effects(run):
+    """error and time of `lit` without each of its effects"""
+    rows = []
+    for name, size in (("cornell", "256x256"), ("everything", "320x240"), ("demo", "480x270"), ("spheres", "480x270"),
+                       ("fog", "480x270")):
+        reference = run("raytrace", scene(name), "--size", size, "--spp", 256, "--adaptive", "--quiet", output=".exr")
+        line = [f"`{name}`"]
+        for effect in (None, *EFFECTS):
+            image = run("raster", scene(name), "--size", size, "--spp", 4, "--quiet", *([effect] if effect else []),
+                        output=".exr")
+            metrics = run("compare", "images", image.output, reference.output, "--quiet").data
+            line.append(f"{number(metrics['relmse_trimmed'])}, {ms(image.data['seconds']['render'], 2)}")
+        rows.append(line)
+    return table(["scene: error, ms", "all effects"] + [f"`{effect}`" for effect in EFFECTS], rows)

@@ -1,0 +1,173 @@
+"""The figures of raytrace/measurements.md."""
+from catalog import figure, number, scene, stem, table
+from measure import Failed
+
+
+def cover_seconds(run, threads):
+    """Render seconds and million rays per second of the cover scene."""
+    data = run("raytrace", scene("spheres"), "--size", "1920x1080", "--spp", 100, "--depth", 50, "--threads", threads,
+               "--quiet", output=".png").data
+    rays, seconds = data["rays"], data["seconds"]["render"]
+    return seconds, (rays["camera"] + rays["indirect"]) / seconds / 1e6
+
+
+BOOK_SECONDS = 698  # 6.98 s for one sample per pixel, times 100
+
+
+@figure("cover", 2)
+def cover(run):
+    """the cover scene of Ray Tracing in One Weekend; the book's program is quoted"""
+    rows = []
+    for label, threads in (("Duet, two threads", 2), ("Duet, one thread", 1)):
+        seconds, rate = cover_seconds(run, threads)
+        rows.append([label, number(seconds, 3), number(rate), number(BOOK_SECONDS / seconds)])
+    quoted = "quoted: 2026-11-22, a Xeon with AVX-512 at about 3.7 GHz, extrapolated from one sample per pixel"
+    rows += [[f"the book's own program, one thread by design ({quoted})", BOOK_SECONDS, "0.79", ""],
+             ["the same with book 2's bounding volume hierarchy (quoted likewise)", "235", "2.36", ""]]
+    return table(["", "seconds", "million rays per second", "the book's time over it"], rows)
+
+
+PATH = ("path", "sobol")
+TECHNIQUES = (("light samples (`--integrator naive`)", PATH, ("naive", "sobol")),
+              ("Sobol points, by `--sampler independent`", PATH, ("path", "independent")),
+              ("Sobol points, by `--sampler stratified`", PATH, ("path", "stratified")),
+              ("Russian roulette (none)", PATH, ("no-roulette", "sobol")),
+              ("`--adaptive`, by even samples", ("adaptive", "sobol"), PATH))
+
+
+def efficiency_ratio(rows, ours, other, key):
+    """The efficiency of a technique and sampler over that of another; None where one was not measured."""
+    found = {(row["technique"], row["sampler"]): row[key]["value"] for row in rows if row["counted"]}
+    return found[ours] / found[other] if found.get(ours) and found.get(other) else None
+
+
+@figure("techniques", 3)
+def techniques(run):
+    """what each technique gains at equal time"""
+    scenes = ("cornell-35", "everything", "lanterns", "veach", "glass")
+    results = run("compare", "bench", *map(scene, scenes), "--techniques", "path,adaptive,no-roulette,naive",
+                  "--spp", 32, "--repeats", 6, "--size", "96x72", "--threads", 1).data["scenes"]
+    rows = [[label] + [" / ".join(number(efficiency_ratio(result["rows"], ours, other, key))
+                                  for key in ("relmse_efficiency", "efficiency")) for result in results]
+            for label, ours, other in TECHNIQUES]
+    return table(["left out or replaced"] + [f"`{name}`" for name in scenes], rows)
+
+
+def beside_cycles(run, name, size, spp, seconds, *more):
+    return run("compare", "bench", scene(name), "--techniques", "path,adaptive", "--samplers", "sobol", "--spp", spp,
+               "--repeats", 2, "--size", size, "--peer", "cycles", "--at-seconds", seconds, "--reference-spp", 2048,
+               "--check-spp", 64, *more, output="")
+
+
+def cornell_bench(run):
+    return beside_cycles(run, "cornell-35", "256x256", "8,32,128,512", "1,4", "--exclude", "0.43,0.25,0.57,0.295")
+
+
+def to_peer(result, technique, at):
+    """Our squared error over Cycles' after so many seconds."""
+    return next((row["to_peer"]["value"] for row in result["equal_times"]
+                 if row["name"].startswith(technique) and row["seconds"] == at and row["to_peer"]), None)
+
+
+@figure("cornell", 5)
+def cornell(run):
+    """the Cornell box beside Cycles, with a plot; other renderers are quoted"""
+    bench = cornell_bench(run)
+    result = bench.data["scenes"][0]
+    rows = [[row["technique"], row["spp"], number(row["seconds"]["value"], 3), number(row["mse"]["value"]),
+             number(row["rest"]["mse"]["value"]), number(row["relmse"]["value"])] for row in result["rows"]]
+    ratios = [[technique] + [number(to_peer(result, technique, at)) for at in (1, 4)]
+              for technique in ("path", "adaptive")]
+    quoted = [["Tungsten, Sobol points", "0.0052", "0.00042", "2.7"],
+              ["pbrt-v4, `zsobol` sampler", "0.0061", "0.00093", "0.95"]]
+    plot = (run.source / bench.output / "cornell-35.svg").read_text(encoding="utf-8")
+    return (table(["", "samples", "seconds", "MSE", "MSE without the light", "relMSE"], rows)
+            + "\n\nSquared error over that of Cycles at equal time:\n\n" + table(["", "after 1 s", "after 4 s"], ratios)
+            + "\n\n![Relative squared error over seconds of the Cornell box: Duet's curves lie below that of Cycles]"
+            "(gallery/cornell-cycles.svg)\n\nOther renderers at 64 samples, quoted: 2026-11-22, two threads of a Xeon, "
+            "each against its own mean of 4,096 samples.\n\n"
+            + table(["renderer", "RMSE", "relMSE", "million samples per second"], quoted),
+            {"gallery/cornell-cycles.svg": plot})
+
+
+@figure("cycles", 6)
+def cycles(run):
+    """more scenes beside Cycles"""
+    rows = []
+    for name in ("veach", "glass", "daylight", "lanterns"):
+        result = beside_cycles(run, name, "256x256", "8,32,64", "1").data["scenes"][0]
+        check = next(each for each in result["checks"] if "ycles" in each["other"]["estimator"])
+        bias = max(abs(value) for value in check["relative_bias"])
+        rows.append([f"`{name}`"] + [number(to_peer(result, technique, 1)) for technique in ("path", "adaptive")]
+                    + [f"{number(100 * bias)} %"])
+    return table(["scene", "path", "adaptive", "difference of the means"], rows)
+
+
+@figure("integrators", 7)
+def integrators(run):
+    """relMSE of the integrators at equal time"""
+    names = ("path", "bidirectional", "vcm", "photons")
+    rows = []
+    for name, size, judge in (("caustics", "160x120", "vcm"), ("cornell", "128x128", "path"),
+                              ("glass", "128x128", "path"), ("spheres", "160x90", "path")):
+        render = ("raytrace", scene(name), "--size", size, "--no-adaptive", "--quiet")
+        reference = run(*render, "--integrator", judge, "--time", 40, "--seed", 1000, output=".exr")
+        line = [f"`{name}`"]
+        for integrator in names:
+            image = run(*render, "--integrator", integrator, "--time", 5, output=".exr")
+            metrics = run("compare", "images", image.output, reference.output, "--quiet").data
+            line.append(number(metrics["relmse"]))
+        rows.append(line)
+    return table(["relMSE after 5 seconds"] + [f"`{name}`" for name in names], rows)
+
+
+@figure("stop", 4)
+def stop(run):
+    """whether --error ends where it should, and what adaptive sampling gains"""
+    rows = []
+    for error, size, names in ((0.002, "64x48", ("cornell", "spheres", "amphora", "veach", "daylight")),
+                               (0.005, "64x36", ("lanterns", "everything", "demo", "glass"))):
+        data = run("compare", "stop", *map(scene, names), "--error", error, "--size", size).data
+        for row in data["rows"]:
+            gain = row["adaptive_to_even"]
+            rows.append([f"`{stem(row['scene'])}`" + (", caustics" if row["caustics"] else ""), error,
+                         number(row["median_relmse"] / row["asked_relmse"]), number(row["samples_per_pixel"]),
+                         number(gain["relmse"]), number(gain["mse"])])
+    return table(["scene", "`--error`", "achieved / requested, median", "samples per pixel", "adaptive / even: relMSE",
+                  "MSE"], rows)
+
+
+@figure("error-limit", 2)
+def error_limit(run):
+    """how long --error 0.001 takes"""
+    rows = []
+    for name, size in (("furnace", "160x120"), ("cornell-35", "128x128"), ("amphora", "100x120"), ("spheres", "160x90"),
+                       ("veach", "160x120"), ("daylight", "160x120"), ("cornell", "128x128"), ("demo", "160x90"),
+                       ("lanterns", "160x90"), ("everything", "160x120"), ("glass", "128x128")):
+        data = run("raytrace", scene(name), "--error", 0.001, "--size", size, "--quiet", output=".png").data
+        rows.append([f"`{name}`", size.replace("x", " × "), number(data["samples_per_pixel"]),
+                     number(data["seconds"]["render"])])
+    return table(["scene", "size", "samples per pixel", "seconds"], rows)
+
+
+def kernel_rows(run):
+    """Ours beside the best setting of Embree."""
+    data = run("compare", "kernels", "models/generated/octopus.obj", "models/hall.json", "--scene", "alone",
+               "--repeats", 5, "--watertight", 0)
+    rows = [row for row in data.data["rows"] if row["best"] and row["peer"]]
+    if not rows:
+        raise Failed("the programs were built without Embree (compare/README.md, Peers)")
+    return rows
+
+
+@figure("embree", 5)
+def embree(run):
+    """ray kernels and builds beside Embree"""
+    rows = []
+    for row in kernel_rows(run):
+        scale = {"build": 1000, "memory": 1}.get(row["work"], 1)
+        unit = {"build": "ms", "memory": "bytes per triangle"}.get(row["work"], "million rays per second")
+        rows.append([f"`{stem(row['mesh'])}`", row["work"], row["threads"], f"{number(scale * row['ours'], 3)}",
+                     f"{number(scale * row['peer'], 3)} {unit}", number(row["ratio"]["median"], 3),
+                     f"{number(row['ratio']['min'], 3)} to {number(row['ratio']['max'], 3)}"])
+    return table(["mesh", "work", "threads", "ours", "Embree's", "ratio", "least to largest"], rows)
