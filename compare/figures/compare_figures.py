@@ -1,7 +1,7 @@
 """The figures of compare/README.md and of the first page."""
 from catalog import FIGURES, figure, number, scene, stem, table
 from raster_figures import equal_error, llvmpipe, phong_frames, raster_bench
-from raytrace_figures import BOOK_SECONDS, cornell, cornell_bench, cover_seconds, kernel_rows, to_peer
+from raytrace_figures import BOOK_SECONDS, cornell, cornell_bench, cover_seconds, to_peer
 
 
 @figure("ladder", 1)
@@ -23,13 +23,12 @@ def span(values):
     return f"{number(min(values))} to {number(max(values))}"
 
 
-@figure("headline", 20)
+@figure("headline", 15)
 def headline(run):
     """the table and the three plots of the first page (measurements of other figures)"""
     frames = [row["ratio"]["median"] for row in phong_frames(run)]
     cover, _ = cover_seconds(run, 2)
     box = cornell_bench(run).data["scenes"][0]
-    rays = [row["ratio"]["median"] for row in kernel_rows(run) if row["work"] not in ("build", "memory")]
     equal = {stem(result["scene"]): row["dominates"]["ratio"]["value"] for result in raster_bench(run).data["scenes"]
              for row in result["rows"] if row["technique"] == "raster" and row["spp"] == 1 and row["dominates"]}
     coverage = run("compare", "stress", "--only", "coverage/exact-integers").data["tests"][0]
@@ -44,7 +43,6 @@ def headline(run):
          ", ".join(number(to_peer(box, "path", at)) for at in (1, 4)), f"[raytrace]({path}#the-cornell-box)"],
         ["cover of *Ray Tracing in One Weekend*: seconds on two threads; the book's program on one, quoted",
          f"{number(cover, 3)}; {BOOK_SECONDS}", f"[raytrace]({path}#the-cover-scene)"],
-        ["rays: Duet's rate over Embree's", span(rays), f"[raytrace]({path}#rays-beside-embree)"],
         ["the path tracer's time to the error of one rasterized sample, over the rasterizer's", span(equal.values()),
          "[raster](raster/measurements.md#error-against-time)"],
         [f"wrong samples of {coverage['trials']:,} random triangles, by 128-bit integers", coverage["failures"],

@@ -7,6 +7,9 @@ LIT_SCENES = ("cornell", "veach", "everything", "demo", "spheres", "hall", "glas
 MESHES = ("models/meshes/amphora.obj", "models/generated/octopus.obj", "models/generated/octopus-million.obj")
 
 
+WORKS = {"phong": "Phong", "depth": "depth"}
+
+
 def lit_frames(run):
     return run("compare", "frames", *map(scene, LIT_SCENES), "--repeats", 9).data["lit"]
 
@@ -33,8 +36,8 @@ def lit_stages(run):
                  [[stage] + [ms(frames[name].get(stage, 0), 2) for name in scenes] for stage in stages])
 
 
-def axis_ms(seconds):
-    return f"{ms(seconds, 2)} ms"
+def duration(seconds):
+    return f"{number(seconds)} s" if seconds >= 1 else f"{ms(seconds, 2)} ms"
 
 
 def phong_frames(run):
@@ -45,7 +48,7 @@ def phong_frames(run):
     return rows
 
 
-@figure("llvmpipe", 3)
+@figure("llvmpipe", 2)
 def llvmpipe(run):
     """frames of meshes beside Mesa's llvmpipe, with a plot"""
     rows, pairs, rates = [], [], {}
@@ -53,13 +56,13 @@ def llvmpipe(run):
         rates.setdefault((row["mesh"], row["triangles"], row["view"], row["work"]), []).append(row)
     for (mesh, triangles, view, work), measured in rates.items():
         one, every = measured[0], measured[-1]  # numbers of threads
-        rows.append([f"`{mesh}`, {triangles:,}", view, work] + [ms(1 / each["ours"]) for each in (one, every)]
+        rows.append([f"`{mesh}`, {triangles:,}", view, WORKS[work]] + [ms(1 / each["ours"]) for each in (one, every)]
                     + [f"{number(each['ratio']['median'])} ({number(each['ratio']['min'])} to "
                        f"{number(each['ratio']['max'])})" for each in (one, every)])
         if view == "whole":
-            pairs.append((f"{mesh}, {work}", (1 / every["ours"], 1 / every["peer"])))
+            pairs.append((f"{mesh}, {WORKS[work]}", (1 / every["ours"], 1 / every["peer"])))
     peer = next(iter(rates.values()))[0]["peer_name"]
-    plot = draw.pairs("A frame at 1920 × 1080", ("Duet's rasterizer", "Mesa's llvmpipe"), axis_ms, pairs)
+    plot = draw.pairs("A frame at 1920 × 1080", ("Duet's rasterizer", "Mesa's llvmpipe"), duration, pairs)
     return (table(["mesh, triangles", "view", "work", "ms, one core", "all cores",
                    "llvmpipe's time over ours, one core", "all cores"], rows)
             + f"\n\nPeer: {peer}. Medians, and in brackets the least and the largest of all repeats.\n\n"
@@ -81,7 +84,7 @@ def tinyrenderer(run):
          "g++ 12 with `-O3 -march=native`, 2026-11-21, on a processor 1.3 times as fast)", "80.5"]])
 
 
-@figure("multisampling", 3)
+@figure("multisampling", 2)
 def multisampling(run):
     """--msaa beside shading each of the same samples"""
     rows = []
@@ -141,20 +144,19 @@ def equal_error(run):
         if row["dominates"] and not row["dominates"]["at_most"]:
             ours = row["seconds"]["value"]
             pairs.append((stem(result["scene"]), (ours, ours * row["dominates"]["ratio"]["value"])))
-    plot = draw.pairs("Time to the error of one rasterized sample", ("rasterizer", "path tracer"), axis_ms, pairs)
+    plot = draw.pairs("Time to the error of one rasterized sample", ("rasterizer", "path tracer"), duration, pairs)
     return ("![In each scene the rasterizer's milliseconds at one sample, and those of the path tracer to the same "
             "error](gallery/equal-error.svg)", {"gallery/equal-error.svg": plot})
 
 
-EFFECTS = ("--no-shadows", "--no-ambient-occlusion", "--no-indirect", "--no-fog")
+EFFECTS = ("--no-shadows", "--no-ambient-occlusion", "--no-indirect")
 
 
-@figure("light-effects", 4)
+@figure("light-effects", 3)
 def light_effects(run):
     """error and time of `lit` without each of its effects"""
     rows = []
-    for name, size in (("cornell", "256x256"), ("everything", "320x240"), ("demo", "480x270"), ("spheres", "480x270"),
-                       ("fog", "480x270")):
+    for name, size in (("cornell", "256x256"), ("everything", "320x240"), ("demo", "480x270"), ("spheres", "480x270")):
         reference = run("raytrace", scene(name), "--size", size, "--spp", 256, "--adaptive", "--quiet", output=".exr")
         line = [f"`{name}`"]
         for effect in (None, *EFFECTS):

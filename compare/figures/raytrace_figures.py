@@ -1,6 +1,5 @@
 """The figures of raytrace/measurements.md."""
 from catalog import figure, number, scene, stem, table
-from measure import Failed
 
 
 def cover_seconds(run, threads):
@@ -14,7 +13,7 @@ def cover_seconds(run, threads):
 BOOK_SECONDS = 698  # 6.98 s for one sample per pixel, times 100
 
 
-@figure("cover", 2)
+@figure("cover", 1)
 def cover(run):
     """the cover scene of Ray Tracing in One Weekend; the book's program is quoted"""
     rows = []
@@ -41,7 +40,7 @@ def efficiency_ratio(rows, ours, other, key):
     return found[ours] / found[other] if found.get(ours) and found.get(other) else None
 
 
-@figure("techniques", 3)
+@figure("techniques", 2)
 def techniques(run):
     """what each technique gains at equal time"""
     scenes = ("cornell-35", "everything", "lanterns", "veach", "glass")
@@ -53,14 +52,14 @@ def techniques(run):
     return table(["left out or replaced"] + [f"`{name}`" for name in scenes], rows)
 
 
-def beside_cycles(run, name, size, spp, seconds, *more):
+def beside_cycles(run, name, spp, seconds, reference, *more):
     return run("compare", "bench", scene(name), "--techniques", "path,adaptive", "--samplers", "sobol", "--spp", spp,
-               "--repeats", 2, "--size", size, "--peer", "cycles", "--at-seconds", seconds, "--reference-spp", 2048,
-               "--check-spp", 64, *more, output="")
+               "--repeats", 2, "--size", "256x256", "--peer", "cycles", "--at-seconds", seconds, "--reference-spp",
+               reference, "--check-spp", 64, *more, output="")
 
 
 def cornell_bench(run):
-    return beside_cycles(run, "cornell-35", "256x256", "8,32,128,512", "1,4", "--exclude", "0.43,0.25,0.57,0.295")
+    return beside_cycles(run, "cornell-35", "8,32,128,512", "1,4", 2048, "--exclude", "0.43,0.25,0.57,0.295")
 
 
 def to_peer(result, technique, at):
@@ -69,13 +68,14 @@ def to_peer(result, technique, at):
                  if row["name"].startswith(technique) and row["seconds"] == at and row["to_peer"]), None)
 
 
-@figure("cornell", 5)
+@figure("cornell", 3)
 def cornell(run):
     """the Cornell box beside Cycles, with a plot; other renderers are quoted"""
     bench = cornell_bench(run)
     result = bench.data["scenes"][0]
-    rows = [[row["technique"], row["spp"], number(row["seconds"]["value"], 3), number(row["mse"]["value"]),
-             number(row["rest"]["mse"]["value"]), number(row["relmse"]["value"])] for row in result["rows"]]
+    rows = [[f"{row['technique']} {row['sampler']}".strip(), row["spp"], number(row["seconds"]["value"], 3),
+             number(row["mse"]["value"]), number(row["rest"]["mse"]["value"]), number(row["relmse"]["value"])]
+            for row in result["rows"]]
     ratios = [[technique] + [number(to_peer(result, technique, at)) for at in (1, 4)]
               for technique in ("path", "adaptive")]
     quoted = [["Tungsten, Sobol points", "0.0052", "0.00042", "2.7"],
@@ -90,12 +90,12 @@ def cornell(run):
             {"gallery/cornell-cycles.svg": plot})
 
 
-@figure("cycles", 6)
+@figure("cycles", 4)
 def cycles(run):
     """more scenes beside Cycles"""
     rows = []
-    for name in ("veach", "glass", "daylight", "lanterns"):
-        result = beside_cycles(run, name, "256x256", "8,32,64", "1").data["scenes"][0]
+    for name in ("veach", "glass", "daylight"):
+        result = beside_cycles(run, name, "8,32,64", "1", 512).data["scenes"][0]
         check = next(each for each in result["checks"] if "ycles" in each["other"]["estimator"])
         bias = max(abs(value) for value in check["relative_bias"])
         rows.append([f"`{name}`"] + [number(to_peer(result, technique, 1)) for technique in ("path", "adaptive")]
@@ -103,7 +103,7 @@ def cycles(run):
     return table(["scene", "path", "adaptive", "difference of the means"], rows)
 
 
-@figure("integrators", 7)
+@figure("integrators", 4)
 def integrators(run):
     """relMSE of the integrators at equal time"""
     names = ("path", "bidirectional", "vcm", "photons")
@@ -121,7 +121,7 @@ def integrators(run):
     return table(["relMSE after 5 seconds"] + [f"`{name}`" for name in names], rows)
 
 
-@figure("stop", 4)
+@figure("stop", 3)
 def stop(run):
     """whether --error ends where it should, and what adaptive sampling gains"""
     rows = []
@@ -137,7 +137,7 @@ def stop(run):
                   "MSE"], rows)
 
 
-@figure("error-limit", 2)
+@figure("error-limit", 1)
 def error_limit(run):
     """how long --error 0.001 takes"""
     rows = []
@@ -148,26 +148,3 @@ def error_limit(run):
         rows.append([f"`{name}`", size.replace("x", " × "), number(data["samples_per_pixel"]),
                      number(data["seconds"]["render"])])
     return table(["scene", "size", "samples per pixel", "seconds"], rows)
-
-
-def kernel_rows(run):
-    """Ours beside the best setting of Embree."""
-    data = run("compare", "kernels", "models/generated/octopus.obj", "models/hall.json", "--scene", "alone",
-               "--repeats", 5, "--watertight", 0)
-    rows = [row for row in data.data["rows"] if row["best"] and row["peer"]]
-    if not rows:
-        raise Failed("the programs were built without Embree (compare/README.md, Peers)")
-    return rows
-
-
-@figure("embree", 5)
-def embree(run):
-    """ray kernels and builds beside Embree"""
-    rows = []
-    for row in kernel_rows(run):
-        scale = {"build": 1000, "memory": 1}.get(row["work"], 1)
-        unit = {"build": "ms", "memory": "bytes per triangle"}.get(row["work"], "million rays per second")
-        rows.append([f"`{stem(row['mesh'])}`", row["work"], row["threads"], f"{number(scale * row['ours'], 3)}",
-                     f"{number(scale * row['peer'], 3)} {unit}", number(row["ratio"]["median"], 3),
-                     f"{number(row['ratio']['min'], 3)} to {number(row['ratio']['max'], 3)}"])
-    return table(["mesh", "work", "threads", "ours", "Embree's", "ratio", "least to largest"], rows)

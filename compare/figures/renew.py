@@ -16,6 +16,7 @@ sys.path.append(str(SOURCE / "compare" / "lessons"))
 import course  # noqa: E402
 
 MOST_COMMANDS = 3  # that a block shows
+MOST_OTHERS = 0.1  # part of the processors' time that other programs may take
 
 
 def read_pages(source):
@@ -27,10 +28,15 @@ def read_pages(source):
 def provenance(used):
     """How a block was measured: a line, and its commands."""
     dates, commits, processors = ({getattr(each, key) for each in used} for key in ("date", "commit", "processor"))
-    others = max(each.others for each in used)
-    busy = f"; other programs took up to {100 * others:.0f} % of their time" if others > 0.03 else ""
-    return f"*Measured {'/'.join(sorted(dates))}, code of {'/'.join(sorted(commits))}, " \
-           f"{'/'.join(sorted(processors))}{busy}.*"
+    line = f"*Measured {'/'.join(sorted(dates))}, code of {'/'.join(sorted(commits))}, " \
+           f"{'/'.join(sorted(processors))}.*"
+    others = others_of(used)
+    return line if others <= MOST_OTHERS else \
+        f"{line} **Other programs took up to {100 * others:.0f} % of the processors' time: these times are too long.**"
+
+
+def others_of(used):
+    return max(each.others for each in used)
 
 
 def commands(used):
@@ -47,10 +53,13 @@ def commands(used):
     return "```sh\n" + "\n".join(lines) + "\n```"
 
 
-def renew(name, run):
-    """Measures a figure and writes it into every page that shows it."""
+def renew(name, run, busy):
+    """Measures a figure and writes it into every page that shows it; beside other programs only where `busy`."""
     run.used = []
     result = catalog.FIGURES[name][0](run)
+    if not busy and others_of(run.used) > MOST_OTHERS:
+        raise measure.Failed(f"other programs took up to {100 * others_of(run.used):.0f} % of the processors' time; "
+                             "--busy writes such figures, with a note")
     body, plots = result if isinstance(result, tuple) else (result, {})
     for path, svg in plots.items():
         (SOURCE / path).write_text(svg, encoding="utf-8")
@@ -68,6 +77,8 @@ def main():
     parser.add_argument("--list", action="store_true", help="list the figures, and the minutes that each takes")
     parser.add_argument("--kept", action="store_true",
                         help="write what out/figures still has from earlier runs, and measure only what is missing")
+    parser.add_argument("--busy", action="store_true",
+                        help="write figures, with a note, though other programs took part of the processors' time")
     parser.add_argument("--check", action="store_true",
                         help="measure nothing: fail where a page shows a measured figure that is not from here")
     parser.add_argument("--programs", type=pathlib.Path, default=SOURCE / "build" / "release" / "bin", metavar="FOLDER",
@@ -96,7 +107,7 @@ def main():
         print(f"[{i}/{len(names)}] {name}: about {catalog.FIGURES[name][1]} min", flush=True)
         begin = time.time()
         try:
-            renew(name, run)
+            renew(name, run, options.busy)
             print(f"  {(time.time() - begin) / 60:.1f} min")
         except measure.Failed as failure:
             failed = 1
