@@ -43,6 +43,10 @@ private:
     std::map<std::string, Entry> entries_;
 };
 
+/// This is the size limit of a scene file in bytes. Scene files are text, and meshes and images are in separate
+/// files. The parsed tree takes up to fifty times the file's size in memory.
+inline constexpr std::size_t kMaxSceneBytes = std::size_t{1} << 26;
+
 /// Reads the text of a scene file as parse_scene(path, text) does, and takes its meshes and images from the cache.
 Scene parse_scene(const std::filesystem::path& path, std::string_view text, FileCache& cache);
 

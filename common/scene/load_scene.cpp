@@ -18,10 +18,6 @@ namespace duet {
 
 namespace {
 
-/// This is the size limit of a scene file in bytes. Scene files are text, and meshes and images are in separate
-/// files. The parsed tree takes up to fifty times the file's size in memory.
-constexpr std::size_t kMaxSceneBytes = std::size_t{1} << 26;
-
 void read_image_settings(const JsonValue& image, Scene& scene) {
     image.check_keys(scene_keys("image"));
     if (image.has("width")) scene.width = image.at("width").integer(1, kMaxRenderSide);

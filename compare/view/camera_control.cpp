@@ -9,6 +9,10 @@ namespace duet::compare {
 
 namespace {
 
+/// The eye stays at least this far from what it looks at, as a fraction of that point's distance from the origin:
+/// positions are rounded to float, and nearer eyes would jump.
+constexpr double kLeastDistance = 1e-5;
+
 double distance(const Camera& camera) { return length(camera.look_at - camera.eye); }
 
 /// Returns the axes of the camera: to the right, upward and along its view.
@@ -79,9 +83,10 @@ Camera pan(const Camera& camera, double right, double up) {
 }
 
 Camera dolly(Camera camera, double factor) {
+    const double least = kLeastDistance * length(camera.look_at);
     if (camera.projection == Camera::Projection::kOrthographic)
         camera.height *= factor;
-    else
+    else if (factor * distance(camera) > least)
         camera.eye = camera.look_at + factor * (camera.eye - camera.look_at);
     return rounded(camera);
 }
@@ -101,7 +106,7 @@ Camera look_at_point(Camera camera, Vec3d point) {
 Camera frame_box(Camera camera, const Box3& box, double aspect) {
     if (box.empty()) return camera;
     const Vec3d low(box.low), high(box.high), forward = Axes(camera).forward;
-    const double radius = std::max(length(high - low) / 2, 1e-9 * length(high + low));
+    const double radius = std::max(length(high - low) / 2, kLeastDistance * length(high + low));
     camera.look_at = (low + high) / 2.0;
     if (camera.projection == Camera::Projection::kOrthographic) camera.height = 2 * radius / std::min(aspect, 1.0);
     const double half_height = std::tan(radians(camera.fov_degrees) / 2);

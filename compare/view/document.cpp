@@ -18,19 +18,23 @@ SceneDocument::SceneDocument(std::filesystem::path path, const SceneOptions& opt
 }
 
 void SceneDocument::reload() {
-    const auto scene = std::make_shared<Scene>(load_scene(path_, options_)); // the file is valid from here on
-    std::string text = lower_case_extension(path_) == ".json" ? read_file(path_) : "";
-    states_.assign(1, State{std::move(text), scene->camera});
+    const bool editable_file = lower_case_extension(path_) == ".json" && options_.up == UpAxis::kGuessed;
+    const auto cache = std::make_shared<FileCache>(); // a reader may still use the one before, on another thread
+    std::string file = editable_file ? read_file(path_, kMaxSceneBytes) : "";
+    const auto scene = std::make_shared<Scene>(editable_file ? parse_scene(path_, file, *cache)
+                                                             : load_scene(path_, options_)); // refuses other files
+    cache_ = cache;
+    states_.assign(1, State{std::make_shared<const std::string>(std::move(file)), scene->camera});
     image_size_ = {scene->width, scene->height};
     view_transform_ = scene->view_transform;
     file_scene_ = scene;
     current_ = 0;
     open_ = false;
-    saved_ = now().text;
+    saved_ = text();
     parse();
 }
 
-void SceneDocument::parse() { json_ = editable() ? ordered_json::parse(now().text) : ordered_json(); }
+void SceneDocument::parse() { json_ = editable() ? ordered_json::parse(text()) : ordered_json(); }
 
 SceneDocument::State& SceneDocument::change() {
     if (!open_) {
@@ -44,9 +48,10 @@ SceneDocument::State& SceneDocument::change() {
 
 void SceneDocument::set_camera(const Camera& camera) { change().camera = camera; }
 
-void SceneDocument::set_text(std::string text) {
-    change().text = std::move(text);
-    parse();
+void SceneDocument::set_text(std::string changed) {
+    ordered_json json = ordered_json::parse(changed); // may throw: then nothing has changed
+    change().text = std::make_shared<const std::string>(std::move(changed));
+    json_ = std::move(json);
 }
 
 void SceneDocument::commit() { open_ = false; }
@@ -68,22 +73,21 @@ bool SceneDocument::redo() {
 }
 
 bool SceneDocument::changed() const {
-    return editable() && with_camera(now().text, states_.front().camera, now().camera) != saved_;
+    return editable() && with_camera(text(), states_.front().camera, now().camera) != saved_;
 }
 
-void SceneDocument::save(const std::filesystem::path& path) {
+void SceneDocument::save() {
     if (!editable()) throw Error(message(path_.string(), ": a bare mesh has no scene file that could be saved"));
-    std::string text = with_camera(now().text, states_.front().camera, now().camera);
-    write_file(path, text);
-    path_ = path;
-    saved_ = std::move(text);
+    std::string file = with_camera(text(), states_.front().camera, now().camera);
+    write_file(path_, file);
+    saved_ = std::move(file);
 }
 
 std::function<Scene()> SceneDocument::reader() {
     const std::shared_ptr<Scene> scene = std::exchange(file_scene_, nullptr);
     if (scene && current_ == 0) return [scene] { return std::move(*scene); };
     if (!editable()) return [path = path_, options = options_] { return load_scene(path, options); };
-    return [path = path_, text = now().text, cache = cache_] { return parse_scene(path, text, *cache); };
+    return [path = path_, file = now().text, cache = cache_] { return parse_scene(path, *file, *cache); };
 }
 
 std::string with_camera(std::string text, const Camera& before, const Camera& camera) {

@@ -21,8 +21,8 @@ public:
     SceneDocument(std::filesystem::path path, const SceneOptions& options);
 
     const std::filesystem::path& path() const { return path_; }
-    bool editable() const { return !now().text.empty(); }
-    const std::string& text() const { return now().text; }
+    bool editable() const { return !text().empty(); }
+    const std::string& text() const { return *now().text; }
     /// The text, parsed; null for a bare mesh.
     const nlohmann::ordered_json& json() const { return json_; }
     const Camera& camera() const { return now().camera; }
@@ -33,7 +33,7 @@ public:
     /// Changes the camera. Changes of camera and text until commit() are one step for undo().
     void set_camera(const Camera& camera);
     /// Replaces the text, which must be valid JSON.
-    void set_text(std::string text);
+    void set_text(std::string changed);
     /// Ends a step, if one has begun.
     void commit();
     /// Goes one step back. Returns false if there is none.
@@ -44,7 +44,7 @@ public:
     /// Returns whether there is something to save.
     bool changed() const;
     /// Writes the text, with the camera. Throws Error if the file cannot be written, or for a bare mesh.
-    void save(const std::filesystem::path& path);
+    void save();
     /// Starts anew from the file, with an empty history.
     void reload();
     /// Returns a function that makes the scene of the present text, once, and can run on another thread. Only one of
@@ -53,7 +53,7 @@ public:
 
 private:
     struct State {
-        std::string text;
+        std::shared_ptr<const std::string> text;
         Camera camera;
     };
     const State& now() const { return states_[current_]; }
@@ -69,7 +69,7 @@ private:
     nlohmann::ordered_json json_;
     ImageSize image_size_{};
     ViewTransform view_transform_;
-    std::shared_ptr<FileCache> cache_ = std::make_shared<FileCache>();
+    std::shared_ptr<FileCache> cache_;
     std::shared_ptr<Scene> file_scene_; // the scene as reload() has read it; null once a reader has it
 };
 

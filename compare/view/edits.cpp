@@ -44,13 +44,7 @@ std::vector<std::string> places(const ordered_json& element) {
     if (type == "sphere") return {"center"};
     if (type == "quad") return {"corner"};
     if (type == "box") return {"low", "high"};
-    if (type == "point" || type == "spot") return {"position"};
     return {};
-}
-
-bool is_light(const ordered_json& element) {
-    const std::string type = element.at("type");
-    return type == "point" || type == "spot" || type == "sun";
 }
 
 /// Adds a step to the transform of an element, or changes its last step. `merged` returns the step that replaces the
@@ -101,7 +95,7 @@ std::string moved(const std::string& text, const JsonPath& element, Vec3d by) {
     std::string result = text;
     for (const std::string& point : points)
         result = with_value(result, element / point, vector(vector(object.at(point)) + by));
-    if (!points.empty() || is_light(object)) return result;
+    if (!points.empty()) return result;
     return with_step(text, element, {{"translate", vector(by)}}, [&](const ordered_json& last) {
         if (!last.contains("translate")) return ordered_json();
         return ordered_json{{"translate", vector(vector(last.at("translate")) + by)}};
@@ -116,7 +110,9 @@ std::string transformed(const std::string& text, const JsonPath& element, const 
 }
 
 std::string duplicated(const std::string& text, const JsonPath& element) {
-    return appended(text, element.front(), parsed(text, element));
+    ordered_json copy = parsed(text, element);
+    if (copy.at("type") == "group") copy.erase("name"); // names of groups are unique
+    return appended(text, element.front(), copy);
 }
 
 std::string with_new_element(const std::string& text, NewElement element, Vec3d at, double size) {
@@ -128,10 +124,11 @@ std::string with_new_element(const std::string& text, NewElement element, Vec3d 
     std::string material;
     if (element == NewElement::kAreaLight) {
         material = "new light";
-        const ordered_json light{{"type", "emissive"}, {"radiance", 5}};
-        result = ordered_json::parse(text).contains("materials")
-                     ? with_value(text, {"materials", material}, light)
-                     : with_value(text, {"materials"}, ordered_json{{material, light}});
+        const ordered_json light{{"type", "emissive"}, {"radiance", 5}}, scene = ordered_json::parse(text);
+        if (!scene.contains("materials"))
+            result = with_value(text, {"materials"}, ordered_json{{material, light}});
+        else if (!scene.at("materials").contains(material))
+            result = with_value(text, {"materials", material}, light);
     } else {
         material = first_material(result);
     }

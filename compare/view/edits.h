@@ -6,8 +6,8 @@
 
 namespace duet::compare {
 
-/// Moves an element of "objects" or "lights" by a vector, in meters. A shape without a transform gets another place,
-/// any other object a last translation. Suns, which have no place, and other motions of an object do not change.
+/// Moves an element of "objects" by a vector, in meters. A shape without a transform gets another place, any other
+/// object a last translation.
 std::string moved(const std::string& text, const JsonPath& element, Vec3d by);
 /// Applies an affine map to an element of "objects" after its own transform. Successive maps become one matrix.
 std::string transformed(const std::string& text, const JsonPath& element, const Mat4d& map);

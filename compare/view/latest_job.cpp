@@ -25,13 +25,6 @@ void LatestJob::start(Job job) {
     changed_.notify_all();
 }
 
-void LatestJob::stop() {
-    std::unique_lock lock(mutex_);
-    waiting_ = nullptr;
-    stop_ = true;
-    changed_.wait(lock, [this] { return !running_; });
-}
-
 bool LatestJob::busy() const {
     const std::lock_guard lock(mutex_);
     return running_ || waiting_;
@@ -42,14 +35,14 @@ void LatestJob::run() {
     for (;;) {
         changed_.wait(lock, [this] { return waiting_ || ended_; });
         if (ended_) return;
-        const Job job = std::exchange(waiting_, nullptr);
+        Job job = std::exchange(waiting_, nullptr);
         running_ = true;
         stop_ = false;
         lock.unlock();
         job(stop_);
+        job = nullptr; // frees what the job holds, outside of the lock
         lock.lock();
         running_ = false;
-        changed_.notify_all();
     }
 }
 

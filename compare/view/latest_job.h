@@ -24,8 +24,6 @@ public:
 
     /// Runs a job as soon as the one that runs has ended.
     void start(Job job);
-    /// Stops the job that runs, drops the one that waits, and returns when none runs.
-    void stop();
     /// Returns whether a job runs or waits.
     bool busy() const;
 

@@ -20,6 +20,8 @@ constexpr double kPreviewScale = 0.25;
 /// A pass of the path tracer takes about this long at first, in seconds, and later this part of the time so far: short
 /// enough to watch it converge, and long enough for copies of the image not to count.
 constexpr double kPassSeconds = 0.3, kPassPart = 0.1;
+/// The image of a scene that was edited replaces the one before from this many samples per pixel on.
+constexpr std::uint32_t kSamplesToReplace = 4;
 /// A pass adds at most this many samples per pixel, as passes of raytrace do.
 constexpr std::uint32_t kPassSamples = 16;
 
@@ -30,12 +32,12 @@ View scaled(View view, double scale) {
     return view;
 }
 
-bool same(const View& view, const Scene& scene) {
+bool same(const View& a, const View& b) {
     const auto values = [](const Camera& c) {
         return std::tie(c.projection, c.eye, c.look_at, c.up, c.fov_degrees, c.height, c.near, c.aperture_radius,
                         c.focus_distance, c.shutter_open, c.shutter_close);
     };
-    return view.width == scene.width && view.height == scene.height && values(view.camera) == values(scene.camera);
+    return a.width == b.width && a.height == b.height && values(a.camera) == values(b.camera);
 }
 
 Scene seen_in(const View& view, Scene scene) {
@@ -71,30 +73,33 @@ std::shared_ptr<const PreparedScene<Prepared>> LiveView::prepared(unsigned load,
 }
 
 // Runs a job on the loader's thread, and reports why it failed.
-void LiveView::start_loading(LatestJob::Job job) {
-    loader_.start([this, job = std::move(job)](const std::atomic<bool>& stop) {
+void LiveView::start_loading(std::function<void()> job) {
+    loader_.start([this, job = std::move(job)](const std::atomic<bool>&) {
         try {
-            job(stop);
+            job();
         } catch (const std::exception& error) {
             publish([&] { loaded_.error = error.what(); });
         }
     });
 }
 
-void LiveView::load(const View& view, std::function<Scene()> read) {
-    start_loading([=, this](const std::atomic<bool>& stop) {
+unsigned LiveView::load(const View& view, std::function<Scene()> read) {
+    const unsigned load = ++loads_;
+    start_loading([=, this] {
         const Stopwatch watch;
         LoadedScene next;
         next.scene = std::make_shared<const Scene>(seen_in(view, read()));
         next.load_seconds = watch.seconds();
-        next.load = ++loads_;
+        next.load = load;
         next.raytrace = prepared<raytrace::PathTracerScene, raytrace::PathTracerSettings>(next.load, next.scene);
+        LoadedScene before; // is freed outside of the lock
         publish([&] {
             next.raster = loaded_.raster;
-            loaded_ = next;
+            before = std::exchange(loaded_, next);
         });
-        if (!stop) prepare_raster(next.load, next.scene);
+        prepare_raster(next.load, next.scene); // also if the next edit waits: edits are seen while they go on
     });
+    return load;
 }
 
 void LiveView::prepare_raster(unsigned load, const std::shared_ptr<const Scene>& scene) {
@@ -105,9 +110,8 @@ void LiveView::prepare_raster(unsigned load, const std::shared_ptr<const Scene>&
 }
 
 void LiveView::prepare_for(const View& view, const LoadedScene& loaded) {
-    start_loading([=, this](const std::atomic<bool>&) {
-        prepare_raster(loaded.load, std::make_shared<const Scene>(seen_in(view, *loaded.scene)));
-    });
+    start_loading(
+        [=, this] { prepare_raster(loaded.load, std::make_shared<const Scene>(seen_in(view, *loaded.scene))); });
 }
 
 LoadedScene LiveView::loaded() const {
@@ -129,37 +133,45 @@ void LiveView::show(const Wish& wish) {
     const LoadedScene scene = loaded();
     if (scene.raster) show_raster(wish, scene);
     if (!scene.raytrace || tracer_started_ == Started{wish.version, scene.raytrace->id, 1}) return;
+    const bool same_view = tracer_started_.prepared != 0 && same(wish.view, traced_view_);
     tracer_started_ = Started{wish.version, scene.raytrace->id, 1};
-    tracer_.start([=, this](const std::atomic<bool>& stop) { render_traced(wish, scene, stop); });
+    traced_view_ = wish.view;
+    tracer_.start([=, this](const std::atomic<bool>& stop) { render_traced(wish, scene, same_view, stop); });
 }
 
 void LiveView::show_raster(const Wish& wish, const LoadedScene& scene) {
     const Started full{wish.version, scene.raster->id, 1};
     if (raster_started_ == full) {
-        const bool outdated = scene.raster->load != scene.load || !same(wish.view, *scene.raster->scene);
-        if (outdated && !raster_.busy() && !loader_.busy()) prepare_for(wish.view, scene);
+        const bool outdated = scene.raster->load != scene.load || !same(wish.view, scene_view(*scene.raster->scene));
+        const bool tried = prepared_for_.version == wish.version && prepared_for_.load == scene.load;
+        if (!outdated || tried || raster_.busy() || loader_.busy()) return;
+        prepared_for_ = {wish.version, scene.load};
+        prepare_for(wish.view, scene);
         return;
     }
-    if (raster_started_.version == wish.version && raster_started_.scale < 1 && raster_.busy()) return;
+    const bool moving = raster_started_.version != wish.version;
+    if (!moving && raster_started_.scale < 1 && raster_.busy()) return;
     Started next = full;
-    if (raster_started_.version != wish.version && pixel_seconds_ > 0)
+    if (moving && pixel_seconds_ > 0)
         next.scale =
             std::clamp(std::sqrt(kMovingFrameSeconds / (pixel_seconds_ * pixels(wish.view))), kLeastScale, 1.0);
     raster_started_ = next;
-    raster_.start([=, this](const std::atomic<bool>& stop) { render_raster(wish, scene, next.scale, stop); });
+    raster_.start([=, this](const std::atomic<bool>& stop) {
+        // A frame of a new view runs to its end, or nothing would be seen while the camera moves.
+        const std::atomic<bool> go_on = false;
+        render_raster(wish, scene, next.scale, moving ? go_on : stop);
+    });
 }
 
 void LiveView::render_raster(const Wish& wish, const LoadedScene& scene, double scale, const std::atomic<bool>& stop) {
-    RasterFrame frame{wish.version, scene.raster->id, scale, 0, {}, {}};
+    RasterFrame frame{wish.version, scene.raster->id, scene.raster->load, scale, 0, {}, {}};
     try {
         const Stopwatch watch;
         const View view = scaled(wish.view, scale);
-        Control control;
-        // A smaller frame runs to its end, or nothing would be seen while the camera moves.
-        if (scale == 1) control.stop = &stop;
+        Control control{&stop, {}};
         frame.rendering = render(scene.raster->prepared, view, wish.raster, control);
         frame.seconds = watch.seconds();
-        if (frame.rendering.statistics.interrupted || control.stopped()) return;
+        if (control.stopped()) return;
         publish([&] {
             pixel_seconds_ = frame.seconds / pixels(view);
             raster_frame_ = std::make_shared<const RasterFrame>(std::move(frame));
@@ -174,20 +186,31 @@ void LiveView::wait_while_paused(const std::atomic<bool>& stop) const {
     while (paused_ && !stop) std::this_thread::sleep_for(std::chrono::milliseconds(20));
 }
 
-void LiveView::render_traced(const Wish& wish, const LoadedScene& scene, const std::atomic<bool>& stop) {
-    TracerFrame frame{.version = wish.version, .prepared = scene.raytrace->id};
-    const Stopwatch watch;
+void LiveView::render_traced(const Wish& wish, const LoadedScene& scene, bool same_view,
+                             const std::atomic<bool>& stop) {
+    TracerFrame frame{.version = wish.version, .prepared = scene.raytrace->id, .load = scene.load};
+    Stopwatch watch;
+    double paused_seconds = 0;
+    const auto wait = [&] {
+        const Stopwatch pause;
+        wait_while_paused(stop);
+        paused_seconds += pause.seconds();
+    };
+    const auto seconds = [&] { return watch.seconds() - paused_seconds; };
     const auto publish_frame = [&] { publish([&] { tracer_frame_ = std::make_shared<const TracerFrame>(frame); }); };
     try {
-        wait_while_paused(stop);
+        wait();
         Control to_the_end, stoppable{.stop = &stop, .progress = {}};
-        raytrace::ProgressiveRender preview(scene.raytrace->prepared, scaled(wish.view, kPreviewScale), wish.raytrace);
-        preview.add_samples(1, to_the_end);
-        frame.preview = true;
-        frame.samples = 1;
-        frame.image = preview.film().image();
-        frame.seconds = watch.seconds();
-        publish_frame();
+        if (!same_view) {
+            raytrace::ProgressiveRender preview(scene.raytrace->prepared, scaled(wish.view, kPreviewScale),
+                                                wish.raytrace);
+            preview.add_samples(1, to_the_end);
+            frame.preview = true;
+            frame.samples = 1;
+            frame.image = preview.film().image();
+            frame.seconds = seconds();
+            publish_frame();
+        }
         if (stop) return;
 
         raytrace::ProgressiveRender render(scene.raytrace->prepared, wish.view, wish.raytrace);
@@ -195,8 +218,8 @@ void LiveView::render_traced(const Wish& wish, const LoadedScene& scene, const s
         frame.preview = false;
         frame.samples = 0;
         for (double sample_seconds = 0; frame.samples < limit;) {
-            wait_while_paused(stop);
-            const double pass_seconds = std::max(kPassSeconds, kPassPart * watch.seconds());
+            wait();
+            const double pass_seconds = std::max(kPassSeconds, kPassPart * seconds());
             const auto fitting = static_cast<std::uint32_t>(sample_seconds > 0 ? pass_seconds / sample_seconds : 1);
             const std::uint32_t more =
                 std::min({std::max(fitting, 1u), kPassSamples, std::max(frame.samples, 1u), limit - frame.samples});
@@ -206,9 +229,10 @@ void LiveView::render_traced(const Wish& wish, const LoadedScene& scene, const s
             frame.samples += more;
             frame.image = render.film().image();
             frame.estimated_relmse = render.film().estimated_relmse();
-            frame.seconds = watch.seconds();
+            frame.seconds = seconds();
             if (frame.estimated_relmse > 0) frame.curve.emplace_back(frame.seconds, frame.estimated_relmse);
-            publish_frame();
+            // After an edit the picture before stays until this one is less noisy.
+            if (!same_view || frame.samples >= std::min(kSamplesToReplace, limit)) publish_frame();
         }
     } catch (const std::exception& error) {
         frame.error = error.what();
@@ -221,7 +245,7 @@ bool LiveView::finished(const Wish& wish) const {
     if (loader_.busy()) return false;
     const std::lock_guard lock(mutex_);
     if (!loaded_.raster || loaded_.raster->load != loaded_.load || !raster_frame_ || !tracer_frame_ ||
-        !same(wish.view, *loaded_.raster->scene))
+        !same(wish.view, scene_view(*loaded_.raster->scene)))
         return false;
     const bool raster = raster_frame_->version == wish.version && raster_frame_->prepared == loaded_.raster->id &&
                         raster_frame_->scale == 1;

@@ -23,8 +23,8 @@ template <typename Prepared> struct PreparedScene {
 
 /// What is known of the scene that was loaded last.
 struct LoadedScene {
-    unsigned load = 0;                                                        ///< number of scenes loaded so far
-    std::shared_ptr<const Scene> scene;                                       ///< null until a scene has been loaded
+    unsigned load = 0;                  ///< what LiveView::load returned for this scene
+    std::shared_ptr<const Scene> scene; ///< null until a scene has been loaded
     std::shared_ptr<const PreparedScene<raytrace::PathTracerScene>> raytrace; ///< of `scene`
     /// The rasterizer takes longer to prepare a scene; until then this is of the scene before. It places probes and
     /// shadow maps for the scene's camera, so that it is prepared anew when the camera has moved and come to rest.
@@ -43,8 +43,8 @@ struct Wish {
 
 /// An image of the rasterizer.
 struct RasterFrame {
-    unsigned version = 0, prepared = 0; ///< Wish::version and PreparedScene::id
-    double scale = 1;                   ///< width over that of the wish; below 1 while the camera moves
+    unsigned version = 0, prepared = 0, load = 0; ///< Wish::version, PreparedScene::id and PreparedScene::load
+    double scale = 1;                             ///< width over that of the wish; below 1 while the camera moves
     double seconds = 0;
     Rendering rendering{};
     std::string error{}; ///< why there is no image
@@ -52,7 +52,7 @@ struct RasterFrame {
 
 /// The path tracer's image so far.
 struct TracerFrame {
-    unsigned version = 0, prepared = 0;
+    unsigned version = 0, prepared = 0, load = 0;
     bool preview = false; ///< whether it has a quarter of the width, for a first look
     std::uint32_t samples = 0;
     double seconds = 0; ///< since the first sample
@@ -69,8 +69,8 @@ public:
     LiveView(int threads, std::function<void()> wake);
 
     /// Loads a scene in the background, to be seen in this view. Until it is prepared, and if `read` throws, the scene
-    /// before stays.
-    void load(const View& view, std::function<Scene()> read);
+    /// before stays. Returns a number that is different for every call, LoadedScene::load.
+    unsigned load(const View& view, std::function<Scene()> read);
     LoadedScene loaded() const;
 
     /// Renders what is wanted, unless this happens already. Call it for every frame of the window. A frame of the
@@ -91,16 +91,17 @@ private:
     void publish(const std::function<void()>& change); // under the lock; then calls wake_
     template <typename Prepared, typename Settings>
     std::shared_ptr<const PreparedScene<Prepared>> prepared(unsigned load, const std::shared_ptr<const Scene>& scene);
-    void start_loading(LatestJob::Job job);
+    void start_loading(std::function<void()> job);
     void prepare_raster(unsigned load, const std::shared_ptr<const Scene>& scene);
     void prepare_for(const View& view, const LoadedScene& loaded);
     void show_raster(const Wish& wish, const LoadedScene& scene);
     void render_raster(const Wish& wish, const LoadedScene& scene, double scale, const std::atomic<bool>& stop);
     void wait_while_paused(const std::atomic<bool>& stop) const;
-    void render_traced(const Wish& wish, const LoadedScene& scene, const std::atomic<bool>& stop);
+    void render_traced(const Wish& wish, const LoadedScene& scene, bool same_view, const std::atomic<bool>& stop);
 
     const int threads_;
-    std::atomic<unsigned> loads_ = 0, preparations_ = 0;
+    std::atomic<unsigned> preparations_ = 0;
+    unsigned loads_ = 0;
     const std::function<void()> wake_;
     std::atomic<bool> paused_ = false;
     mutable std::mutex mutex_; // guards the results
@@ -113,6 +114,11 @@ private:
         double scale = 1;
         friend bool operator==(const Started&, const Started&) = default;
     } raster_started_, tracer_started_;
+    View traced_view_; // of tracer_started_
+    // For which wish and scene the rasterizer was last prepared anew.
+    struct {
+        unsigned version = 0, load = 0;
+    } prepared_for_;
     std::atomic<double> pixel_seconds_ = 0; // time of a frame of the rasterizer by its pixels; 0: unknown
     LatestJob loader_, raster_, tracer_;    // last: their threads use the members above
 };

@@ -74,7 +74,7 @@ std::string joined(const JsonPath& path) {
 }
 
 Span root(std::string_view text) {
-    const std::size_t begin = skip_space(text, 0);
+    const std::size_t begin = text.find_first_of("{["); // behind a byte order mark, where there is one
     return {begin, skip_value(text, begin)};
 }
 
@@ -119,7 +119,7 @@ std::string with_value(std::string_view text, const JsonPath& path, const ordere
     const std::string member = object ? ordered_json(path.back()).dump() + ": " + typed_json(value) : typed_json(value);
     if (all.empty()) return replaced(text, {parent.begin + 1, parent.end - 1}, member);
     // The new child is set off as the last one is: on a line of its own, or not.
-    const std::size_t before = all.size() > 1 ? all[all.size() - 2].whole.end : parent.begin;
+    const std::size_t before = all.size() > 1 ? text.find(',', all[all.size() - 2].whole.end) : parent.begin;
     std::string gap(text.substr(before + 1, all.back().whole.begin - before - 1));
     if (all.size() == 1 && gap.empty()) gap = " "; // the gap behind a bracket differs from that behind a comma
     const std::size_t end = all.back().whole.end;

@@ -61,6 +61,7 @@ bool App::draw() {
     ImGui::EndChild();
     ImGui::End();
     if (help_) draw_help();
+    if (!ImGui::IsAnyItemActive() && !flying_) document_.commit();
     handle_keys(); // after the mouse: a key that follows the end of a drag sees its result
 
     if (!loaded_once_) load();
@@ -69,7 +70,7 @@ bool App::draw() {
     return fly_by_keys();
 }
 
-void App::load() { live_.load(wish_.view, document_.reader()); }
+void App::load() { requested_load_ = live_.load(wish_.view, document_.reader()); }
 
 void App::changed_camera(const Camera& camera) {
     document_.set_camera(camera);
@@ -99,7 +100,16 @@ void App::undo(bool back) {
         return;
     }
     follow_document();
-    if (document_.text() != before) load();
+    if (document_.text() == before) return;
+    selected_ = -1; // its index may stand for another object
+    load();
+}
+
+bool App::may_lose_changes(const std::string& what) {
+    const std::string warning = "There are changes that were not saved. The same once more " + what + ".";
+    const bool may = !document_.changed() || message_ == warning;
+    message_ = may ? "" : warning;
+    return may;
 }
 
 void App::attempt(const std::function<void()>& action) {
@@ -117,7 +127,11 @@ void App::open(const std::filesystem::path& path) {
             document_.commit();
             return;
         }
+        if (!may_lose_changes("opens another scene")) return;
         document_ = SceneDocument(path, options_.scene_options);
+        view_transform_ = options_.view_transform.applied_to(document_.view_transform());
+        quantity_ = kWholeImage;
+        use_settings();
         window_.set_title(window_title(path));
         selected_ = -1;
         file_time_ = write_time(path);
@@ -143,8 +157,10 @@ void App::reload_if_changed() {
 
 void App::reload() {
     attempt([&] {
+        if (!may_lose_changes("reads the file anew")) return;
         document_.reload();
         file_time_ = write_time(document_.path());
+        selected_ = -1;
         follow_document();
         load();
         message_ = "Read the file anew.";
@@ -154,7 +170,7 @@ void App::reload() {
 void App::save() {
     attempt([&] {
         document_.commit();
-        document_.save(document_.path());
+        document_.save();
         file_time_ = write_time(document_.path());
         message_ = "Saved " + document_.path().string() + ".";
     });
@@ -199,7 +215,7 @@ void App::handle_keys() {
         if (press.key == GLFW_KEY_P) write_images();
         if (press.key == GLFW_KEY_F12) wants_screenshot_ = true;
         if (press.key == GLFW_KEY_R) reload();
-        if (press.key == GLFW_KEY_SLASH || press.key == GLFW_KEY_F1) help_ = !help_;
+        if (press.key == GLFW_KEY_F1) help_ = !help_;
     }
 }
 

@@ -31,6 +31,7 @@ struct Comparison {
     std::shared_ptr<const RasterFrame> raster{};
     std::shared_ptr<const TracerFrame> traced{};
     Show show = Show::kDifference;
+    ViewTransform view_transform{};
     std::vector<std::uint8_t> bytes{};
     int width = 0, height = 0;
     double figure = 0; ///< luminance of full orange or blue; for FLIP the mean
@@ -47,6 +48,8 @@ public:
     bool draw();
     /// Turns the camera around what it looks at, by an angle in radians.
     void turn(double angle);
+    /// Returns whether the window may close. With changes that were not saved, the first request only warns.
+    bool may_close() { return may_lose_changes("closes the window"); }
     LiveView& live() { return live_; }
     const Wish& wish() const { return wish_; }
     /// Returns whether a screenshot of this frame is wanted.
@@ -84,11 +87,12 @@ private:
     // scene_panel.cpp
     void draw_scene();
     void draw_camera();
-    void draw_members(const char* key);
+    void draw_members(const char* list);
     void apply(const JsonPath& path, const nlohmann::ordered_json& changed);
     void draw_selected();
     void draw_turns();
     void draw_additions();
+    void draw_mesh_field();
     void duplicate_selected();
     void delete_selected();
     void frame_selected();
@@ -105,6 +109,8 @@ private:
     void undo(bool back);
     void save();
     void write_images();
+    // Returns whether changes may be lost: there are none, or this is the second request in a row.
+    bool may_lose_changes(const std::string& what);
     void attempt(const std::function<void()>& action); // shows the message of an Error
     void use_settings();
     void set_quantity(const RungRenderers& quantity);
@@ -142,7 +148,9 @@ private:
         double dragged = 0; // in meters, in radians, or the logarithm of a factor
         std::string text;   // before the drag
     } gizmo_;
+    unsigned requested_load_ = 0; // the scene of the document's text
     double turn_degrees_ = 15, scale_factor_ = 1.1;
+    std::string mesh_file_;          // that is being typed
     std::string message_, path_log_; // of the last action; of the path under the last click
     ImageArea area_;
     std::filesystem::file_time_type file_time_;

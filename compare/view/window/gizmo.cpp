@@ -66,7 +66,8 @@ void App::place_gizmo(const Box3& box) {
 void App::draw_gizmo() {
     const Box3 box = selected_bounds();
     if (drag_ != Drag::kObject) place_gizmo(box); // while a handle is dragged, the scene that is loaded lags behind
-    if (selected_ < 0 || box.empty() || !document_.editable()) return;
+    const bool current = drag_ == Drag::kObject || live_.loaded().load == requested_load_;
+    if (selected_ < 0 || box.empty() || !document_.editable() || !current) return;
     const bool moves = drag_ == Drag::kObject && gizmo_.handle == Handle::kMove;
     const Vec3d center = moves ? gizmo_.center + gizmo_.dragged * kAxes[gizmo_.axis] : gizmo_.center;
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -50,6 +50,19 @@ Comparison signed_comparison(const ImageRgb& raster, const ImageRgb& traced, int
             .figure = range};
 }
 
+Comparison compared(const Comparison& begun, int threads) {
+    const ImageRgb &a = begun.raster->rendering.radiance, &b = begun.traced->image;
+    Comparison result;
+    try {
+        result = begun.show == Show::kFlip ? flip_comparison(a, b, begun.view_transform, threads)
+                                           : signed_comparison(a, b, threads);
+    } catch (const std::exception&) { // no memory: an image of one pixel
+        result = {.bytes = {0, 0, 0}, .width = 1, .height = 1};
+    }
+    result.show = begun.show;
+    return result;
+}
+
 } // namespace
 
 void App::fit_images(ImVec2 low, ImVec2 size) {
@@ -107,17 +120,17 @@ void App::compare_frames() {
     const std::shared_ptr<const RasterFrame>& raster = shown_raster_;
     const std::shared_ptr<const TracerFrame>& traced = shown_traced_;
     const bool comparable = raster && traced && raster->scale == 1 && !traced->preview &&
-                            raster->version == traced->version && raster->error.empty() && traced->error.empty();
+                            raster->version == traced->version && raster->load == traced->load &&
+                            raster->error.empty() && traced->error.empty();
     if (comparable && !comparer_.busy() &&
-        !(compared_ && compared_->raster == raster && compared_->traced == traced && compared_->show == show_)) {
-        compared_ = std::make_shared<const Comparison>(Comparison{raster, traced, show_, {}, 0, 0, 0});
-        comparer_.start([this, begun = compared_, transform = shown_transform_](const std::atomic<bool>&) {
-            const ImageRgb &a = begun->raster->rendering.radiance, &b = begun->traced->image;
-            Comparison result = begun->show == Show::kFlip ? flip_comparison(a, b, transform, options_.threads)
-                                                           : signed_comparison(a, b, options_.threads);
-            result.show = begun->show;
+        !(compared_ && compared_->raster == raster && compared_->traced == traced && compared_->show == show_ &&
+          compared_->view_transform == shown_transform_)) {
+        compared_ = std::make_shared<const Comparison>(
+            Comparison{.raster = raster, .traced = traced, .show = show_, .view_transform = shown_transform_});
+        comparer_.start([this, begun = compared_](const std::atomic<bool>&) {
+            const auto result = std::make_shared<const Comparison>(compared(*begun, options_.threads));
             const std::lock_guard lock(comparison_mutex_);
-            comparison_ = std::make_shared<const Comparison>(std::move(result));
+            comparison_ = result;
             Window::wake();
         });
     }
@@ -147,7 +160,7 @@ void App::draw_textures() {
         return;
     }
     if (show_ == Show::kDifference || show_ == Show::kFlip) {
-        draw(comparison_texture_, 0, 1);
+        if (shown_comparison_ && shown_comparison_->show == show_) draw(comparison_texture_, 0, 1);
         label(show_ == Show::kFlip ? "FLIP" : "raster - path tracer", false);
         return;
     }
@@ -177,13 +190,11 @@ void App::navigate() {
     if (drag_ != Drag::kNone && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0)) drag();
     if (drag_ != Drag::kNone && !ImGui::IsMouseDown(0) && !ImGui::IsMouseDown(2)) {
         const bool click = io.MouseDragMaxDistanceSqr[0] < kClickPixels * kClickPixels;
-        if (click && drag_ == Drag::kCamera && area_.hovered) select_at(area_.pixel);
-        document_.commit();
+        if (click && drag_ == Drag::kCamera && area_.hovered && ImGui::IsMouseReleased(0)) select_at(area_.pixel);
         drag_ = Drag::kNone;
     }
     if (area_.hovered && io.MouseWheel != 0) {
         changed_camera(dolly(document_.camera(), std::pow(kWheelFactor, static_cast<double>(io.MouseWheel))));
-        document_.commit();
     }
 }
 
@@ -215,8 +226,6 @@ bool App::fly_by_keys() {
     if (flies) {
         const double step = kFlyPerSecond * std::min(static_cast<double>(ImGui::GetIO().DeltaTime), 0.1);
         changed_camera(fly(document_.camera(), step * forward, step * right, step * up));
-    } else if (flying_) {
-        document_.commit();
     }
     flying_ = flies;
     return flies || drag_ != Drag::kNone;
@@ -224,7 +233,7 @@ bool App::fly_by_keys() {
 
 void App::select_at(Vec2d pixel) {
     const LoadedScene loaded = live_.loaded();
-    if (!loaded.raytrace) return;
+    if (!loaded.raytrace || loaded.load != requested_load_) return; // objects of another text
     const Ray ray = CameraModel(wish_.view).ray({std::floor(pixel.x) + 0.5, std::floor(pixel.y) + 0.5});
     const Hit hit = trace(loaded.raytrace->prepared, ray);
     selected_ = hit.valid() ? static_cast<int>(loaded.scene->objects[hit.object].entry) : -1;

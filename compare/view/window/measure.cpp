@@ -1,6 +1,7 @@
 #include "compare/view/window/measure.h"
 
 #include "common/program/statistics.h"
+#include "common/system/error.h"
 #include "common/system/stopwatch.h"
 
 #include <nlohmann/json.hpp>
@@ -15,11 +16,13 @@ using nlohmann::json;
 
 namespace {
 
-bool draw_frame(App& app, Window& window) {
-    if (!window.begin_frame(0)) return false;
+// Draws a frame. Throws Error if the window was closed or the scene cannot be loaded: there is nothing to measure.
+void draw_frame(App& app, Window& window, double wait = 0) {
+    window.begin_frame(wait);
     app.draw();
     window.end_frame();
-    return true;
+    if (window.closing()) throw Error("the window was closed before its speed was measured");
+    if (const LoadedScene loaded = app.live().loaded(); !loaded.error.empty()) throw Error(loaded.error);
 }
 
 json measure_turn(App& app, Window& window, double seconds) {
@@ -27,7 +30,8 @@ json measure_turn(App& app, Window& window, double seconds) {
     double scales = 0;
     unsigned last = app.live().raster_frame()->version;
     Stopwatch watch, since_image;
-    for (double angle = 0; watch.seconds() < seconds && draw_frame(app, window);) {
+    for (double angle = 0; watch.seconds() < seconds;) {
+        draw_frame(app, window);
         const double now = 2 * kPiDouble * watch.seconds() / seconds;
         app.turn(now - angle);
         angle = now;
@@ -53,11 +57,9 @@ json measure_rates(App& app, Window& window, double seconds) {
     const double pixels = static_cast<double>(wish.view.width) * wish.view.height;
     Stopwatch watch;
     const auto traced = [&] { return app.live().tracer_frame(); };
-    while ((traced()->version != wish.version || traced()->preview || traced()->seconds < seconds) &&
-           window.begin_frame(0.25)) {
-        app.draw();
-        window.end_frame();
-    }
+    while (!app.live().finished(wish) &&
+           (traced()->version != wish.version || traced()->preview || traced()->seconds < seconds))
+        draw_frame(app, window, 0.25);
     const double in_window = traced()->samples * pixels / traced()->seconds;
     app.live().pause(true);
     raytrace::PathTracerSettings settings = wish.raytrace;

@@ -13,11 +13,12 @@ int view(const ViewOptions& options) {
     }
     const InterruptFlag interrupt;
     bool moves = true;
-    while (!interrupt.raised() && window.begin_frame(moves ? 0 : 0.25)) {
+    do {
+        window.begin_frame(moves ? 0 : 0.25);
         moves = app.draw();
         const ImageRgb pixels = window.end_frame(app.wants_screenshot());
         if (!pixels.empty()) app.write_screenshot(pixels);
-    }
+    } while (!interrupt.raised() && !(window.closing() && app.may_close()));
     return interrupt.raised() ? kExitInterrupted : kExitOk;
 }
 

@@ -12,12 +12,14 @@ using nlohmann::ordered_json;
 
 namespace {
 
-/// Edits a value in place and returns whether it has changed. Numbers, colors, words, and all that consists of them.
+/// Edits a value of a scene file in place: numbers, colors and words, and objects and arrays of them.
 class JsonEditor {
 public:
-    /// `materials` are the words that a member "material" may have.
-    explicit JsonEditor(const ordered_json& materials) : materials_(materials) {}
+    /// A member "material" may have the names of the scene's materials.
+    explicit JsonEditor(const ordered_json& scene)
+        : materials_(scene.contains("materials") ? scene.at("materials") : ordered_json::object()) {}
 
+    /// Draws the value, and returns whether it has changed.
     bool edit(const std::string& key, ordered_json& value) const {
         ImGui::PushID(key.c_str());
         const bool changed = edit_value(key, value);
@@ -29,6 +31,7 @@ private:
     bool edit_value(const std::string& key, ordered_json& value) const {
         const char* label = key.c_str();
         if (value.is_boolean()) return edit_boolean(label, value);
+        if (key == "priority") return edit_whole_number(label, value);
         if (value.is_number()) return edit_numbers(label, value);
         if (value.is_string()) return key == "material" ? edit_material(value) : edit_text(label, value);
         const bool numbers = value.is_array() && !value.empty() && value.size() <= 4 &&
@@ -59,18 +62,27 @@ private:
         for (const double x : numbers) largest = std::max(largest, std::abs(x));
         const auto speed = static_cast<float>(std::max(largest, 0.1) * 0.005);
         if (!ImGui::DragScalarN(label, ImGuiDataType_Double, numbers.data(), static_cast<int>(numbers.size()), speed,
-                                nullptr, nullptr, "%.5g"))
+                                nullptr, nullptr, "%.7g"))
             return false;
         for (double& x : numbers) x = typed_number(x);
         value = one ? ordered_json(numbers.front()) : ordered_json(numbers);
         return true;
     }
 
+    static bool edit_whole_number(const char* label, ordered_json& value) {
+        int number = value.get<int>();
+        if (!ImGui::InputInt(label, &number)) return false;
+        value = number;
+        return true;
+    }
+
     static bool edit_color(const char* label, ordered_json& value) {
         std::array<float, 3> channels{};
         for (std::size_t i = 0; i < 3; ++i) channels[i] = value.at(i).get<float>();
+        const std::array<float, 3> before = channels;
         if (!ImGui::ColorEdit3(label, channels.data(), ImGuiColorEditFlags_Float)) return false;
-        for (std::size_t i = 0; i < 3; ++i) value.at(i) = std::round(static_cast<double>(channels[i]) * 1000) / 1000;
+        for (std::size_t i = 0; i < 3; ++i)
+            if (channels[i] != before[i]) value.at(i) = std::round(static_cast<double>(channels[i]) * 1000) / 1000;
         return true;
     }
 
@@ -91,8 +103,20 @@ private:
         return changed;
     }
 
-    const ordered_json& materials_;
+    const ordered_json materials_;
 };
+
+/// Writes the parts of a value that differ, so that the others stay as they were typed.
+std::string with_changes(std::string text, const JsonPath& path, const ordered_json& old, const ordered_json& changed) {
+    if (old == changed) return text;
+    if (!changed.is_structured() || changed.size() != old.size()) return with_value(text, path, changed);
+    for (const auto& [key, value] : changed.items()) {
+        JsonPath part = path;
+        part.push_back(key);
+        text = with_changes(std::move(text), part, changed.is_object() ? old.at(key) : old.at(std::stoul(key)), value);
+    }
+    return text;
+}
 
 std::string name_of(const ordered_json& element, int index) {
     if (element.contains("name")) return element.at("name").get<std::string>();
@@ -107,12 +131,12 @@ void App::draw_scene() {
     draw_camera();
     if (!document_.editable()) return ImGui::TextDisabled("A bare mesh: write a scene file to edit more.");
     draw_additions();
+    draw_mesh_field();
     draw_selected();
     draw_members("materials");
     draw_members("lights");
     draw_members("media");
     draw_members("environment");
-    if (ImGui::IsMouseReleased(0)) document_.commit();
     ImGui::Separator();
     ImGui::BeginDisabled(!document_.changed());
     if (ImGui::Button("save (Ctrl+S)")) save();
@@ -147,37 +171,35 @@ void App::draw_camera() {
     ImGui::TreePop();
 }
 
-void App::draw_members(const char* key) {
+void App::draw_members(const char* list) {
     const ordered_json& scene = document_.json();
-    if (!scene.contains(key) || !ImGui::TreeNode(key)) return;
-    ordered_json value = scene.at(key);
-    const JsonEditor editor(scene.contains("materials") ? scene.at("materials") : ordered_json::object());
-    std::vector<std::pair<JsonPath, ordered_json>> changes;
-    const bool list = std::string_view(key) != "environment";
+    if (!scene.contains(list) || !ImGui::TreeNode(list)) return;
+    const JsonEditor editor(scene);
+    const ordered_json value = scene.at(list); // the document changes below
     int index = 0;
-    for (auto& [name, child] : value.items()) {
+    for (const auto& [key, child] : value.items()) {
+        const JsonPath path{list, key};
         ordered_json changed = child;
-        const std::string label = value.is_array() ? name_of(child, index++) : name;
-        if (editor.edit(list ? label : name, changed)) changes.emplace_back(JsonPath{key, name}, std::move(changed));
+        const std::string label = value.is_array() ? name_of(child, index++) : key;
+        if (editor.edit(label, changed)) apply(path, changed);
+        if (!value.is_array()) continue;
+        ImGui::PushID(label.c_str());
+        const bool copies = ImGui::SmallButton("duplicate");
+        ImGui::SameLine();
+        const bool deletes = ImGui::SmallButton("delete");
+        ImGui::PopID();
+        if (copies || deletes)
+            attempt([&] { edit(copies ? duplicated(document_.text(), path) : without_value(document_.text(), path)); });
+        if (deletes) break; // the indices of those behind have changed
     }
     ImGui::TreePop();
-    for (const auto& [path, changed] : changes) apply(path, changed);
 }
 
-// Writes only the members that differ, so that the others stay as they were typed.
 void App::apply(const JsonPath& path, const ordered_json& changed) {
-    const ordered_json old = ordered_json::parse(value_text(document_.text(), path));
-    std::string text = document_.text();
-    if (!changed.is_object()) {
-        text = with_value(text, path, changed);
-    } else {
-        for (const auto& [name, value] : changed.items()) {
-            JsonPath member = path;
-            member.push_back(name);
-            if (old.at(name) != value) text = with_value(text, member, value);
-        }
-    }
-    attempt([&] { edit(std::move(text)); });
+    attempt([&] {
+        const ordered_json old = ordered_json::parse(value_text(document_.text(), path));
+        edit(with_changes(document_.text(), path, old, changed));
+    });
 }
 
 void App::draw_selected() {
@@ -187,17 +209,20 @@ void App::draw_selected() {
     const std::string now =
         selected_ < 0 ? "none" : name_of(objects.at(static_cast<std::size_t>(selected_)), selected_);
     if (ImGui::BeginCombo("object", now.c_str())) {
-        for (int i = 0; i < static_cast<int>(objects.size()); ++i) {
-            ImGui::PushID(i);
-            if (ImGui::Selectable(name_of(objects.at(static_cast<std::size_t>(i)), i).c_str(), i == selected_))
-                selected_ = i;
-            ImGui::PopID();
-        }
+        ImGuiListClipper visible;
+        visible.Begin(static_cast<int>(objects.size()));
+        while (visible.Step())
+            for (int i = visible.DisplayStart; i < visible.DisplayEnd; ++i) {
+                ImGui::PushID(i);
+                const std::string name = name_of(objects.at(static_cast<std::size_t>(i)), i);
+                if (ImGui::Selectable(name.c_str(), i == selected_)) selected_ = i;
+                ImGui::PopID();
+            }
         ImGui::EndCombo();
     }
     if (selected_ < 0) return;
     ordered_json element = objects.at(static_cast<std::size_t>(selected_));
-    const JsonEditor editor(scene.contains("materials") ? scene.at("materials") : ordered_json::object());
+    const JsonEditor editor(scene);
     bool changed = false;
     ImGui::Indent();
     for (auto& [name, child] : element.items())
@@ -248,8 +273,13 @@ void App::draw_additions() {
                 selected_ = static_cast<int>(document_.json().at("objects").size()) - 1;
         });
     }
-    ImGui::TextDisabled("Drop an .obj on the window to add a mesh.");
     ImGui::EndCombo();
+}
+
+void App::draw_mesh_field() {
+    const bool typed = ImGui::InputText("mesh", &mesh_file_, ImGuiInputTextFlags_EnterReturnsTrue);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("The name of an .obj, relative to the scene file; Enter adds it");
+    if (typed) attempt([&] { edit(with_new_mesh(document_.text(), mesh_file_)); });
 }
 
 void App::duplicate_selected() {

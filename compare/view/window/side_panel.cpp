@@ -37,8 +37,9 @@ std::string material_text(const Scene& scene, const Hit& hit) {
     return scene.material_names[material_index(scene, hit.object, hit.primitive)];
 }
 
-constexpr std::array<const char*, 10> kShadingNames{"lit",       "phong", "gouraud", "flat",   "toon",
-                                                    "wireframe", "lines", "edges",   "normal", "albedo"};
+// The names of raster::Shading, in its order.
+constexpr std::array<const char*, 11> kShadingNames{"lit",   "phong", "gouraud", "flat",   "toon", "wireframe",
+                                                    "lines", "edges", "normal",  "albedo", "depth"};
 constexpr std::array kIntegrators{raytrace::Integrator::kPath,    raytrace::Integrator::kNaive,
                                   raytrace::Integrator::kWhitted, raytrace::Integrator::kBidirectional,
                                   raytrace::Integrator::kVcm,     raytrace::Integrator::kPhotons};
@@ -87,14 +88,18 @@ void App::draw_panel() {
 }
 
 void App::draw_display() {
-    int show = static_cast<int>(show_), tone = static_cast<int>(view_transform_.tone);
+    int show = static_cast<int>(show_);
     if (ImGui::Combo("show", &show, kShowNames.data(), kShowNames.size())) show_ = static_cast<Show>(show);
     if (show_ == Show::kDifference && shown_comparison_ && shown_comparison_->show == show_)
         row("full color", "luminance " + number(shown_comparison_->figure));
     if (show_ == Show::kFlip && shown_comparison_ && shown_comparison_->show == show_)
         row("mean FLIP", number(shown_comparison_->figure));
     ImGui::SliderFloat("exposure", &view_transform_.exposure, -8, 8, "%.2f EV");
-    if (ImGui::Combo("tone", &tone, "none\0filmic\0agx\0")) view_transform_.tone = static_cast<Tone>(tone);
+    const std::string now(kToneNames[static_cast<std::size_t>(view_transform_.tone)]);
+    if (!ImGui::BeginCombo("tone", now.c_str())) return;
+    for (std::size_t i = 0; i < kToneNames.size(); ++i)
+        if (ImGui::Selectable(std::string(kToneNames[i]).c_str())) view_transform_.tone = static_cast<Tone>(i);
+    ImGui::EndCombo();
 }
 
 void App::draw_renderers() {
@@ -135,6 +140,7 @@ void App::use_settings() {
 
 void App::set_quantity(const RungRenderers& quantity) {
     quantity_ = quantity.name;
+    if (quantity_ == kWholeImage) return use_settings();
     wish_.raster = quantity.raster_settings;
     wish_.raytrace = quantity.raytrace_settings;
     ++wish_.version;

@@ -15,6 +15,13 @@ namespace {
 
 Window& window_of(GLFWwindow* window) { return *static_cast<Window*>(glfwGetWindowUserPointer(window)); }
 
+// Returns the key of the letter that a key types: GLFW names keys by their place on an American keyboard.
+int labeled_key(int position, int code) {
+    const char* name = glfwGetKeyName(position, code);
+    const bool letter = name && name[0] >= 'a' && name[0] <= 'z' && name[1] == 0;
+    return letter ? GLFW_KEY_A + (name[0] - 'a') : position;
+}
+
 [[noreturn]] void fail(const char* what) {
     const char* reason = nullptr;
     glfwGetError(&reason);
@@ -51,13 +58,18 @@ Window::Window(const std::string& title, ImageSize size) {
     glfwSwapInterval(1);
     glfwSetWindowUserPointer(window_, this);
     // Dear ImGui keeps these callbacks and calls them before its own.
-    glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int mods) {
+    glfwSetKeyCallback(window_, [](GLFWwindow* window, int position, int code, int action, int mods) {
+        if (action == GLFW_REPEAT) return;
         Window& self = window_of(window);
+        const int key = labeled_key(position, code);
         const bool control = (mods & GLFW_MOD_CONTROL) != 0;
         if (action == GLFW_RELEASE) self.held_.erase(key);
         if (action == GLFW_RELEASE || ImGui::GetIO().WantTextInput) return;
         if (!control) self.held_.insert(key); // Ctrl + S, released late, must not be taken for S
         self.keys_.push_back({key, control, (mods & GLFW_MOD_SHIFT) != 0});
+    });
+    glfwSetCharCallback(window_, [](GLFWwindow* window, unsigned character) {
+        if (character == '?' && !ImGui::GetIO().WantTextInput) window_of(window).keys_.push_back({.key = GLFW_KEY_F1});
     });
     glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
         window_of(window).dropped_.insert(window_of(window).dropped_.end(), paths, paths + count);
@@ -76,18 +88,16 @@ Window::~Window() {
     glfwTerminate();
 }
 
-bool Window::begin_frame(double seconds) {
+void Window::begin_frame(double seconds) {
     keys_.clear();
     dropped_.clear();
     if (seconds > 0)
         glfwWaitEventsTimeout(seconds);
     else
         glfwPollEvents();
-    if (glfwWindowShouldClose(window_)) return false;
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
-    return true;
 }
 
 ImageRgb Window::end_frame(bool screenshot) {
@@ -105,6 +115,13 @@ ImageRgb Window::end_frame(bool screenshot) {
 
 void Window::wake() { glfwPostEmptyEvent(); }
 void Window::close() { glfwSetWindowShouldClose(window_, GLFW_TRUE); }
+
+bool Window::closing() {
+    const bool requested = glfwWindowShouldClose(window_) == GLFW_TRUE;
+    glfwSetWindowShouldClose(window_, GLFW_FALSE);
+    return requested;
+}
+
 void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
 
 Texture::~Texture() {

@@ -14,7 +14,7 @@ struct GLFWwindow;
 
 namespace duet::compare {
 
-/// A key that was pressed, as GLFW names it (GLFW_KEY_A …).
+/// A key that was pressed, as GLFW names it (GLFW_KEY_A …). F1 also stands for the character ?.
 struct KeyPress {
     int key = 0;
     bool control = false, shift = false;
@@ -29,19 +29,21 @@ public:
     Window(const Window&) = delete;
     Window& operator=(const Window&) = delete;
 
-    /// Waits for events for at most `seconds`, then begins a frame. Returns false once the user has closed the window.
-    bool begin_frame(double seconds);
+    /// Waits for events for at most `seconds`, then begins a frame.
+    void begin_frame(double seconds);
     /// Draws the frame. With `screenshot`, returns its pixels, else an empty image.
     ImageRgb end_frame(bool screenshot = false);
     /// Ends the wait of begin_frame. Any thread may call it.
     static void wake();
-    /// Makes begin_frame return false, as if the user had closed the window.
+    /// Requests that the window closes, as its button does.
     void close();
+    /// Returns whether the window was requested to close since the last call.
+    bool closing();
     /// Sets the text above the window.
     void set_title(const std::string& title);
 
-    /// The keys that were pressed and the files that were dropped on the window since the frame before. Keys that a
-    /// text field receives are left out.
+    /// The keys that were pressed, as they are labeled, and the files that were dropped on the window since the frame
+    /// before. Keys that a text field receives are left out.
     const std::vector<KeyPress>& keys() const { return keys_; }
     const std::vector<std::filesystem::path>& dropped() const { return dropped_; }
     /// Returns whether a key is held down that was pressed without Ctrl, and outside of text fields.

@@ -69,6 +69,15 @@ TEST_SUITE("unit") {
         CHECK(look_at_point(kFront, kFront.eye).look_at == kFront.look_at);
     }
 
+    TEST_CASE("no wheel brings the eye to what it looks at") {
+        Camera camera{.eye = {100, 0, 5}, .look_at = {100, 0, 0}};
+        for (int i = 0; i < 1000; ++i) camera = dolly(camera, 0.9);
+        CHECK(view_distance(camera) > 1e-3);
+        CHECK(view_distance(camera) < 1.3e-3);
+        camera = frame_box(camera, Box3{{100, 0, 0}, {100, 0, 0}}, 1);
+        CHECK(view_distance(camera) > 1e-3);
+    }
+
     TEST_CASE("a framed box is in the image, and fills half of it at least") {
         const Box3 box{{1, 2, 3}, {2, 4, 4}};
         for (const double aspect : {0.3, 1.0, 2.0})

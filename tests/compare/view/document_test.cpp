@@ -66,7 +66,7 @@ TEST_SUITE("unit") {
         camera.aperture_radius = 0.125;
         document.set_camera(camera);
         document.set_text(with_value(document.text(), {"objects", "0", "radius"}, 0.25));
-        document.save(path);
+        document.save();
         CHECK_FALSE(document.changed());
         std::string expected = kText;
         expected.replace(expected.find("[0, 1, 6.80]"), 12, "[1.0, 2.5, 3.0]");
@@ -104,7 +104,7 @@ TEST_SUITE("unit") {
         CHECK_FALSE(document.editable());
         document.set_camera({.eye = {1, 2, 3}});
         CHECK_FALSE(document.changed());
-        CHECK_THROWS_AS(document.save(path), Error);
+        CHECK_THROWS_AS(document.save(), Error);
         CHECK(document.reader()().objects.size() == 2);
     }
 }

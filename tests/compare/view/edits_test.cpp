@@ -61,12 +61,6 @@ TEST_SUITE("unit") {
         CHECK(moved(kText, {"objects", "0"}, by).size() < kText.size() + 12); // no transform was added
     }
 
-    TEST_CASE("a point light moves, a sun does not") {
-        const std::string text = moved(kText, {"lights", "0"}, {1, 1, 1});
-        CHECK(value_text(text, {"lights", "0", "position"}) == "[1.0, 4.0, 1.0]");
-        CHECK(moved(kText, {"lights", "1"}, {1, 1, 1}) == kText);
-    }
-
     TEST_CASE("maps are applied after the object's own transform, and collect in one matrix") {
         const Mat4d turn = rotation(Vec3d(0, 0, 1), radians(90.0));
         const std::string once = transformed(kText, {"objects", "1"}, turn);
@@ -85,6 +79,8 @@ TEST_SUITE("unit") {
         const std::string text = duplicated(kText, {"objects", "1"});
         CHECK(bounds_of(text, 5).low == bounds_of(kText, 1).low);
         CHECK(parse_scene(kPath, text).objects.size() == 6);
+        const std::string named = with_value(kText, {"objects", "4", "name"}, "a group");
+        CHECK(parse_scene(kPath, duplicated(named, {"objects", "4"})).objects.size() == 6);
     }
 
     TEST_CASE("new elements are where they shall be, in every scene") {

@@ -89,22 +89,22 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("a paused path tracer renders nothing, and goes on where it was") {
-    const Scene scene = load_scene(kCornell);
-    Wish wish = small_wish(scene);
-    LiveView live(0, [] {});
-    live.pause(true);
-    live.load(wish.view, [&] { return scene; });
-    while (!live.raster_frame()) {
-        live.show(wish);
-        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        const Scene scene = load_scene(kCornell);
+        Wish wish = small_wish(scene);
+        LiveView live(0, [] {});
+        live.pause(true);
+        live.load(wish.view, [&] { return scene; });
+        while (!live.raster_frame()) {
+            live.show(wish);
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        }
+        CHECK_FALSE(live.tracer_frame());
+        live.pause(false);
+        wait_for(live, wish);
+        check_images(live, scene, wish);
     }
-    CHECK_FALSE(live.tracer_frame());
-    live.pause(false);
-    wait_for(live, wish);
-    check_images(live, scene, wish);
-}
 
-TEST_CASE("settings that cannot be rendered are reported with the image") {
+    TEST_CASE("settings that cannot be rendered are reported with the image") {
         const Scene scene = load_scene(kCornell);
         Wish wish = small_wish(scene);
         wish.raytrace.samples_per_pixel = 1;

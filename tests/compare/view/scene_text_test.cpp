@@ -66,6 +66,10 @@ TEST_SUITE("unit") {
         CHECK(with_value("{\"e\": [ ]}", {"e", "0"}, 1) == "{\"e\": [1]}");
         CHECK(with_value("[1,2]", {"2"}, 3) == "[1,2,3]");
         CHECK_THROWS_AS(with_value(small, {"a", "0", "x"}, 1), Error);
+        CHECK(valid(with_value("[1 , 2]", {"2"}, 3)) == "[1 , 2, 3]");
+        CHECK(valid(with_value("{\r\n  \"a\": 1\r\n, \"b\": 2\r\n}", {"c"}, 3)) ==
+              "{\r\n  \"a\": 1\r\n, \"b\": 2, \"c\": 3\r\n}");
+        CHECK(with_value("\xEF\xBB\xBF{\"a\": 1}", {"a"}, 2) == "\xEF\xBB\xBF{\"a\": 2}"); // a byte order mark
     }
 
     TEST_CASE("a removed value takes its comma with it") {
