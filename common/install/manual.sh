@@ -14,26 +14,29 @@ sections() {
             gsub(/-/, "\\-", s)
             return s ~ /^[.\x27]/ ? "\\&" s : s
         }
-        function section(s) { print (title == "" ? ".SH " : ".SS ") s }
+        function section(s) { print (title == "" ? ".SH \"" : ".SS \"") s "\"" }
         NR == 1 {
             if (title == "") { sub(/\.$/, ""); print text(name " - " tolower(substr($0, 1, 1)) substr($0, 2)) }
             else print ".SH " toupper(name " " title) "\n" text($0)
             next
         }
         /^Usage: / { section("SYNOPSIS"); print ".B " text(substr($0, 8)); next }
-        /^[A-Z][a-z]+:$/ { sub(/:/, ""); part = $0; section(toupper(part)); next }
-        part == "Example" && /^  / { print ".PP\n.nf\n" text($0) "\n.fi"; next }
+        /^([A-Z][a-z]+|Example.*):$/ { sub(/:/, ""); part = $0; section(toupper(part)); next }
+        part ~ /^Example/ && /^  / { print ".PP\n.nf\n" text($0) "\n.fi"; next }
         /^  [^ ]/ {
             sub(/^  /, "")
-            sub(/{false}/, "") # says that a flag switches off
             at = match($0, /  +/)
-            print ".TP\n.B " text(at ? substr($0, 1, at - 1) : $0)
-            if (at) print text(substr($0, at + RLENGTH))
-            next
+            if (substr($0, 28) ~ /^ [A-Z][a-z]* /) at = 28 # the column of descriptions, which a term may reach
+            term = at ? substr($0, 1, at) : $0
+            sub(/ +$/, "", term)
+            sub(/{false}/, "", term) # says that a flag switches off
+            print ".TP\n.B " text(term)
+            if (!at) next
+            $0 = substr($0, at)
         }
         /^ *$/ { next }
-        /^[^ ]/ && part != "" && part != "Example" { print ".PP" }
-        /^Exit codes: / { section("\"EXIT STATUS\""); sub(/^Exit codes: /, ""); part = "" }
+        /^[^ ]/ && part != "" && part !~ /^Example/ { print ".PP" }
+        /^Exit codes: / { section("EXIT STATUS"); sub(/^Exit codes: /, ""); part = "" }
         { sub(/^ +/, ""); print text($0) }' name="$name"
 }
 

@@ -31,6 +31,7 @@ for program in raster raytrace compare; do
         grep -q -e "^\.B $option" "$scratch/manual" || fail "the manual page of $program lacks $option"
     done <"$scratch/options"
 done
+grep -q '^\.B --dither,--no-dither$' "$scratch/manual" || fail "the manual page of compare joins an option and its text"
 grep -q 'COMPARE LADDER' "$scratch/manual" || fail "the manual page of compare lacks its subcommand ladder"
 
 # complete WORD…: what bash offers for the last word.
