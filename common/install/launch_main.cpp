@@ -34,6 +34,7 @@ int main(int, char** argv) {
     const std::filesystem::path program = self.parent_path().parent_path() / "lib/duet" / level / self.filename();
     execv(program.c_str(), argv);
     std::cerr << self.filename().string() << ": cannot start " << program.string() << ": " << std::strerror(errno)
-              << ". Reinstall the package, or unset DUET_LEVEL if it is set\n";
+              << (wanted != nullptr ? ". Set DUET_LEVEL to x86-64-v3 or x86-64-v4, or unset it\n"
+                                    : ". Reinstall the package\n");
     return 1;
 }

@@ -63,6 +63,9 @@ ln -s "$package/bin/raytrace" "$scratch/link"
 expect 7 "$scratch/link" a
 expect 1 env DUET_LEVEL=x86-64-v3 "$package/bin/raster"
 one_line_error "x86-64-v3/raster: No such file or directory"
+one_line_error "Set DUET_LEVEL to x86-64-v3 or x86-64-v4"
+expect 1 env -u DUET_LEVEL "$package/bin/raster"
+one_line_error "Reinstall the package"
 expect 2 env DUET_LEVEL= "$package/bin/raster"
 one_line_error "lacks AVX2"
 finish
