@@ -53,12 +53,16 @@ install(TARGETS ${programs} DESTINATION lib/duet/${DUET_ARCH} COMPONENT level EX
 foreach(program ${programs})
     install(PROGRAMS $<TARGET_FILE:launch> DESTINATION bin RENAME ${program} COMPONENT launchers EXCLUDE_FROM_ALL)
 endforeach()
-install(FILES LICENSE DESTINATION share/doc/duet RENAME copyright COMPONENT launchers EXCLUDE_FROM_ALL)
+set(maintainer "the Duet authors <nobody@duet.invalid>") # there is no address to write to
+install(CODE "execute_process(COMMAND sh ${CMAKE_CURRENT_LIST_DIR}/debian_files.sh ${PROJECT_BINARY_DIR}
+        ${PROJECT_VERSION} \"${maintainer}\" COMMAND_ERROR_IS_FATAL ANY)" COMPONENT launchers EXCLUDE_FROM_ALL)
+install(FILES ${PROJECT_BINARY_DIR}/copyright ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION share/doc/duet
+    COMPONENT launchers EXCLUDE_FROM_ALL)
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
-set(CPACK_PACKAGE_CONTACT "the Duet authors <duet@localhost>")
+set(CPACK_PACKAGE_CONTACT ${maintainer})
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)

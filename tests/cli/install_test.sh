@@ -68,4 +68,6 @@ expect 1 env -u DUET_LEVEL "$package/bin/raster"
 one_line_error "Reinstall the package"
 expect 2 env DUET_LEVEL= "$package/bin/raster"
 one_line_error "lacks AVX2"
+gzip -dc "$package/share/doc/duet/changelog.gz" | grep -q '^duet (' || fail "the changelog lacks the package's name"
+grep -q 'BSD-3-clause' "$package/share/doc/duet/copyright" || fail "copyright lacks the libraries' licenses"
 finish
