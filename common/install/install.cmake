@@ -66,8 +66,8 @@ set(CPACK_PACKAGE_CONTACT ${maintainer})
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-# ImageMagick and GraphicsMagick have a program of the name `compare`, too.
-set(CPACK_DEBIAN_PACKAGE_CONFLICTS "imagemagick, graphicsmagick-imagemagick-compat")
+# These have a program of the name `compare`, too. The first name is provided by GraphicsMagick and most builds.
+set(CPACK_DEBIAN_PACKAGE_CONFLICTS "imagemagick, imagemagick-6.q16hdri")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "rasterizer and path tracer that render the same scenes")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "Duet renders one scene in two ways, by rasterization and by path tracing. It
 compares the images: what differs, where that comes from, and what each way
