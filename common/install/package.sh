@@ -5,6 +5,10 @@
 # usage: sh common/install/package.sh
 set -eu
 cd "$(dirname "$0")/../.."
+if ! grep -q avx512vl /proc/cpuinfo; then
+    echo "package: this CPU lacks AVX-512, which the build of x86-64-v4 needs. Build on one that has it" >&2
+    exit 1
+fi
 for preset in package-v4 package-v3; do
     sh common/setup.sh $preset dpkg-dev
     cmake --build --preset $preset
