@@ -68,6 +68,11 @@ set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # These have a program of the name `compare`, too. The first name is provided by GraphicsMagick and most builds.
 set(CPACK_DEBIAN_PACKAGE_CONFLICTS "imagemagick, imagemagick-6.q16hdri")
+foreach(script preinst postrm)
+    configure_file(${CMAKE_CURRENT_LIST_DIR}/maintainer.sh ${script} COPYONLY)
+    list(APPEND CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/${script})
+endforeach()
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "rasterizer and path tracer that render the same scenes")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "Duet renders one scene in two ways, by rasterization and by path tracing. It
 compares the images: what differs, where that comes from, and what each way
