@@ -1,12 +1,13 @@
 #!/bin/sh
-# Writes two files that every Debian package has: copyright, with the licenses of the header-only libraries that are
-# compiled into the programs, and changelog.gz, which names the page that has the changes.
+# Writes two files that every Debian package has: copyright, with the licenses of the libraries that are compiled into
+# the programs, and changelog.gz, which names the page that has the changes.
 # usage: debian_files.sh FOLDER VERSION MAINTAINER
 set -eu
 cd "$(dirname "$0")/../.."
 {
     cat LICENSE
-    for package in nlohmann-json3-dev libcli11-dev libxsimd-dev libstb-dev; do
+    for package in nlohmann-json3-dev libcli11-dev libxsimd-dev libstb-dev libimgui-dev; do
+        [ -f /usr/share/doc/$package/copyright ] || continue # Dear ImGui is optional
         printf '\n\nThe programs contain code of the package %s:\n\n' $package
         cat /usr/share/doc/$package/copyright
     done
