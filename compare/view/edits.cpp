@@ -111,7 +111,7 @@ std::string transformed(const std::string& text, const JsonPath& element, const 
 
 std::string duplicated(const std::string& text, const JsonPath& element) {
     ordered_json copy = parsed(text, element);
-    if (copy.at("type") == "group") copy.erase("name"); // names of groups are unique
+    if (copy.value("type", "") == "group") copy.erase("name"); // names of groups are unique
     return appended(text, element.front(), copy);
 }
 

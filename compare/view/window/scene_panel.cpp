@@ -120,7 +120,7 @@ std::string with_changes(std::string text, const JsonPath& path, const ordered_j
 
 std::string name_of(const ordered_json& element, int index) {
     if (element.contains("name")) return element.at("name").get<std::string>();
-    return element.at("type").get<std::string>() + " " + std::to_string(index);
+    return element.value("type", "element") + " " + std::to_string(index);
 }
 
 } // namespace
