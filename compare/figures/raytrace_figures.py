@@ -73,7 +73,7 @@ def cornell(run):
     """the Cornell box beside Cycles, with a plot; other renderers are quoted"""
     bench = cornell_bench(run)
     result = bench.data["scenes"][0]
-    rows = [[f"{row['technique']} {row['sampler']}".strip(), row["spp"], number(row["seconds"]["value"], 3),
+    rows = [[f"`{row['technique']}` `{row['sampler']}`", row["spp"], number(row["seconds"]["value"], 3),
              number(row["mse"]["value"]), number(row["rest"]["mse"]["value"]), number(row["relmse"]["value"])]
             for row in result["rows"]]
     ratios = [[technique] + [number(to_peer(result, technique, at)) for at in (1, 4)]
