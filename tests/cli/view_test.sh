@@ -32,7 +32,7 @@ read -r number <"$scratch/display"
 export DISPLAY=":$number"
 "$bin/compare" view "$scene" --window 1180x800 --size 200x200 --spp 8 -o "$scratch" 2>"$scratch/view.txt" &
 process=$!
-trap 'kill $process $server 2>/dev/null' EXIT
+trap 'kill $process $server 2>/dev/null || true' EXIT
 
 # until SECONDS COMMAND…: runs it again and again until it succeeds.
 until_true() {
