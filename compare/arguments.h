@@ -24,6 +24,10 @@ void add_check(CommandLine& program);
 void add_view(CommandLine& program);
 ///@}
 
+struct ComparisonSettings; // compare/renderer.h
+/// Adds --depth and --threads.
+void add_depth_and_threads(CommandLine& subcommand, ComparisonSettings& settings);
+
 /// Sets what a subcommand runs. Returns the options that it runs with, for the arguments to be written to.
 template <typename Options> Options& set_action(CommandLine& subcommand, int (*action)(const Options&)) {
     const auto options = std::make_shared<Options>();

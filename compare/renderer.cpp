@@ -76,10 +76,14 @@ RenderFunction raytrace_hits(const Scene& scene, const ComparisonSettings& setti
 
 View scene_view(const Scene& scene) { return {scene.camera, scene.width, scene.height}; }
 
+View scaled(View view, double scale) {
+    for (int* side : {&view.width, &view.height}) *side = std::max(1, static_cast<int>(std::lround(*side * scale)));
+    return view;
+}
+
 View scene_view(const Scene& scene, ImageSize size, double scale) {
     if (size.width > 0) return {scene.camera, size.width, size.height};
-    const auto scaled = [&](int pixels) { return std::max(1, static_cast<int>(std::lround(pixels * scale))); };
-    return {scene.camera, scaled(scene.width), scaled(scene.height)};
+    return scaled(scene_view(scene), scale);
 }
 
 } // namespace duet::compare

@@ -56,6 +56,8 @@ RenderFunction raytrace_hits(const Scene& scene, const ComparisonSettings& setti
 
 /// Returns the view of the scene's camera, in the scene's image size.
 View scene_view(const Scene& scene);
+/// Returns the view with `scale` times the width and the height, rounded, each at least one pixel.
+View scaled(View view, double scale);
 /// Returns the view of the scene's camera in the given size or, for 0 × 0, in the scene's size times `scale`.
 View scene_view(const Scene& scene, ImageSize size, double scale);
 

@@ -18,10 +18,7 @@ void add_run(CommandLine& program) {
     add_scene_options(run, options.scene_options);
     run.add("--spp", settings.raytrace_spp, "The path tracer's samples a pixel (default 64)").range(1, 1 << 24);
     run.add("--raster-spp", settings.raster_spp, "The rasterizer's samples a pixel (default 16)").range(1, 1 << 24);
-    run.add("--depth", settings.max_depth,
-            "The path tracer's scattering events at most: 0 emission only, 1 direct light (default 64)")
-        .range(0, 1 << 20);
-    run.add("--threads", settings.threads, "Threads (default: all)").range(1, 1024);
+    add_depth_and_threads(run, settings);
     run.add("--seed", settings.seed, "Seed of all random numbers (default 0)");
     add_view_transform(run, options.view_transform);
     run.add("--stats", options.stats, "Write the figures of report.json to this file too (-: standard output)");

@@ -42,8 +42,3 @@ def stem(path):
 
 def scene(name):
     return f"models/{name}.json"
-
-
-def median(values):
-    ordered = sorted(values)
-    return (ordered[(len(ordered) - 1) // 2] + ordered[len(ordered) // 2]) / 2

@@ -1,6 +1,8 @@
 """The figures of raster/measurements.md."""
+from statistics import median
+
 import draw
-from catalog import figure, median, ms, number, scene, stem, table
+from catalog import figure, ms, number, scene, stem, table
 from measure import Failed
 
 LIT_SCENES = ("cornell", "veach", "everything", "demo", "spheres", "hall", "glass")

@@ -18,11 +18,7 @@ void add_ladder(CommandLine& program) {
              "The path tracer's samples a pixel, in two halves (default 64; odd numbers are rounded up)")
         .range(1, 1 << 24);
     ladder.add("--raster-spp", settings.raster_spp, "The rasterizer's samples a pixel (default 16)").range(1, 1 << 24);
-    ladder
-        .add("--depth", settings.max_depth,
-             "The path tracer's scattering events at most: 0 emission only, 1 direct light (default 64)")
-        .range(0, 1 << 20);
-    ladder.add("--threads", settings.threads, "Threads (default: all)").range(1, 1024);
+    add_depth_and_threads(ladder, settings);
     ladder.add("--seed", settings.seed, "Seed of all random numbers (default 0)");
     ladder.add("--stats", options.stats, "Write the figures of report.json to this file too (-: standard output)");
     ladder.add_flag("--quiet", options.quiet, "No progress bar, no table");

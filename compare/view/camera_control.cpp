@@ -59,13 +59,12 @@ Vec3d turned(const Camera& camera, Vec3d view, double right, double up) {
     return transform_vector(rotation(axis, -right), raised);
 }
 
-/// Returns the height of what the image shows around the look-at point, in meters.
-double shown_height(const Camera& camera) {
-    if (camera.projection == Camera::Projection::kOrthographic) return camera.height;
-    return 2 * distance(camera) * std::tan(radians(camera.fov_degrees) / 2);
-}
-
 } // namespace
+
+double shown_height(const Camera& camera, double depth) {
+    if (camera.projection == Camera::Projection::kOrthographic) return camera.height;
+    return 2 * depth * std::tan(radians(camera.fov_degrees) / 2);
+}
 
 Camera orbit(Camera camera, double right, double up) {
     camera.eye = camera.look_at - turned(camera, camera.look_at - camera.eye, -right, -up);
@@ -79,7 +78,7 @@ Camera look_around(Camera camera, double right, double up) {
 
 Camera pan(const Camera& camera, double right, double up) {
     const Axes axes(camera);
-    return moved(camera, shown_height(camera) * (right * axes.right + up * axes.up));
+    return moved(camera, shown_height(camera, distance(camera)) * (right * axes.right + up * axes.up));
 }
 
 Camera dolly(Camera camera, double factor) {

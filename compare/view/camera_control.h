@@ -26,5 +26,7 @@ Camera look_at_point(Camera camera, Vec3d point);
 /// Moves the eye along its view, so that the whole box is in an image of this aspect ratio (width / height). An empty
 /// box changes nothing.
 Camera frame_box(Camera camera, const Box3& box, double aspect);
+/// Returns the height of what the image shows at a depth along the view, both in meters.
+double shown_height(const Camera& camera, double depth);
 
 } // namespace duet::compare

@@ -25,13 +25,6 @@ constexpr std::uint32_t kSamplesToReplace = 4;
 /// A pass adds at most this many samples per pixel, as passes of raytrace do.
 constexpr std::uint32_t kPassSamples = 16;
 
-View scaled(View view, double scale) {
-    const auto side = [scale](int pixels) { return std::max(1, static_cast<int>(std::lround(pixels * scale))); };
-    view.width = side(view.width);
-    view.height = side(view.height);
-    return view;
-}
-
 bool same(const View& a, const View& b) {
     const auto values = [](const Camera& c) {
         return std::tie(c.projection, c.eye, c.look_at, c.up, c.fov_degrees, c.height, c.near, c.aperture_radius,
@@ -86,10 +79,8 @@ void LiveView::start_loading(std::function<void()> job) {
 unsigned LiveView::load(const View& view, std::function<Scene()> read) {
     const unsigned load = ++loads_;
     start_loading([=, this] {
-        const Stopwatch watch;
         LoadedScene next;
         next.scene = std::make_shared<const Scene>(seen_in(view, read()));
-        next.load_seconds = watch.seconds();
         next.load = load;
         next.raytrace = prepared<raytrace::PathTracerScene, raytrace::PathTracerSettings>(next.load, next.scene);
         LoadedScene before; // is freed outside of the lock

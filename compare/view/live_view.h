@@ -29,8 +29,7 @@ struct LoadedScene {
     /// The rasterizer takes longer to prepare a scene; until then this is of the scene before. It places probes and
     /// shadow maps for the scene's camera, so that it is prepared anew when the camera has moved and come to rest.
     std::shared_ptr<const PreparedScene<raster::RasterScene>> raster;
-    std::string error;       ///< why the newest text could not be loaded; empty: it could, and `scene` is of it
-    double load_seconds = 0; ///< time of reading files
+    std::string error; ///< why the newest text could not be loaded; empty: it could, and `scene` is of it
 };
 
 /// What the window wants to see. `version` differs from that of the wish before if anything else does.
@@ -100,8 +99,7 @@ private:
     void render_traced(const Wish& wish, const LoadedScene& scene, bool same_view, const std::atomic<bool>& stop);
 
     const int threads_;
-    std::atomic<unsigned> preparations_ = 0;
-    unsigned loads_ = 0;
+    unsigned loads_ = 0, preparations_ = 0; // preparations_ is the loader's
     const std::function<void()> wake_;
     std::atomic<bool> paused_ = false;
     mutable std::mutex mutex_; // guards the results

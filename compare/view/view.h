@@ -3,6 +3,7 @@
 
 #include "common/program/render_program.h"
 #include "common/program/view_transform_options.h"
+#include "compare/renderer.h"
 
 #include <filesystem>
 #include <string>
@@ -14,9 +15,8 @@ struct ViewOptions {
     std::filesystem::path scene;
     SceneOptions scene_options; ///< a size other than 0 × 0 is the images'; else they fill the window
     ImageSize window{1600, 900};
-    std::filesystem::path folder = "."; ///< where screenshots and images are written
-    int spp = 4096;                     ///< the path tracer's samples per pixel at most
-    int raster_spp = 1, max_depth = 64, threads = 0;
+    std::filesystem::path folder = ".";                                 ///< where screenshots and images are written
+    ComparisonSettings settings{.raster_spp = 1, .raytrace_spp = 4096}; ///< the path tracer's samples at most
     ViewTransformOptions view_transform;
     double measure = 0; ///< seconds of a turn of the camera that is measured; 0: the window waits for its user
     std::string stats;  ///< file of the measurement as JSON; "-" for standard output; empty: none

@@ -14,12 +14,11 @@ void add_view(CommandLine& program) {
     add_scene_options(view, options.scene_options);
     view.add("--window", options.window, "Size of the window WIDTHxHEIGHT (default 1600x900)");
     view.add("-o,--output", options.folder, "The folder for screenshots and images (default: the current one)");
-    view.add("--spp", options.spp, "The path tracer's samples a pixel at most (default 4096)").range(1, 1 << 24);
-    view.add("--raster-spp", options.raster_spp, "The rasterizer's samples a pixel (default 1)").range(1, 1 << 16);
-    view.add("--depth", options.max_depth,
-             "The path tracer's scattering events at most: 0 emission only, 1 direct light (default 64)")
-        .range(0, 1 << 20);
-    view.add("--threads", options.threads, "Threads (default: all)").range(1, 1024);
+    view.add("--spp", options.settings.raytrace_spp, "The path tracer's samples a pixel at most (default 4096)")
+        .range(1, 1 << 24);
+    view.add("--raster-spp", options.settings.raster_spp, "The rasterizer's samples a pixel (default 1)")
+        .range(1, 1 << 16);
+    add_depth_and_threads(view, options.settings);
     add_view_transform(view, options.view_transform);
     view.add("--measure", options.measure,
              "Turn the camera once around in this many seconds, print how fast the window is, and close it")

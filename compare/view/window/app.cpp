@@ -25,13 +25,9 @@ std::filesystem::file_time_type write_time(const std::filesystem::path& path) {
 
 App::App(const ViewOptions& options, Window& window)
     : options_(options), window_(window), document_(options.scene, options.scene_options),
-      live_(options.threads, Window::wake) {
+      live_(options.settings.threads, Window::wake) {
     view_transform_ = options.view_transform.applied_to(document_.view_transform());
-    ComparisonSettings settings{.raster_spp = options.raster_spp,
-                                .raytrace_spp = options.spp,
-                                .max_depth = options.max_depth,
-                                .threads = options.threads};
-    settings_ = {raster_settings(settings), path_tracer_settings(settings)};
+    settings_ = {raster_settings(options.settings), path_tracer_settings(options.settings)};
     settings_.raster.aovs.hit = true;
     settings_.raytrace.aovs.variance = true; // two replicates, from which the error is estimated
     use_settings();
@@ -64,8 +60,7 @@ bool App::draw() {
     if (!ImGui::IsAnyItemActive() && !flying_) document_.commit();
     handle_keys(); // after the mouse: a key that follows the end of a drag sees its result
 
-    if (!loaded_once_) load();
-    loaded_once_ = true;
+    if (requested_load_ == 0) load(); // the first frame: the size of the images is known now
     live_.show(wish_);
     return fly_by_keys();
 }

@@ -126,7 +126,7 @@ private:
     Show show_ = Show::kSplit;
     float split_ = 0.5f;
     enum class Drag { kNone, kCamera, kSplit, kObject } drag_ = Drag::kNone;
-    bool help_ = false, loaded_once_ = false, flying_ = false, double_click_ = false, wants_screenshot_ = false;
+    bool help_ = false, flying_ = false, double_click_ = false, wants_screenshot_ = false;
     static constexpr const char* kWholeImage = "everything"; // of the ladder's quantities
     std::string quantity_ = kWholeImage;
     struct Settings {
@@ -148,7 +148,7 @@ private:
         double dragged = 0; // in meters, in radians, or the logarithm of a factor
         std::string text;   // before the drag
     } gizmo_;
-    unsigned requested_load_ = 0; // the scene of the document's text
+    unsigned requested_load_ = 0; // the scene of the document's text; 0 before the first
     double turn_degrees_ = 15, scale_factor_ = 1.1;
     std::string mesh_file_;          // that is being typed
     std::string message_, path_log_; // of the last action; of the path under the last click

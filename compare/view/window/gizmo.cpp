@@ -1,5 +1,6 @@
 // The handles of the selected object: arrows move it along the world's axes, rings turn it about them, and the square
 // in the middle scales it.
+#include "compare/view/camera_control.h"
 #include "compare/view/edits.h"
 #include "compare/view/window/app.h"
 
@@ -57,10 +58,7 @@ void App::place_gizmo(const Box3& box) {
     const Camera& camera = wish_.view.camera;
     gizmo_.handle = Handle::kNone;
     gizmo_.center = (Vec3d(box.low) + Vec3d(box.high)) / 2.0;
-    const double height = camera.projection == Camera::Projection::kOrthographic
-                              ? camera.height
-                              : 2 * length(gizmo_.center - camera.eye) * std::tan(radians(camera.fov_degrees) / 2);
-    gizmo_.length = kLengthOfHeight * height;
+    gizmo_.length = kLengthOfHeight * shown_height(camera, length(gizmo_.center - camera.eye));
 }
 
 void App::draw_gizmo() {

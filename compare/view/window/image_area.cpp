@@ -105,7 +105,7 @@ void App::update_textures() {
     const ViewTransform transform = colors ? ViewTransform{} : view_transform_;
     const bool all = !(transform == shown_transform_);
     const auto set = [&](Texture& texture, const ImageRgb& image) {
-        texture.set(display_bytes(image, transform, options_.threads), image.width(), image.height());
+        texture.set(display_bytes(image, transform, options_.settings.threads), image.width(), image.height());
     };
     if (raster && raster->error.empty() && (all || raster != shown_raster_))
         set(raster_texture_, raster->rendering.radiance);
@@ -128,7 +128,7 @@ void App::compare_frames() {
         compared_ = std::make_shared<const Comparison>(
             Comparison{.raster = raster, .traced = traced, .show = show_, .view_transform = shown_transform_});
         comparer_.start([this, begun = compared_](const std::atomic<bool>&) {
-            const auto result = std::make_shared<const Comparison>(compared(*begun, options_.threads));
+            const auto result = std::make_shared<const Comparison>(compared(*begun, options_.settings.threads));
             const std::lock_guard lock(comparison_mutex_);
             comparison_ = result;
             Window::wake();

@@ -55,7 +55,6 @@ json measure_turn(App& app, Window& window, double seconds) {
 json measure_rates(App& app, Window& window, double seconds) {
     const Wish& wish = app.wish();
     const double pixels = static_cast<double>(wish.view.width) * wish.view.height;
-    Stopwatch watch;
     const auto traced = [&] { return app.live().tracer_frame(); };
     while (!app.live().finished(wish) &&
            (traced()->version != wish.version || traced()->preview || traced()->seconds < seconds))
@@ -65,7 +64,7 @@ json measure_rates(App& app, Window& window, double seconds) {
     raytrace::PathTracerSettings settings = wish.raytrace;
     settings.time_limit = seconds;
     Control control;
-    watch.restart();
+    const Stopwatch watch;
     const Rendering alone = render(app.live().loaded().raytrace->prepared, wish.view, settings, control);
     const double rate = static_cast<double>(alone.statistics.camera_rays) / watch.seconds();
     return {{"window", in_window}, {"raytrace", rate}};

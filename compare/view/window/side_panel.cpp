@@ -3,6 +3,7 @@
 
 #include "common/program/program.h"
 #include "common/system/error.h"
+#include "compare/report/text.h"
 
 #include <cmath>
 
@@ -10,11 +11,7 @@ namespace duet::compare {
 
 namespace {
 
-std::string number(double value) {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.4g", value);
-    return text.data();
-}
+std::string number(double value) { return significant(value, 4); }
 
 std::string color(Rgb c) {
     const auto part = [](float x) { return number(static_cast<double>(x)); };
