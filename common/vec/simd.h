@@ -19,17 +19,21 @@
 #pragma GCC diagnostic pop
 #endif
 
-#if !XSIMD_WITH_AVX2 || !defined(__FMA__)
-#error "Duet needs a CPU with AVX2 and fused multiply-add: set DUET_ARCH to x86-64-v3 or to an extension of it"
+#if !XSIMD_WITH_SSE4_2 || (XSIMD_WITH_AVX && !(XSIMD_WITH_AVX2 && defined(__FMA__)))
+#error "Duet has code for SSE4.2, for AVX2 with fused multiply-add, and for AVX-512: set DUET_ARCH to x86-64-v2, -v3 or -v4"
 #endif
 
 namespace duet {
 
-/// A batch holds N floats. N may be 4 or 8, and 16 with AVX-512.
+/// A batch holds N floats. N may be 4, 8 with AVX2, and 16 with AVX-512.
 template <std::size_t N> using FloatBatch = xsimd::make_sized_batch_t<float, N>;
 
 /// The default number of float lanes is at most 8, because wider batches gain little in tests against BVH boxes.
+#if XSIMD_WITH_AVX2
 inline constexpr std::size_t kSimdLanes = 8;
+#else
+inline constexpr std::size_t kSimdLanes = 4;
+#endif
 
 /// The largest number of float lanes of the target CPU pays off only for work that fills all lanes.
 #if XSIMD_WITH_AVX512F
@@ -42,42 +46,71 @@ inline constexpr std::size_t kMaxSimdLanes = kSimdLanes;
 using DoubleBatch = xsimd::batch<double>;
 inline constexpr std::size_t kDoubleLanes = sizeof(DoubleBatch) / sizeof(double);
 
-/// A narrow batch has as many float lanes as a DoubleBatch has lanes.
-using NarrowBatch = FloatBatch<kDoubleLanes>;
+/// A narrow batch has as many float lanes as a DoubleBatch has lanes. With SSE4.2, which has no batch of two floats, its
+/// upper two lanes are 0 and mean nothing.
+using NarrowBatch = FloatBatch<kDoubleLanes == 2 ? 4 : kDoubleLanes>;
 
 /// Widens each lane to double, which is exact.
 inline DoubleBatch to_doubles(NarrowBatch floats) {
 #if XSIMD_WITH_AVX512F
     return _mm512_cvtps_pd(floats);
-#else
+#elif XSIMD_WITH_AVX2
     return _mm256_cvtps_pd(floats);
+#else
+    return _mm_cvtps_pd(floats);
 #endif
 }
 /// Rounds each lane to float.
 inline NarrowBatch to_floats(DoubleBatch doubles) {
 #if XSIMD_WITH_AVX512F
     return _mm512_cvtpd_ps(doubles);
-#else
+#elif XSIMD_WITH_AVX2
     return _mm256_cvtpd_ps(doubles);
+#else
+    return _mm_cvtpd_ps(doubles);
 #endif
 }
 /// Loads kDoubleLanes floats and converts them to doubles. The address needs no alignment.
-inline DoubleBatch load_doubles(const float* from) { return to_doubles(NarrowBatch::load_unaligned(from)); }
+inline DoubleBatch load_doubles(const float* from) {
+#if XSIMD_WITH_AVX2
+    return to_doubles(NarrowBatch::load_unaligned(from));
+#else
+    return to_doubles(_mm_castpd_ps(_mm_load_sd(reinterpret_cast<const double*>(from))));
+#endif
+}
 /// Rounds the doubles to floats and stores kDoubleLanes of them. The address needs no alignment.
-inline void store_floats(DoubleBatch batch, float* to) { to_floats(batch).store_unaligned(to); }
+inline void store_floats(DoubleBatch batch, float* to) {
+#if XSIMD_WITH_AVX2
+    to_floats(batch).store_unaligned(to);
+#else
+    _mm_store_sd(reinterpret_cast<double*>(to), _mm_castps_pd(to_floats(batch)));
+#endif
+}
 
-/// Returns a·b + c, rounded once. The intrinsics are needed because version 8 of xsimd rounds twice for 16 or 4 lanes.
+/// The CPU has fused multiply-add. Without it, multiply_add() and negated_multiply_add() round the product, too.
+#if defined(__FMA__)
+inline constexpr bool kFusedMultiplyAdd = true;
+#else
+inline constexpr bool kFusedMultiplyAdd = false;
+#endif
+
+/// Returns a·b + c, rounded once where the CPU can. The intrinsics are needed because version 8 of xsimd rounds twice for
+/// 16 or 4 lanes.
 template <typename Arch>
 xsimd::batch<float, Arch> multiply_add(xsimd::batch<float, Arch> a, xsimd::batch<float, Arch> b,
                                        xsimd::batch<float, Arch> c) {
 #if XSIMD_WITH_AVX512F
     if constexpr (sizeof(a) == 64) return _mm512_fmadd_ps(a, b, c);
 #endif
+#if defined(__FMA__)
     if constexpr (sizeof(a) == 16) return _mm_fmadd_ps(a, b, c);
     return xsimd::fma(a, b, c);
+#else
+    return a * b + c;
+#endif
 }
 
-/// Returns c − a·b, rounded once.
+/// Returns c − a·b, rounded once where the CPU can.
 template <typename Arch>
 xsimd::batch<float, Arch> negated_multiply_add(xsimd::batch<float, Arch> a, xsimd::batch<float, Arch> b,
                                                xsimd::batch<float, Arch> c) {
@@ -90,26 +123,32 @@ xsimd::batch<float, Arch> negated_multiply_add(xsimd::batch<float, Arch> a, xsim
 inline DoubleBatch multiply_add(DoubleBatch a, DoubleBatch b, DoubleBatch c) {
 #if XSIMD_WITH_AVX512F
     return _mm512_fmadd_pd(a, b, c);
-#else
+#elif defined(__FMA__)
     return xsimd::fma(a, b, c);
+#else
+    return a * b + c;
 #endif
 }
-inline float multiply_add(float a, float b, float c) { return std::fma(a, b, c); }
+inline float multiply_add(float a, float b, float c) { return kFusedMultiplyAdd ? std::fma(a, b, c) : a * b + c; }
 
 /// Returns a bit mask of the lanes that are true. Bit i belongs to lane i.
 template <typename Arch> unsigned lane_bits(xsimd::batch_bool<float, Arch> lanes) {
 #if XSIMD_WITH_AVX512F
     if constexpr (sizeof(lanes) != 32 && sizeof(lanes) != 16) return static_cast<unsigned>(lanes.data);
 #endif
+#if XSIMD_WITH_AVX2
     if constexpr (sizeof(lanes) == 32) return static_cast<unsigned>(_mm256_movemask_ps(lanes));
+#endif
     if constexpr (sizeof(lanes) == 16) return static_cast<unsigned>(_mm_movemask_ps(lanes));
 }
 
 inline unsigned lane_bits(DoubleBatch::batch_bool_type lanes) {
 #if XSIMD_WITH_AVX512F
     return static_cast<unsigned>(lanes.data);
-#else
+#elif XSIMD_WITH_AVX2
     return static_cast<unsigned>(_mm256_movemask_pd(lanes));
+#else
+    return static_cast<unsigned>(_mm_movemask_pd(lanes));
 #endif
 }
 
@@ -167,10 +206,12 @@ inline FloatBatch<4> zip_high(FloatBatch<4> a, FloatBatch<4> b) { return _mm_unp
 /// In each group of four lanes, pair_low returns a0 a1 b0 b1, and pair_high returns a2 a3 b2 b3.
 inline FloatBatch<4> pair_low(FloatBatch<4> a, FloatBatch<4> b) { return _mm_movelh_ps(a, b); }
 inline FloatBatch<4> pair_high(FloatBatch<4> a, FloatBatch<4> b) { return _mm_movehl_ps(b, a); }
+#if XSIMD_WITH_AVX2
 inline FloatBatch<8> zip_low(FloatBatch<8> a, FloatBatch<8> b) { return _mm256_unpacklo_ps(a, b); }
 inline FloatBatch<8> zip_high(FloatBatch<8> a, FloatBatch<8> b) { return _mm256_unpackhi_ps(a, b); }
 inline FloatBatch<8> pair_low(FloatBatch<8> a, FloatBatch<8> b) { return _mm256_shuffle_ps(a, b, 0x44); }
 inline FloatBatch<8> pair_high(FloatBatch<8> a, FloatBatch<8> b) { return _mm256_shuffle_ps(a, b, 0xEE); }
+#endif
 #if XSIMD_WITH_AVX512F
 inline FloatBatch<16> zip_low(FloatBatch<16> a, FloatBatch<16> b) { return _mm512_unpacklo_ps(a, b); }
 inline FloatBatch<16> zip_high(FloatBatch<16> a, FloatBatch<16> b) { return _mm512_unpackhi_ps(a, b); }
@@ -187,12 +228,16 @@ template <std::size_t N, typename At> FloatBatch<N> gather_fours(const At& at) {
             _mm512_insertf32x4(_mm512_insertf32x4(_mm512_castps128_ps512(four(0)), four(1), 1), four(2), 2), four(3),
             3);
 #endif
+#if XSIMD_WITH_AVX2
     if constexpr (N == 8) return _mm256_insertf128_ps(_mm256_castps128_ps256(four(0)), four(1), 1);
+#endif
     if constexpr (N == 4) return four(0);
 }
 /// Returns the i-th group of four lanes.
 template <int i> FloatBatch<4> four(FloatBatch<4> lanes) { return lanes; }
+#if XSIMD_WITH_AVX2
 template <int i> FloatBatch<4> four(FloatBatch<8> lanes) { return _mm256_extractf128_ps(lanes, i); }
+#endif
 #if XSIMD_WITH_AVX512F
 template <int i> FloatBatch<4> four(FloatBatch<16> lanes) { return _mm512_extractf32x4_ps(lanes, i); }
 #endif
@@ -245,8 +290,10 @@ template <typename Arch> float reduce_min(xsimd::batch<float, Arch> lanes) {
 #if XSIMD_WITH_AVX512F
     if constexpr (sizeof(lanes) == 64) return _mm512_reduce_min_ps(lanes);
 #endif
+#if XSIMD_WITH_AVX2
     if constexpr (sizeof(lanes) == 32)
         return reduce_min(FloatBatch<4>(_mm_min_ps(_mm256_castps256_ps128(lanes), _mm256_extractf128_ps(lanes, 1))));
+#endif
     if constexpr (sizeof(lanes) == 16) {
         const __m128 two = _mm_min_ps(lanes, _mm_movehl_ps(lanes, lanes));
         return _mm_cvtss_f32(_mm_min_ss(two, _mm_shuffle_ps(two, two, 1)));

@@ -1,8 +1,11 @@
 #include "raytrace/wavefront/batch.h"
 
+#include "common/vec/simd.h"
 #include "raytrace/integrator/path.h"
+#if XSIMD_WITH_AVX2
 #include "raytrace/wavefront/batch_lights.h"
 #include "raytrace/wavefront/batch_points.h"
+#endif
 
 #include <algorithm>
 #include <cstddef>
@@ -23,6 +26,8 @@ UsedDimensions used_dimensions(const RenderPlan& plan, BatchedSurfaces::BsdfKind
     return {rough, rough && plan.lights != nullptr,
             scattering == Scattering::kMetal || scattering == Scattering::kGlass, plan.russian_roulette && depth > 0};
 }
+
+#if XSIMD_WITH_AVX2 // else wavefront.cpp has no batches
 
 using namespace lanes;
 
@@ -205,5 +210,7 @@ void advance_batch(const RenderPlan& plan, BatchedSurfaces::Kind kind, std::span
         return advance(dielectric_bsdfs(paths));
     }
 }
+
+#endif
 
 } // namespace duet::raytrace

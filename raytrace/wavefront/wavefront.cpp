@@ -90,7 +90,8 @@ public:
 
 private:
     using Kind = BatchedSurfaces::Kind;
-    static constexpr std::size_t kMinBatch = 3; // fewest paths that are advanced as a batch
+    // The fewest paths that are advanced as a batch are more than the two that SSE4.2 has lanes for.
+    static constexpr std::size_t kMinBatch = 3;
 
     void advance(int depth) {
         if (depth == plan_.max_depth) return end(depth);
@@ -150,14 +151,15 @@ private:
     void advance_batches(Kind kind, std::span<const std::uint32_t> indices, int depth) {
         dimension_sampler_.draw(samplers_, indices, depth, used_dimensions(plan_, kind.bsdf_kind, depth),
                                 random_samples_);
-        for (; indices.size() >= kMinBatch; indices = indices.subspan(std::min(indices.size(), kPathLanes))) {
-            std::array<BatchPath, kPathLanes> some;
-            const std::size_t size = std::min(indices.size(), kPathLanes);
-            for (std::size_t k = 0; k < size; ++k) some[k] = batch_path(indices[k]);
-            advance_batch(plan_, kind, std::span(some).first(size), depth, shadows_, counts_);
-            for (std::size_t k = 0; k < size; ++k)
-                if (some[k].continues) active_.push_back(indices[k]);
-        }
+        if constexpr (kPathLanes >= kMinBatch)
+            for (; indices.size() >= kMinBatch; indices = indices.subspan(std::min(indices.size(), kPathLanes))) {
+                std::array<BatchPath, kPathLanes> some;
+                const std::size_t size = std::min(indices.size(), kPathLanes);
+                for (std::size_t k = 0; k < size; ++k) some[k] = batch_path(indices[k]);
+                advance_batch(plan_, kind, std::span(some).first(size), depth, shadows_, counts_);
+                for (std::size_t k = 0; k < size; ++k)
+                    if (some[k].continues) active_.push_back(indices[k]);
+            }
         for (const std::uint32_t i : indices) advance_alone(i, depth);
     }
 
