@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
     program.spp_help = "Samples per pixel (default 1: its center)";
     program.add_options = [&](CommandLine& command_line) {
         command_line.add("--shading", shading_name,
-                         raster::shading_names() + " (default: lit, by materials and lights)");
+                         raster::shading_list() + " (default: lit, by materials and lights)");
         command_line.add(
             "--msaa", options.multisamples,
             "Multisampling: coverage and depth at 2, 4, 8 or 16 samples a pixel, shading once a primitive (in place "

@@ -23,12 +23,16 @@ struct Camera {
     double shutter_open = 0, shutter_close = 1; ///< times as fractions of the objects' motion
 
     double near_distance() const { return near > 0 ? near : 1e-6 * length(look_at - eye); }
+
+    friend bool operator==(const Camera&, const Camera&) = default;
 };
 
 /// A view is a camera and the size of its image in pixels.
 struct View {
     Camera camera;
     int width = 0, height = 0;
+
+    friend bool operator==(const View&, const View&) = default;
 };
 
 /// A pinhole is the view through one point of the lens. The origin and the direction of a ray are affine functions of

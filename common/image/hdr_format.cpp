@@ -99,7 +99,7 @@ private:
         const char *at = text.data(), *end = at + text.size();
         const auto side = [&](std::string_view axis) {
             int length = 0;
-            if (!std::string_view(at, end).starts_with(axis))
+            if (!std::string_view(at, static_cast<std::size_t>(end - at)).starts_with(axis))
                 fail("a resolution line other than \"-Y height +X width\"");
             const auto [next, error] = std::from_chars(at + axis.size(), end, length);
             if (error != std::errc{}) fail("no size in its resolution line");

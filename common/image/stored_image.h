@@ -64,6 +64,11 @@ struct ImageBytes {
     std::string_view bytes;
 };
 
+/// ImageSize is a width and height in pixels.
+struct ImageSize {
+    int width, height;
+};
+
 /// Throws an Error unless both sides are in [1, kMaxImageSide] and the image has at most kMaxImagePixels pixels.
 void check_image_size(const std::string& name, long long width, long long height);
 /// Throws an Error with exit code 1 unless both sides are in [1, kMaxImageSide]. An image of any number of pixels can

@@ -2,6 +2,8 @@
 // command_line.cpp includes CLI11, because its header takes four seconds of every file that includes it.
 #pragma once
 
+#include "common/image/stored_image.h"
+
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -16,11 +18,6 @@ class Option;
 } // namespace CLI
 
 namespace duet {
-
-/// ImageSize is a width and height in pixels.
-struct ImageSize {
-    int width, height;
-};
 
 /// Parses an image size such as "640x480". Throws Error unless each side is in [1, kMaxRenderSide].
 ImageSize parse_image_size(std::string_view text);

@@ -161,12 +161,6 @@ void add_scene_options(CommandLine& program, SceneOptions& options) {
         .repeatable();
 }
 
-Scene load_scene(const std::filesystem::path& path, const SceneOptions& options) {
-    Scene scene = load_scene(path, options.up);
-    if (options.size.width > 0) scene.width = options.size.width, scene.height = options.size.height;
-    return scene;
-}
-
 int run_render_program(const RenderProgram& program, int argc, char** argv) {
     return run_program(program.name, [&] {
         CommandLine command_line(program.name, program.description);

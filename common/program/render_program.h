@@ -5,6 +5,7 @@
 #include "common/camera/camera.h"
 #include "common/image/stored_image.h"
 #include "common/program/command_line.h"
+#include "common/program/scene_options.h"
 #include "common/rendering.h"
 #include "common/scene/default_scene.h"
 #include "common/scene/scene.h"
@@ -20,16 +21,8 @@ namespace duet {
 /// A RenderFunction renders one prepared scene from any number of views.
 using RenderFunction = std::function<Rendering(const View&, Control&)>;
 
-/// SceneOptions say how a scene is loaded.
-struct SceneOptions {
-    ImageSize size{0, 0}; ///< 0 × 0: the scene's
-    UpAxis up = UpAxis::kGuessed;
-};
 /// Adds --size and --up. `options` must outlive the parsing.
 void add_scene_options(CommandLine& program, SceneOptions& options);
-/// Loads a scene like load_scene(path). Preparation depends on the size: the rasterizer renders no shadow map finer
-/// than the image can show.
-Scene load_scene(const std::filesystem::path& path, const SceneOptions& options);
 
 /// OutputOptions say where the images are written.
 struct OutputOptions {

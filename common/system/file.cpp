@@ -33,7 +33,7 @@ std::size_t file_size(std::ifstream& in, const fs::path& path) {
 
 } // namespace
 
-std::ifstream open_file(const fs::path& path, std::size_t limit) {
+std::ifstream open_file(const fs::path& path, std::uint64_t limit) {
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
     if (!fs::exists(status)) throw Error(message(path.string(), ": no such file"));
@@ -44,7 +44,7 @@ std::ifstream open_file(const fs::path& path, std::size_t limit) {
     return in;
 }
 
-std::string read_file(const fs::path& path, std::size_t limit) {
+std::string read_file(const fs::path& path, std::uint64_t limit) {
     std::ifstream in = open_file(path, limit);
     std::string bytes(file_size(in, path), '\0');
     in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -16,10 +17,10 @@ std::string lower_case_extension(const std::filesystem::path& path);
 
 /// Opens a regular file for reading its bytes. Throws an Error that names the path if the file is missing, is not a
 /// regular file, is larger than `limit` bytes or cannot be read.
-std::ifstream open_file(const std::filesystem::path& path, std::size_t limit = std::size_t{1} << 32);
+std::ifstream open_file(const std::filesystem::path& path, std::uint64_t limit = std::uint64_t{1} << 32);
 /// Returns the contents of a regular file. Throws an Error that names the path if the file is missing, is not a regular
 /// file, is larger than `limit` bytes or cannot be read.
-std::string read_file(const std::filesystem::path& path, std::size_t limit = std::size_t{1} << 32);
+std::string read_file(const std::filesystem::path& path, std::uint64_t limit = std::uint64_t{1} << 32);
 
 /// Calls write(temporary) with the path of a new file in the directory of `path`, then renames that file to `path`. The
 /// output is thus complete or absent, even if the program is killed. Throws an Error (exit code 1) if the rename fails,

@@ -1,7 +1,7 @@
 // A SceneDocument is a scene file that is being edited: its text, the camera, and every step that led there.
 #pragma once
 
-#include "common/program/render_program.h"
+#include "common/program/scene_options.h"
 #include "common/scene/file_cache.h"
 
 #include <filesystem>

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <tuple>
 
 namespace duet::compare {
 
@@ -24,14 +23,6 @@ constexpr double kPassSeconds = 0.3, kPassPart = 0.1;
 constexpr std::uint32_t kSamplesToReplace = 4;
 /// A pass adds at most this many samples per pixel, as passes of raytrace do.
 constexpr std::uint32_t kPassSamples = 16;
-
-bool same(const View& a, const View& b) {
-    const auto values = [](const Camera& c) {
-        return std::tie(c.projection, c.eye, c.look_at, c.up, c.fov_degrees, c.height, c.near, c.aperture_radius,
-                        c.focus_distance, c.shutter_open, c.shutter_close);
-    };
-    return a.width == b.width && a.height == b.height && values(a.camera) == values(b.camera);
-}
 
 Scene seen_in(const View& view, Scene scene) {
     scene.camera = view.camera;
@@ -124,7 +115,7 @@ void LiveView::show(const Wish& wish) {
     const LoadedScene scene = loaded();
     if (scene.raster) show_raster(wish, scene);
     if (!scene.raytrace || tracer_started_ == Started{wish.version, scene.raytrace->id, 1}) return;
-    const bool same_view = tracer_started_.prepared != 0 && same(wish.view, traced_view_);
+    const bool same_view = tracer_started_.prepared != 0 && wish.view == traced_view_;
     tracer_started_ = Started{wish.version, scene.raytrace->id, 1};
     traced_view_ = wish.view;
     tracer_.start([=, this](const std::atomic<bool>& stop) { render_traced(wish, scene, same_view, stop); });
@@ -133,7 +124,7 @@ void LiveView::show(const Wish& wish) {
 void LiveView::show_raster(const Wish& wish, const LoadedScene& scene) {
     const Started full{wish.version, scene.raster->id, 1};
     if (raster_started_ == full) {
-        const bool outdated = scene.raster->load != scene.load || !same(wish.view, scene_view(*scene.raster->scene));
+        const bool outdated = scene.raster->load != scene.load || !(wish.view == scene_view(*scene.raster->scene));
         const bool tried = prepared_for_.version == wish.version && prepared_for_.load == scene.load;
         if (!outdated || tried || raster_.busy() || loader_.busy()) return;
         prepared_for_ = {wish.version, scene.load};
@@ -236,7 +227,7 @@ bool LiveView::finished(const Wish& wish) const {
     if (loader_.busy()) return false;
     const std::lock_guard lock(mutex_);
     if (!loaded_.raster || loaded_.raster->load != loaded_.load || !raster_frame_ || !tracer_frame_ ||
-        !same(wish.view, scene_view(*loaded_.raster->scene)))
+        !(wish.view == scene_view(*loaded_.raster->scene)))
         return false;
     const bool raster = raster_frame_->version == wish.version && raster_frame_->prepared == loaded_.raster->id &&
                         raster_frame_->scale == 1;

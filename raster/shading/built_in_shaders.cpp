@@ -16,6 +16,7 @@ template <std::unique_ptr<ShaderProgram> (*make)()> std::unique_ptr<ShaderProgra
     return make();
 }
 
+// In the order of Shading.
 constexpr std::array kAll{BuiltInShader{"lit", Shading::kLit, nullptr},
                           BuiltInShader{"phong", Shading::kPhong, without_camera<phong_program>},
                           BuiltInShader{"gouraud", Shading::kGouraud, without_camera<gouraud_program>},
@@ -31,7 +32,13 @@ constexpr std::array kAll{BuiltInShader{"lit", Shading::kLit, nullptr},
 
 } // namespace
 
-std::string shading_names() {
+std::vector<std::string> shading_names() {
+    std::vector<std::string> names;
+    for (const BuiltInShader& shader : kAll) names.emplace_back(shader.name);
+    return names;
+}
+
+std::string shading_list() {
     std::string names;
     for (const BuiltInShader& shader : kAll)
         names += (shader.name == kAll.front().name  ? ""
@@ -44,7 +51,7 @@ std::string shading_names() {
 Shading parse_shading(std::string_view name) {
     for (const BuiltInShader& shader : kAll)
         if (shader.name == name) return shader.shading;
-    throw Error(message("shading: found ", name, ", expected ", shading_names()));
+    throw Error(message("shading: found ", name, ", expected ", shading_list()));
 }
 
 std::unique_ptr<ShaderProgram> built_in_program(Shading shading, const Camera& camera) {

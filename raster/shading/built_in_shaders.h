@@ -5,13 +5,17 @@
 #include "raster/shader/packet_shader.h"
 
 #include <memory>
+#include <string>
+#include <vector>
 
 namespace duet::raster {
 
 /// Returns the shading of a name that shading_names() lists ("lit", "phong" …). Throws Error for any other name.
 Shading parse_shading(std::string_view name);
-/// Returns the list of names, "lit, phong … or depth".
-std::string shading_names();
+/// Returns the names of all shadings, in the order of Shading.
+std::vector<std::string> shading_names();
+/// Returns the names as a list for people, "lit, phong … or depth".
+std::string shading_list();
 
 /// Returns the program of a shading for a camera; null for Shading::kLit, which has no program
 /// (raster/shading/sample_attributes.h).

@@ -1,8 +1,7 @@
 // The images of `compare view`, and the mouse on them.
 #include "common/scene/motion_bounds.h"
-#include "compare/metrics/flip.h"
-#include "compare/report/false_color.h"
 #include "compare/view/camera_control.h"
+#include "compare/view/image_comparison.h"
 #include "compare/view/window/app.h"
 #include "raytrace/pixel_debug.h"
 
@@ -22,40 +21,14 @@ constexpr double kWheelFactor = 0.9; // change of distance by a step of the whee
 constexpr double kFlyPerSecond = 1;  // distances per second
 constexpr float kClickPixels = 4;    // a click moves the pointer by less
 
-/// Returns FLIP of both images as they are shown: 0 is near white, 1 orange.
-Comparison flip_comparison(const ImageRgb& raster, const ImageRgb& traced, const ViewTransform& transform,
-                           int threads) {
-    const auto shown = [&](const ImageRgb& image) {
-        const std::vector<std::uint8_t> bytes = display_bytes(image, transform, threads);
-        ImageRgb encoded(image.width(), image.height());
-        for (std::size_t i = 0; i < encoded.size(); ++i)
-            encoded[i] = Rgb(bytes[3 * i], bytes[3 * i + 1], bytes[3 * i + 2]) / 255.0f;
-        return encoded;
-    };
-    const Flip result = flip(shown(raster), shown(traced), kFlipPixelsPerDegree, threads);
-    Comparison comparison{.width = raster.width(), .height = raster.height(), .figure = result.mean};
-    for (const float error : result.map) {
-        const Rgb color = diverging_color(static_cast<double>(error)) * 255.0f;
-        for (const float channel : {color.r, color.g, color.b})
-            comparison.bytes.push_back(static_cast<std::uint8_t>(std::lround(channel)));
-    }
-    return comparison;
-}
-
-Comparison signed_comparison(const ImageRgb& raster, const ImageRgb& traced, int threads) {
-    const double range = difference_range(raster, traced);
-    return {.bytes = display_bytes(difference_image(raster, traced, range), {}, threads),
-            .width = raster.width(),
-            .height = raster.height(),
-            .figure = range};
-}
-
 Comparison compared(const Comparison& begun, int threads) {
     const ImageRgb &a = begun.raster->rendering.radiance, &b = begun.traced->image;
-    Comparison result;
+    Comparison result{.width = a.width(), .height = a.height()};
     try {
-        result = begun.show == Show::kFlip ? flip_comparison(a, b, begun.view_transform, threads)
-                                           : signed_comparison(a, b, threads);
+        ImageComparison images = begun.show == Show::kFlip ? flip_comparison(a, b, begun.view_transform, threads)
+                                                           : signed_comparison(a, b, threads);
+        result.bytes = std::move(images.bytes);
+        result.figure = images.figure;
     } catch (const std::exception&) { // no memory: an image of one pixel
         result = {.bytes = {0, 0, 0}, .width = 1, .height = 1};
     }

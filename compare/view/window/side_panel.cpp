@@ -3,7 +3,8 @@
 
 #include "common/program/program.h"
 #include "common/system/error.h"
-#include "compare/report/text.h"
+#include "compare/view/inspect.h"
+#include "raster/shading/built_in_shaders.h"
 
 #include <cmath>
 
@@ -11,32 +12,12 @@ namespace duet::compare {
 
 namespace {
 
-std::string number(double value) { return significant(value, 4); }
-
-std::string color(Rgb c) {
-    const auto part = [](float x) { return number(static_cast<double>(x)); };
-    return message(part(c.r), " ", part(c.g), " ", part(c.b));
-}
-
 void row(const char* name, const std::string& value) {
     ImGui::TextDisabled("%s", name);
     ImGui::SameLine(110);
     ImGui::TextUnformatted(value.c_str());
 }
 
-std::string hit_text(const Scene& scene, const Hit& hit) {
-    if (!hit.valid()) return "nothing";
-    return message(scene.objects[hit.object].name, ", primitive ", hit.primitive, ", ",
-                   number(static_cast<double>(hit.t)), " m");
-}
-
-std::string material_text(const Scene& scene, const Hit& hit) {
-    return scene.material_names[material_index(scene, hit.object, hit.primitive)];
-}
-
-// The names of raster::Shading, in its order.
-constexpr std::array<const char*, 11> kShadingNames{"lit",   "phong", "gouraud", "flat",   "toon", "wireframe",
-                                                    "lines", "edges", "normal",  "albedo", "depth"};
 constexpr std::array kIntegrators{raytrace::Integrator::kPath,    raytrace::Integrator::kNaive,
                                   raytrace::Integrator::kWhitted, raytrace::Integrator::kBidirectional,
                                   raytrace::Integrator::kVcm,     raytrace::Integrator::kPhotons};
@@ -88,9 +69,9 @@ void App::draw_display() {
     int show = static_cast<int>(show_);
     if (ImGui::Combo("show", &show, kShowNames.data(), kShowNames.size())) show_ = static_cast<Show>(show);
     if (show_ == Show::kDifference && shown_comparison_ && shown_comparison_->show == show_)
-        row("full color", "luminance " + number(shown_comparison_->figure));
+        row("full color", "luminance " + number_text(shown_comparison_->figure));
     if (show_ == Show::kFlip && shown_comparison_ && shown_comparison_->show == show_)
-        row("mean FLIP", number(shown_comparison_->figure));
+        row("mean FLIP", number_text(shown_comparison_->figure));
     ImGui::SliderFloat("exposure", &view_transform_.exposure, -8, 8, "%.2f EV");
     const std::string now(kToneNames[static_cast<std::size_t>(view_transform_.tone)]);
     if (!ImGui::BeginCombo("tone", now.c_str())) return;
@@ -106,10 +87,14 @@ void App::draw_renderers() {
         ImGui::EndCombo();
     }
     ImGui::BeginDisabled(quantity_ != kWholeImage);
-    int shading = static_cast<int>(settings_.raster.shading);
-    if (ImGui::Combo("raster", &shading, kShadingNames.data(), kShadingNames.size())) {
-        settings_.raster.shading = static_cast<raster::Shading>(shading);
-        use_settings();
+    const std::vector<std::string> shadings = raster::shading_names();
+    if (ImGui::BeginCombo("raster", shadings[static_cast<std::size_t>(settings_.raster.shading)].c_str())) {
+        for (const std::string& shading : shadings) {
+            if (!ImGui::Selectable(shading.c_str())) continue;
+            settings_.raster.shading = raster::parse_shading(shading);
+            use_settings();
+        }
+        ImGui::EndCombo();
     }
     const std::string name(raytrace::integrator_name(settings_.raytrace.integrator));
     if (ImGui::BeginCombo("path tracer", name.c_str())) {
@@ -167,11 +152,11 @@ void App::draw_inspector() {
                      std::min(y * image.height() / wish_.view.height, image.height() - 1));
     };
     if (shown_raster_ && shown_raster_->error.empty()) {
-        row("raster", color(at_pointer(shown_raster_->rendering.radiance)));
+        row("raster", color_text(at_pointer(shown_raster_->rendering.radiance)));
         if (!shown_raster_->rendering.hit.empty() && shown_raster_->prepared == loaded.raster->id)
             row("its hit", hit_text(*loaded.raster->scene, at_pointer(shown_raster_->rendering.hit)));
     }
-    if (shown_traced_ && shown_traced_->error.empty()) row("path tracer", color(at_pointer(shown_traced_->image)));
+    if (shown_traced_ && shown_traced_->error.empty()) row("path tracer", color_text(at_pointer(shown_traced_->image)));
     const Hit hit = trace(loaded.raytrace->prepared, CameraModel(wish_.view).ray({x + 0.5, y + 0.5}));
     row("its hit", hit_text(*loaded.scene, hit));
     if (hit.valid()) row("material", material_text(*loaded.scene, hit));
@@ -202,7 +187,7 @@ void App::draw_timings() {
     row("path tracer", message(shown_traced_->preview ? "first look" : message(shown_traced_->samples, " samples"),
                                ", ", format_duration(shown_traced_->seconds), live_.paused() ? ", paused" : ""));
     if (shown_traced_->estimated_relmse < 0) return;
-    row("relMSE", number(shown_traced_->estimated_relmse) + " (estimated)");
+    row("relMSE", number_text(shown_traced_->estimated_relmse) + " (estimated)");
     draw_curve();
 }
 
@@ -225,8 +210,8 @@ void App::draw_curve() {
              low.y + size.y * static_cast<float>(std::log(top / error) / height)});
     list.AddPolyline(points.data(), static_cast<int>(points.size()), IM_COL32(255, 190, 90, 255), ImDrawFlags_None, 2);
     list.AddText({low.x + 4, low.y + size.y - 18}, IM_COL32(160, 160, 165, 255),
-                 message(number(top), " to ", number(bottom), ", ", number(curve.front().first), " to ",
-                         number(curve.back().first), " s")
+                 message(number_text(top), " to ", number_text(bottom), ", ", number_text(curve.front().first), " to ",
+                         number_text(curve.back().first), " s")
                      .c_str());
 }
 

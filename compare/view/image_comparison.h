@@ -1,0 +1,24 @@
+// The difference of two images in false color, for a window.
+#pragma once
+
+#include "common/image/image.h"
+#include "common/image/view_transform.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace duet::compare {
+
+/// The difference of two images in false color.
+struct ImageComparison {
+    std::vector<std::uint8_t> bytes{}; ///< as display_bytes() returns them
+    double figure = 0;                 ///< signed difference: luminance of full orange or blue; FLIP: the mean
+};
+
+/// Returns a − b in luminance: blue where a is darker, orange where it is brighter. Throws Error for images of
+/// different sizes; so does flip_comparison().
+ImageComparison signed_comparison(const ImageRgb& a, const ImageRgb& b, int threads);
+/// Returns FLIP of both images as they are shown: 0 is near white, 1 orange.
+ImageComparison flip_comparison(const ImageRgb& a, const ImageRgb& b, const ViewTransform& transform, int threads);
+
+} // namespace duet::compare
