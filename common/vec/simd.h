@@ -20,7 +20,7 @@
 #endif
 
 #if !XSIMD_WITH_SSE4_2 || (XSIMD_WITH_AVX && !(XSIMD_WITH_AVX2 && defined(__FMA__)))
-#error "Duet has code for SSE4.2, for AVX2 with fused multiply-add, and for AVX-512: set DUET_ARCH to x86-64-v2, -v3 or -v4"
+#error "Duet has code for SSE4.2, AVX2 with fused multiply-add, and AVX-512: set DUET_ARCH to x86-64-v2, -v3 or -v4"
 #endif
 
 namespace duet {
@@ -46,8 +46,8 @@ inline constexpr std::size_t kMaxSimdLanes = kSimdLanes;
 using DoubleBatch = xsimd::batch<double>;
 inline constexpr std::size_t kDoubleLanes = sizeof(DoubleBatch) / sizeof(double);
 
-/// A narrow batch has as many float lanes as a DoubleBatch has lanes. With SSE4.2, which has no batch of two floats, its
-/// upper two lanes are 0 and mean nothing.
+/// A narrow batch has as many float lanes as a DoubleBatch has lanes. With SSE4.2, which has no batch of two floats,
+/// its upper two lanes are 0 and mean nothing.
 using NarrowBatch = FloatBatch<kDoubleLanes == 2 ? 4 : kDoubleLanes>;
 
 /// Widens each lane to double, which is exact.
@@ -75,7 +75,7 @@ inline DoubleBatch load_doubles(const float* from) {
 #if XSIMD_WITH_AVX2
     return to_doubles(NarrowBatch::load_unaligned(from));
 #else
-    return to_doubles(_mm_castpd_ps(_mm_load_sd(reinterpret_cast<const double*>(from))));
+    return to_doubles(_mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(from))));
 #endif
 }
 /// Rounds the doubles to floats and stores kDoubleLanes of them. The address needs no alignment.
@@ -83,7 +83,7 @@ inline void store_floats(DoubleBatch batch, float* to) {
 #if XSIMD_WITH_AVX2
     to_floats(batch).store_unaligned(to);
 #else
-    _mm_store_sd(reinterpret_cast<double*>(to), _mm_castps_pd(to_floats(batch)));
+    _mm_storel_epi64(reinterpret_cast<__m128i*>(to), _mm_castps_si128(to_floats(batch)));
 #endif
 }
 
@@ -94,8 +94,8 @@ inline constexpr bool kFusedMultiplyAdd = true;
 inline constexpr bool kFusedMultiplyAdd = false;
 #endif
 
-/// Returns a·b + c, rounded once where the CPU can. The intrinsics are needed because version 8 of xsimd rounds twice for
-/// 16 or 4 lanes.
+/// Returns a·b + c, rounded once where the CPU can. The intrinsics are needed because version 8 of xsimd rounds twice
+/// for 16 or 4 lanes.
 template <typename Arch>
 xsimd::batch<float, Arch> multiply_add(xsimd::batch<float, Arch> a, xsimd::batch<float, Arch> b,
                                        xsimd::batch<float, Arch> c) {

@@ -88,7 +88,7 @@ inline void finish_streams() { _mm_sfence(); }
 /// Returns whether an address begins a cache line of 64 bytes.
 inline bool is_line_start(const void* address) { return reinterpret_cast<std::uintptr_t>(address) % 64 == 0; }
 
-/// Returns the dot products of one batch of vectors, by fused multiply-add.
+/// Returns the dot products of one batch of vectors.
 inline Floats dot(const Vec3T<Floats>& a, const Vec3T<Floats>& b) {
     return multiply_add(a.x, b.x, multiply_add(a.y, b.y, Floats(a.z * b.z)));
 }
@@ -102,12 +102,7 @@ inline Floats narrowed(const Doubles& low, const Doubles& high) {
 #elif defined(__AVX__)
     return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm256_cvtpd_ps(low)), _mm256_cvtpd_ps(high), 1);
 #else
-    alignas(64) std::array<double, Floats::size> wide;
-    alignas(64) std::array<float, Floats::size> result;
-    low.store_aligned(wide.data());
-    high.store_aligned(wide.data() + Doubles::size);
-    for (std::size_t i = 0; i < Floats::size; ++i) result[i] = static_cast<float>(wide[i]);
-    return Floats::load_aligned(result.data());
+    return _mm_movelh_ps(_mm_cvtpd_ps(low), _mm_cvtpd_ps(high));
 #endif
 }
 
@@ -118,10 +113,7 @@ inline Doubles round_to_float(const Doubles& value) {
 #elif defined(__AVX__)
     return _mm256_cvtps_pd(_mm256_cvtpd_ps(value));
 #else
-    alignas(64) std::array<double, Doubles::size> wide;
-    value.store_aligned(wide.data());
-    for (double& x : wide) x = static_cast<double>(static_cast<float>(x));
-    return Doubles::load_aligned(wide.data());
+    return _mm_cvtps_pd(_mm_cvtpd_ps(value));
 #endif
 }
 
@@ -132,9 +124,7 @@ inline void store_ints(const Doubles& value, std::int32_t* to) {
 #elif defined(__AVX__)
     _mm_storeu_si128(reinterpret_cast<__m128i*>(to), _mm256_cvtpd_epi32(value));
 #else
-    std::array<double, Doubles::size> wide;
-    value.store_unaligned(wide.data());
-    for (std::size_t i = 0; i < wide.size(); ++i) to[i] = static_cast<std::int32_t>(wide[i]);
+    _mm_storel_epi64(reinterpret_cast<__m128i*>(to), _mm_cvtpd_epi32(value));
 #endif
 }
 
