@@ -16,9 +16,9 @@ struct DepthTile::TileEdges {
     Values at; ///< at the tile's first sample
     Values right, down; ///< increments from block to block
     /// These are thresholds for the value at a block's first sample. Below `none`, no sample of the block is inside.
-    /// From `all` on, all samples are well inside. Both have a margin for float rounding. Each of six roundings has
-    /// an error of at most half a unit in the last place of the largest value in the tile. So a block may be tested
-    /// in vain, but none is missed.
+    /// From `all` on, all samples are well inside. Both have a margin for float rounding. Each of seven roundings
+    /// (six with fused multiply-add) has an error of at most half a unit in the last place of the largest value in the
+    /// tile, and the margin has room for sixteen. So a block may be tested in vain, but none is missed.
     std::array<float, 3> none, all;
     std::array<std::int32_t, 3> margin; ///< edge_margins
     std::array<PacketOf<std::int32_t>, 3> step; ///< from the first sample of a packet

@@ -60,12 +60,13 @@ private:
     using Ds = xsimd::batch<D>;
     static constexpr std::size_t kParts = Floats::size / Ds::size;
 
-    /// The value of a plane at (x, y) relative to its origin has an error of at most 3ε·M, where ε is half a unit
-    /// in the last packet and M = steepest·(|x| + |y|) + greatest: each coefficient is rounded once, and so are both
-    /// fused steps. The third barycentric, Σe minus the other two, accumulates three of these errors and two
-    /// roundings of less than 4ε·M: 17ε·M in all.
+    /// The value of a plane at (x, y) relative to its origin has an error of at most 4ε·M, where ε is half a unit
+    /// in the last place and M = steepest·(|x| + |y|) + greatest: the coefficients, their products (which fused
+    /// multiply-add does not round) and both sums are rounded, each with an error of at most ε·M. The third
+    /// barycentric, Σe minus the other two, accumulates three of these errors and two roundings of less than 4ε·M:
+    /// 20ε·M in all.
     static constexpr D kError = 16 * std::numeric_limits<D>::epsilon(); // 32ε
-    /// The upper bound of M/Σe limits the error of the barycentrics e/Σe, which is 6ε·M/Σe and two roundings.
+    /// The upper bound of M/Σe limits the error of the barycentrics e/Σe, which is 8ε·M/Σe and two roundings.
     static constexpr D kSteepest = Setups::kSteepest;
 
     void set_grid(SampleOffset offset);

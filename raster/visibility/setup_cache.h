@@ -274,8 +274,8 @@ template <VertexShader S, typename D> void SetupCache<S, D>::set_up_directions(s
 
 /// Returns one bit per triangle of the batch from the i-th on, set if the cosine between ng and each corner's
 /// normal exceeds kMinCosine. The interpolated normal then has at least this length, so its direction has an
-/// error of at most 40ε·kSteepest / kMinCosine, 2^-8 (mostly less than 2^-12, because steep planes and inclined
-/// normals seldom coincide).
+/// error of at most 45ε·kSteepest / kMinCosine, about 2^-7.5 (40ε with fused multiply-add; mostly less than 2^-12,
+/// because steep planes and inclined normals seldom coincide).
 template <VertexShader S, typename D>
 std::uint32_t SetupCache<S, D>::facing(std::size_t i, const Corners& corners, const Setups& of) const {
     const Vec3T<Floats> ng =

@@ -11,7 +11,8 @@ namespace duet::raytrace {
 /// These error bounds make box tests conservative: slab distances are lower and upper bounds of the distances that
 /// the tests of primitives compute. The origin is moved by more than the rounding of both tests, in proportion to
 /// the size of the whole hierarchy as seen from there. (Woop et al. count 5 roundings, the triangle's distance has 6
-/// more, and the fused form plane·(1/d) − origin·(1/d) adds another of each; this bound has room for 16.)
+/// more, the form plane·(1/d) − origin·(1/d) adds another of each, and its first product is rounded, too, where the CPU
+/// lacks fused multiply-add; this bound has room for 16.)
 struct SlabError {
     /// The margin of box tests, relative to the sizes of the coordinates.
     static constexpr float kRelative = 0x1p-20f;
@@ -28,7 +29,7 @@ struct SlabError {
     }
     /// Returns the number whose reciprocal scales distances along one axis. `size` is the absolute component of the
     /// direction, and `greatest_size` the largest over all three axes. No product of the reciprocal with `coordinates`
-    /// is infinite, because the fused form would take it for the distance of a plane.
+    /// is infinite, because it would be taken for the distance of a plane.
     template <typename B> static B divisor(B size, B greatest_size, B coordinates) {
         return max(max(size, greatest_size * B(kSmallest)), max(coordinates * B(0x1p-120f), B(0x1p-125f)));
     }
