@@ -13,7 +13,9 @@ namespace {
 
 /// The levels of the x86-64 psABI, by the instructions that Duet's code and its compilers use of them.
 std::string cpu_level() {
-    if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma") || !__builtin_cpu_supports("bmi2")) return "";
+    if (!__builtin_cpu_supports("sse4.2") || !__builtin_cpu_supports("popcnt")) return "";
+    if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma") || !__builtin_cpu_supports("bmi2"))
+        return "x86-64-v2";
     const bool v4 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
                     __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
                     __builtin_cpu_supports("avx512vl");
@@ -27,14 +29,14 @@ int main(int, char** argv) {
     const char* const wanted = std::getenv("DUET_LEVEL");
     const std::string level = wanted != nullptr ? wanted : cpu_level();
     if (level.empty()) {
-        std::cerr << self.filename().string() << ": this CPU lacks AVX2 or fused multiply-add. Duet needs both "
-                  << "(x86-64-v3: Intel since 2013, AMD since 2015)\n";
+        std::cerr << self.filename().string() << ": this CPU lacks SSE4.2, which Duet needs "
+                  << "(x86-64-v2: Intel since 2008, AMD since 2011)\n";
         return 2;
     }
     const std::filesystem::path program = self.parent_path().parent_path() / "lib/duet" / level / self.filename();
     execv(program.c_str(), argv);
     std::cerr << self.filename().string() << ": cannot start " << program.string() << ": " << std::strerror(errno)
-              << (wanted != nullptr ? ". Set DUET_LEVEL to x86-64-v3 or x86-64-v4, or unset it\n"
+              << (wanted != nullptr ? ". Set DUET_LEVEL to x86-64-v2, -v3 or -v4, or unset it\n"
                                     : ". Reinstall the package\n");
     return 1;
 }

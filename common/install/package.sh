@@ -1,5 +1,5 @@
 #!/bin/sh
-# Builds the programs for x86-64-v3 and x86-64-v4, and from both a Debian package: build/duet_VERSION_amd64.deb.
+# Builds the programs for x86-64-v2, -v3 and -v4, and from all a Debian package: build/duet_VERSION_amd64.deb.
 # Programs that compute tables run during the build, so the CPU must have AVX-512. Like setup.sh, it installs what is
 # missing.
 # usage: sh common/install/package.sh
@@ -9,7 +9,7 @@ if ! grep -q avx512vl /proc/cpuinfo; then
     echo "package: this CPU lacks AVX-512, which the build of x86-64-v4 needs. Build on one that has it" >&2
     exit 1
 fi
-for preset in package-v4 package-v3; do
+for preset in package-v4 package-v3 package-v2; do
     sh common/setup.sh $preset dpkg-dev
     cmake --build --preset $preset
 done

@@ -48,14 +48,15 @@ complete() {
 # A launcher starts the program of its name and of the CPU's level, or of DUET_LEVEL. Scripts stand for the programs.
 package=$scratch/package
 expect 0 cmake --install "$build" --prefix "$package" --component launchers
-for level in x86-64-v3 x86-64-v4; do
+for level in x86-64-v2 x86-64-v3 x86-64-v4; do
     mkdir -p "$package/lib/duet/$level"
     printf '#!/bin/sh\necho "%s $# $2"\nexit 7\n' $level >"$package/lib/duet/$level/raytrace"
     chmod +x "$package/lib/duet/$level/raytrace"
     expect 7 env DUET_LEVEL=$level "$package/bin/raytrace" a 'b c'
     [ "$(cat "$scratch/stdout")" = "$level 2 b c" ] || fail "the launcher started: $(cat "$scratch/stdout")"
 done
-best=x86-64-v3
+best=x86-64-v2
+! grep -q '^flags.*fma.*avx2.*bmi2' /proc/cpuinfo || best=x86-64-v3
 ! grep -q '^flags.*avx512f.*avx512dq.*avx512cd.*avx512bw.*avx512vl' /proc/cpuinfo || best=x86-64-v4
 expect 7 env -u DUET_LEVEL "$package/bin/raytrace" a
 [ "$(cat "$scratch/stdout")" = "$best 1 " ] || fail "this CPU has $best; the launcher started: $(cat "$scratch/stdout")"
@@ -63,11 +64,11 @@ ln -s "$package/bin/raytrace" "$scratch/link"
 expect 7 "$scratch/link" a
 expect 1 env DUET_LEVEL=x86-64-v3 "$package/bin/raster"
 one_line_error "x86-64-v3/raster: No such file or directory"
-one_line_error "Set DUET_LEVEL to x86-64-v3 or x86-64-v4"
+one_line_error "Set DUET_LEVEL to x86-64-v2, -v3 or -v4"
 expect 1 env -u DUET_LEVEL "$package/bin/raster"
 one_line_error "Reinstall the package"
 expect 2 env DUET_LEVEL= "$package/bin/raster"
-one_line_error "lacks AVX2"
+one_line_error "lacks SSE4.2"
 gzip -dc "$package/share/doc/duet/changelog.gz" | grep -q '^duet (' || fail "the changelog lacks the package's name"
 grep -q 'BSD-3-clause' "$package/share/doc/duet/copyright" || fail "copyright lacks the libraries' licenses"
 finish
