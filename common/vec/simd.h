@@ -131,6 +131,25 @@ inline DoubleBatch multiply_add(DoubleBatch a, DoubleBatch b, DoubleBatch c) {
 }
 inline float multiply_add(float a, float b, float c) { return kFusedMultiplyAdd ? std::fma(a, b, c) : a * b + c; }
 
+/// Returns a·b − c·d, which cancels where the products are close: at most one product is rounded. Without fused
+/// multiply-add the computation is in double, where products of floats are exact.
+inline float product_difference(float a, float b, float c, float d) {
+    if constexpr (kFusedMultiplyAdd) return multiply_add(a, b, -(c * d));
+    return static_cast<float>(static_cast<double>(a) * static_cast<double>(b) -
+                              static_cast<double>(c) * static_cast<double>(d));
+}
+template <typename Arch>
+xsimd::batch<float, Arch> product_difference(xsimd::batch<float, Arch> a, xsimd::batch<float, Arch> b,
+                                             xsimd::batch<float, Arch> c, xsimd::batch<float, Arch> d) {
+#if defined(__FMA__)
+    return multiply_add(a, b, -(c * d));
+#else
+    const DoubleBatch low = to_doubles(a) * to_doubles(b) - to_doubles(c) * to_doubles(d);
+    const auto high = [](__m128 lanes) { return to_doubles(NarrowBatch(_mm_movehl_ps(lanes, lanes))); };
+    return _mm_movelh_ps(to_floats(low), to_floats(high(a) * high(b) - high(c) * high(d)));
+#endif
+}
+
 /// Returns a bit mask of the lanes that are true. Bit i belongs to lane i.
 template <typename Arch> unsigned lane_bits(xsimd::batch_bool<float, Arch> lanes) {
 #if XSIMD_WITH_AVX512F

@@ -19,7 +19,7 @@ namespace polygon {
 
 /// Returns the z component of a × b.
 template <typename T> T cross_z(const Vec3T<T>& a, const Vec3T<T>& b) {
-    return multiply_add(a.x, b.y, T(-(a.y * b.x)));
+    return product_difference(a.x, b.y, a.y, b.x);
 }
 /// Returns 1 / |a|, and 1e15 for vectors shorter than 1e-15.
 template <typename T> T inverse_length(const Vec3T<T>& a) { return inverse_sqrt(max(T(dot(a, a)), T(1e-30f))); }
