@@ -41,7 +41,11 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
             }
         }
     };
+#if defined(__EMSCRIPTEN__) // the web page's build has no threads
+    constexpr int workers = 1;
+#else
     const int workers = threads > 0 ? threads : available_threads();
+#endif
     std::vector<std::thread> others;
     for (int i = 1; i < workers; ++i) others.emplace_back(work);
     work();

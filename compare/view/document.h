@@ -50,6 +50,8 @@ public:
     /// Returns a function that makes the scene of the present text, once, and can run on another thread. Only one of
     /// them may run at a time: they share a cache of meshes and images.
     std::function<Scene()> reader();
+    /// Returns the scene of another text for this file, and changes nothing. Throws Error if it is no valid scene.
+    Scene parsed(const std::string& text) { return parse_scene(path_, text, *cache_); }
 
 private:
     struct State {
