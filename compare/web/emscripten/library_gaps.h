@@ -45,13 +45,13 @@ enable_if_t<is_floating_point_v<Number>, from_chars_result> from_chars(const cha
                       }));
     char* end = nullptr;
     errno = 0;
-    Number number = 0;
+    double number = 0;
     if (!text.empty() && text[0] != '+')
-        number = static_cast<Number>(is_same_v<Number, float> ? strtof(text.c_str(), &end) : strtod(text.c_str(), &end));
+        number = is_same_v<Number, float> ? strtof(text.c_str(), &end) : strtod(text.c_str(), &end);
     if (end == nullptr || end == text.c_str()) return {first, errc::invalid_argument};
     const char* const next = first + (end - text.c_str());
     if (errno == ERANGE) return {next, errc::result_out_of_range};
-    value = number;
+    value = static_cast<Number>(number);
     return {next, errc()};
 }
 
