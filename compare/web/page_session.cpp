@@ -301,19 +301,22 @@ struct PageCommands {
     static Json duplicate(Session& s, const Json& command) {
         return edited(s, [&](const std::string& text) { return duplicated(text, path_of(command)); });
     }
-    // {"path", "by": [x, y, z]}: moves an element of "objects" or "lights". {"path", "right", "up"}: moves an element
-    // of "objects" parallel to the image, by parts of its height.
+    // {"path", "by": [x, y, z]}: moves an element of "objects" or "lights". {"path", "right", "up", "pixel": [x, y]}:
+    // moves it parallel to the image, by parts of the height, so that the point that the pixel shows follows.
     static Json move(Session& s, const Json& command) {
         const JsonPath path = path_of(command);
         Vec3d by;
         if (command.contains("by")) {
             by = vector_of(command["by"]);
         } else {
-            // The camera that pans the other way shows the object where the drag has moved it.
+            const Ray ray = s.ray_through(command.at("pixel"));
+            const Hit hit = raytrace::trace(s.path_tracer_scene(), ray);
+            if (!hit.valid()) throw Error("there is no object at this pixel");
+            // A camera that looks at the point's depth pans by what the image shows there.
             Camera camera = s.document().camera();
-            camera.look_at = camera.eye + normalize(camera.look_at - camera.eye) *
-                                              std::max(1e-9, dot(Vec3d(s.bounds_of(path).center()) - camera.eye,
-                                                                 normalize(camera.look_at - camera.eye)));
+            const Vec3d forward = normalize(camera.look_at - camera.eye);
+            const Vec3d point = Vec3d(ray.origin) + static_cast<double>(hit.t) * Vec3d(ray.direction);
+            camera.look_at = camera.eye + forward * dot(point - camera.eye, forward);
             by = pan(camera, command.at("right"), command.at("up")).eye - camera.eye;
         }
         return edited(s, [&](const std::string& text) { return moved(text, path, by); });

@@ -52,7 +52,8 @@ $('frame').addEventListener('pointerdown', event => {
     const moves = event.altKey && selected >= 0;
     const what = event.target === $('split') ? 'split' : moves ? 'object'
         : event.shiftKey || event.button === 1 ? 'pan' : event.ctrlKey ? 'look' : 'orbit';
-    drag = {what, pointer: event.pointerId, x: event.clientX, y: event.clientY, right: 0, up: 0, moved: false};
+    drag = {what, pixel: pixelAt(event), pointer: event.pointerId, x: event.clientX, y: event.clientY,
+            right: 0, up: 0, moved: false};
     $('frame').setPointerCapture(event.pointerId);
     event.preventDefault();
     (what === 'split' ? $('split') : $('stage')).focus();
@@ -83,7 +84,7 @@ function endDrag(event, isCancelled) {
     const done = drag;
     drag = null;
     if (done.what === 'object' && done.moved && !isCancelled)
-        send({do: 'move', path: objectPath(), right: done.right, up: done.up});
+        send({do: 'move', path: objectPath(), right: done.right, up: done.up, pixel: done.pixel});
     else if (done.what === 'orbit' && !done.moved && !isCancelled) selectAt(pixelAt(event));
     else if (['orbit', 'pan', 'look'].includes(done.what) && done.moved) moveCamera({commit: true});
 }

@@ -84,7 +84,8 @@ TEST_SUITE("unit") {
 
         page.both({{"do", "camera"}, {"orbit", {0.2, 0.1}}});
         page.both({{"do", "camera"}, {"dolly", 1.1}, {"commit", true}});
-        const Json moved = page.both({{"do", "move"}, {"path", {"objects", "0"}}, {"by", {0.1, 0, 0}}});
+        const Json moved =
+            page.both({{"do", "move"}, {"path", {"objects", "5"}}, {"right", 0.1}, {"up", 0}, {"pixel", {30.5, 30.5}}});
         CHECK(moved["changed"] == true);
         check_images(page);
         CHECK(read_file(page.scene(), 1 << 20) != file);
