@@ -396,16 +396,18 @@ struct PageCommands {
     }
 
     // {"scale", "rest"}: renders with the rasterizer, at a part of the width; at rest, prepared for this camera and
-    // with more samples
+    // with more samples. A scene that is not prepared yet is seen in Phong shading first, which needs no probes.
     static Json raster(Session& s, const Json& command) {
         Session::Prepared& scene = s.prepared();
         const bool rest = command.value("rest", true);
         if (rest && !(scene.scene.camera == s.document().camera())) scene.raster.reset();
-        const Stopwatch prepare;
-        const raster::RasterScene& ready = s.raster_scene();
-        const double prepare_seconds = prepare.seconds();
         raster::RasterSettings settings = s.settings_.raster;
         if (!rest) settings.samples_per_pixel = 1;
+        const bool preview = !rest && !scene.raster;
+        if (preview && settings.shading == raster::Shading::kLit) settings.shading = raster::Shading::kPhong;
+        const Stopwatch prepare;
+        const raster::RasterScene ready = preview ? raster::prepare(scene.scene, settings) : s.raster_scene();
+        const double prepare_seconds = prepare.seconds();
         Control control;
         const Stopwatch watch;
         Rendering rendering = render(ready, scaled(s.view(), command.value("scale", 1.0)), settings, control);
@@ -415,6 +417,7 @@ struct PageCommands {
         Json result = s.shown();
         result["seconds"] = seconds;
         result["prepare"] = prepare_seconds;
+        result["preview"] = preview;
         for (const auto& [stage, time] : rendering.statistics.seconds) result["stages"][stage] = time;
         return result;
     }

@@ -32,7 +32,7 @@ function drawSplit() {
     $('split').hidden = together || $('show').value !== 'split';
     $('split').style.left = `${at}%`;
     $('split').setAttribute('aria-valuenow', Math.round(at));
-    if (!together) $('left-tag').textContent = 'rasterizer';
+    if (!together) $('left-tag').textContent = raster.frame?.preview ? 'rasterizer, preview' : 'rasterizer';
     $('right-tag').textContent = $('pause').checked ? 'path tracer, paused' : 'path tracer';
     $('left-tag').hidden = at === 0 && !together;
     $('right-tag').hidden = at === 100 || together;
@@ -45,7 +45,7 @@ let compareAgain = false;   // an image has come meanwhile
 async function compareImages() {
     compareAgain = comparing;
     const r = raster.frame, t = tracer.frame;
-    if (!compares() || comparing || !r || !t || r.version !== t.version) return;
+    if (!compares() || comparing || !r || !t || r.version !== t.version || r.preview) return;
     if (r.width !== t.width || r.height !== t.height) return;
     comparing = true;
     const show = $('show').value;

@@ -51,6 +51,7 @@ class Pipeline {
         const pixels = new ImageData(new Uint8ClampedArray(frame.pixels), frame.width, frame.height);
         this.canvas.getContext('2d').putImageData(pixels, 0, 0);
         if (this === tracer && frame.relmse > 0) addToCurve(frame);
+        drawSplit();
         showTimes();
         compareImages();
         if ($('message').textContent.endsWith('…')) say(''); // it was loading

@@ -81,12 +81,14 @@ TEST_SUITE("unit") {
         const std::string file = read_file(page.scene(), 1 << 20);
         check_images(page);
         CHECK(read_file(page.scene(), 1 << 20) == file);
+        CHECK(page.raster.call({{"do", "raster"}, {"rest", false}})["preview"] == false);
 
         page.both({{"do", "camera"}, {"orbit", {0.2, 0.1}}});
         page.both({{"do", "camera"}, {"dolly", 1.1}, {"commit", true}});
         const Json moved =
             page.both({{"do", "move"}, {"path", {"objects", "5"}}, {"right", 0.1}, {"up", 0}, {"pixel", {30.5, 30.5}}});
         CHECK(moved["changed"] == true);
+        CHECK(page.raster.call({{"do", "raster"}, {"rest", false}, {"scale", 0.5}})["preview"] == true);
         check_images(page);
         CHECK(read_file(page.scene(), 1 << 20) != file);
 
