@@ -25,7 +25,11 @@ async function session(createDuet, pipeline, models) {
     copyFolder(module, models, '/models');
     module._duet_start(pipeline, 0);
     return command => {
-        const answer = JSON.parse(module.ccall('duet_call', 'string', ['string'], [JSON.stringify(command)]));
+        const text = Buffer.from(JSON.stringify(command) + '\0');
+        const at = module._malloc(text.length);
+        module.HEAPU8.set(text, at);
+        const answer = JSON.parse(module.UTF8ToString(module._duet_call(at)));
+        module._free(at);
         if (answer.error) throw new Error(`${command.do}: ${answer.error}`);
         return answer;
     };
@@ -40,6 +44,7 @@ async function main(duetJs, models, size, seconds, scenes) {
             call({do: 'open', file: `/models/${scene}.json`});
             call({do: 'size', width, height});
         }
+        raster({do: 'raster'}); // prepares the scene
         const frames = Array.from({length: 5}, () => raster({do: 'raster', rest: false}).seconds).sort((a, b) => a - b);
         let image = traced({do: 'trace', seconds: 1, preview: false});
         while (image.seconds < seconds) image = traced({do: 'trace', seconds: 1});
@@ -53,4 +58,7 @@ if (scenes.length === 0) {
     console.error('usage: node compare/web/bench.js DUET_JS MODELS WIDTHxHEIGHT SECONDS SCENE…');
     process.exit(2);
 }
-main(duetJs, models, size, Number(seconds), scenes);
+main(duetJs, models, size, Number(seconds), scenes).catch(error => {
+    console.error(error.message);
+    process.exit(1);
+});
