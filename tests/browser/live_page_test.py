@@ -11,7 +11,8 @@ import checks
 import support
 
 FOLDER = pathlib.Path(os.environ.get("DUET_WEB", "build/web")).absolute()
-SHOWN = ".every(p => p.frame && p.frame.width === imageSize.width && (p !== tracer || p.frame.samples >= %d))"
+SHOWN = (".every(p => p.frame && !p.frame.preview && p.frame.width === imageSize.width"
+         " && (p !== tracer || p.frame.samples >= %d))")
 
 
 class LivePage(support.PageTest):
