@@ -1,5 +1,6 @@
 #include "compare/view/inspect.h"
 
+#include "common/scene/motion_bounds.h"
 #include "common/system/error.h"
 #include "compare/report/text.h"
 
@@ -16,6 +17,13 @@ std::string hit_text(const Scene& scene, const Hit& hit) {
     if (!hit.valid()) return "nothing";
     return message(scene.objects[hit.object].name, ", primitive ", hit.primitive, ", ",
                    number_text(static_cast<double>(hit.t)), " m");
+}
+
+Box3 entry_bounds(const Scene& scene, std::size_t entry) {
+    Box3 box;
+    for (const Object& object : scene.objects)
+        if (object.entry == entry) box.extend(motion_bounds(object, scene.shapes[object.shape]));
+    return box;
 }
 
 std::string material_text(const Scene& scene, const Hit& hit) {

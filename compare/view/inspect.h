@@ -1,4 +1,4 @@
-// What lies under the pointer, as text.
+// What lies under the pointer.
 #pragma once
 
 #include "common/image/rgb.h"
@@ -14,6 +14,8 @@ std::string number_text(double value);
 std::string color_text(Rgb color);
 /// Returns a hit's object, primitive and distance.
 std::string hit_text(const Scene& scene, const Hit& hit);
+/// Returns the box of the objects that stand for an entry of the scene file's "objects"; empty for none.
+Box3 entry_bounds(const Scene& scene, std::size_t entry);
 /// Returns the name of the material at a valid hit.
 std::string material_text(const Scene& scene, const Hit& hit);
 

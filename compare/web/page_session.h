@@ -1,9 +1,9 @@
 // A PageSession is what one worker of the web page holds: the scene that is edited, and one pipeline's image of it.
 #pragma once
 
-#include "compare/ladder/rungs.h"
 #include "compare/view/document.h"
 #include "compare/view/image_comparison.h"
+#include "compare/view/quantities.h"
 #include "compare/view/scene_text.h"
 #include "raytrace/progressive_render.h"
 
@@ -25,7 +25,7 @@ public:
     explicit PageSession(Pipeline pipeline, std::uint64_t seed = 0);
     ~PageSession();
 
-    /// Carries out a command, an object whose member "do" names it (the table kCommands in page_session.cpp), and
+    /// Carries out a command, an object whose member "do" names it (the table kCommands in page_commands.cpp), and
     /// returns an object: what the command says of its result, or {"error": message}. After an error all is as before.
     nlohmann::ordered_json call(const nlohmann::ordered_json& command);
 
@@ -39,6 +39,8 @@ public:
 private:
     friend struct PageCommands; // the functions of kCommands
     using Json = nlohmann::ordered_json;
+
+    static constexpr int kMaxSamples = 4096; // the path tracer stops here
 
     // The scene as both pipelines have prepared it. Prepared scenes refer to the scene.
     struct Prepared {

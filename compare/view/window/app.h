@@ -1,9 +1,9 @@
 // The state of the window of `compare view`, and what it draws.
 #pragma once
 
-#include "compare/ladder/rungs.h"
 #include "compare/view/document.h"
 #include "compare/view/live_view.h"
+#include "compare/view/quantities.h"
 #include "compare/view/scene_text.h"
 #include "compare/view/view.h"
 #include "compare/view/window/window.h"
@@ -127,7 +127,6 @@ private:
     float split_ = 0.5f;
     enum class Drag { kNone, kCamera, kSplit, kObject } drag_ = Drag::kNone;
     bool help_ = false, flying_ = false, double_click_ = false, wants_screenshot_ = false;
-    static constexpr const char* kWholeImage = "everything"; // of the ladder's quantities
     std::string quantity_ = kWholeImage;
     struct Settings {
         raster::RasterSettings raster;

@@ -1,7 +1,7 @@
 // The images of `compare view`, and the mouse on them.
-#include "common/scene/motion_bounds.h"
 #include "compare/view/camera_control.h"
 #include "compare/view/image_comparison.h"
+#include "compare/view/inspect.h"
 #include "compare/view/window/app.h"
 #include "raytrace/pixel_debug.h"
 
@@ -223,10 +223,8 @@ Box3 App::selected_bounds() {
     const LoadedScene loaded = live_.loaded();
     if (bounds_.scene == loaded.scene && bounds_.selected == selected_) return bounds_.box;
     bounds_ = {loaded.scene, selected_, {}};
-    if (loaded.scene)
-        for (const Object& object : loaded.scene->objects)
-            if (static_cast<int>(object.entry) == selected_)
-                bounds_.box.extend(motion_bounds(object, loaded.scene->shapes[object.shape]));
+    if (loaded.scene && selected_ >= 0)
+        bounds_.box = entry_bounds(*loaded.scene, static_cast<std::size_t>(selected_));
     return bounds_.box;
 }
 

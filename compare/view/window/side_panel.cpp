@@ -18,10 +18,6 @@ void row(const char* name, const std::string& value) {
     ImGui::TextUnformatted(value.c_str());
 }
 
-constexpr std::array kIntegrators{raytrace::Integrator::kPath,    raytrace::Integrator::kNaive,
-                                  raytrace::Integrator::kWhitted, raytrace::Integrator::kBidirectional,
-                                  raytrace::Integrator::kVcm,     raytrace::Integrator::kPhotons};
-
 constexpr std::pair<const char*, const char*> kHelp[] = {
     {"drag", "orbit around the look-at point"},
     {"Shift + drag", "pan; so does the middle button"},
@@ -130,13 +126,9 @@ void App::set_quantity(const RungRenderers& quantity) {
 
 std::vector<RungRenderers> App::quantities() const {
     const LoadedScene loaded = live_.loaded();
-    std::vector<RungRenderers> all;
-    if (!loaded.raster) return all;
-    const PreparedPair pair{loaded.raster->prepared, settings_.raster, loaded.raytrace->prepared, settings_.raytrace};
-    for (const RungPlan& rung : plan_rungs(*loaded.scene, pair))
-        for (const RungRenderers& quantity : rung.renderers)
-            if (quantity.name != "hits") all.push_back(quantity); // a hit is no color
-    return all;
+    if (!loaded.raster) return {};
+    return color_quantities(*loaded.scene,
+                            {loaded.raster->prepared, settings_.raster, loaded.raytrace->prepared, settings_.raytrace});
 }
 
 void App::draw_inspector() {

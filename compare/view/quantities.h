@@ -1,0 +1,24 @@
+// What a window and the web page offer to be rendered.
+#pragma once
+
+#include "compare/ladder/rungs.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace duet::compare {
+
+/// The whole image is the last of the ladder's quantities.
+inline constexpr const char* kWholeImage = "everything";
+
+/// The path tracer's integrators that can be chosen for the whole image.
+inline constexpr std::array kIntegrators{raytrace::Integrator::kPath,    raytrace::Integrator::kNaive,
+                                         raytrace::Integrator::kWhitted, raytrace::Integrator::kBidirectional,
+                                         raytrace::Integrator::kVcm,     raytrace::Integrator::kPhotons};
+
+/// Returns all quantities of plan_rungs() that are colors. They do not depend on the shading and the integrator that
+/// the pair's settings choose for the whole image.
+std::vector<RungRenderers> color_quantities(const Scene& scene, PreparedPair pair);
+
+} // namespace duet::compare
