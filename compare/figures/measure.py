@@ -90,7 +90,8 @@ class Runner:
         result = subprocess.run([self.programs / command[0], *command[1:], *output, "--stats", stats], cwd=self.source,
                                 capture_output=True, text=True, check=False)
         seconds = time.time() - begin
-        others = busy_seconds() - busy - (own_seconds() - own)
+        # /proc/stat counts each processor's time in ticks, so as many ticks say nothing.
+        others = busy_seconds() - busy - (own_seconds() - own) - os.cpu_count() / os.sysconf("SC_CLK_TCK")
         if result.returncode != 0 or not stats.exists():
             raise Failed(f"{' '.join(command)}: exit code {result.returncode}\n{result.stderr.strip()[-1000:]}")
         measurement = Measurement(command, datetime.date.today().isoformat(), self.commit, processor(),
