@@ -60,7 +60,6 @@ void shade_layer(const FrameContext& frame, const PassView& view, const LayeredT
             for (int i = 0; i < count; ++i) framebuffer.add_aovs(hits, x, y, attributes);
         });
     }
-    if (frame.program == nullptr) return; // deferred shading follows
     const auto shader = frame.program->for_tile(frame.data, frame.geometry, view, rect);
     LayeredTile::LayerPacket layer_packet;
     for (int y0 = rect.y0; y0 < rect.y1; y0 += DepthTile::kPacketRows)

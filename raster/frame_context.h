@@ -26,7 +26,7 @@ struct FrameContext {
     /// Returns whether each primitive is shaded once per pixel. Transparent layers are sorted per sample, so with them
     /// each sample is shaded.
     bool is_multisampled() const {
-        return settings.multisamples > 0 && !settings.sample_shading && layers == nullptr;
+        return settings.multisamples > 0 && !settings.shades_each_sample() && layers == nullptr;
     }
 };
 

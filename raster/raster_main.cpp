@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
         command_line.add(
             "--msaa", options.multisamples,
             "Multisampling: coverage and depth at 2, 4, 8 or 16 samples a pixel, shading once a primitive (in place "
-            "of --spp)");
+            "of --spp); lit shades each sample");
         command_line.add_flag("--edges", options.edges,
                               "Draw lines over the image where depth, normals or objects change");
         command_line.add_flag("--sample-shading", options.sample_shading, "With --msaa: shade each sample")

@@ -51,7 +51,7 @@ PassView pass_view_of(const CameraModel& camera, const View& view, const RasterS
             .viewport = viewport_of(view, pinhole),
             .samples = pass.samples,
             .samples_per_pixel =
-                std::max(settings.samples_per_pixel, settings.sample_shading ? settings.multisamples : 1)};
+                std::max(settings.samples_per_pixel, settings.shades_each_sample() ? settings.multisamples : 1)};
 }
 
 /// Processes the geometry of a pass.
@@ -116,7 +116,6 @@ void for_each_lit_sample(const FrameContext& frame, const CameraModel& camera, c
         if (frame.control.stopped()) break;
         use(SampleView{frame.data, frame.settings, frame.geometry, frame.layers, pass_view, frame.grid, offset,
                        frame.control});
-        if (frame.is_multisampled()) break; // one shading of all samples
     }
     frame.collector.tiles += watch.seconds();
     if (frame.control.stopped()) return; // the pass is incomplete
@@ -127,7 +126,6 @@ void for_each_lit_sample(const FrameContext& frame, const CameraModel& camera, c
 void add_aovs(const FrameContext& frame, const SampleView& sample, Framebuffer& framebuffer) {
     if (!frame.settings.aovs.any()) return;
     parallel_for(frame.grid.size(), frame.settings.threads, [&](std::size_t i) {
-        if (frame.is_multisampled()) return render_multisampled_tile(frame, sample.view, i, framebuffer);
         DepthTile depths;
         rasterize_tile(frame.geometry, sample.view, sample.offset, frame.grid.tile(i), i, depths);
         visit_samples(frame, sample.view, i, depths, framebuffer);
@@ -140,18 +138,10 @@ void render_lit(const FrameContext& frame, const CameraModel& camera, const View
     const auto images = frame.data.deferred_frames->take();
     for_each_lit_sample(frame, camera, view, pass, [&](const SampleView& sample) {
         add_aovs(frame, sample, framebuffer);
-        const auto add = [&](const Planes3& radiance, const auto& count) {
-            for_each_pixel(view, frame.settings.threads, [&](int x, int y) {
-                if (const int samples = count(x, y); samples > 0)
-                    framebuffer.add(x, y, radiance.color_at(x, y), samples);
-            });
-        };
-        if (frame.is_multisampled()) {
-            shade_multisampled(sample, *images, add);
-        } else {
-            shade_deferred(sample, *images);
-            if (!frame.control.stopped()) add(images->radiance, [](int, int) { return 1; });
-        }
+        shade_deferred(sample, *images);
+        if (!frame.control.stopped())
+            for_each_pixel(view, frame.settings.threads,
+                           [&](int x, int y) { framebuffer.add(x, y, images->radiance.color_at(x, y)); });
         frame.collector.add(*images);
     });
 }

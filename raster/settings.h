@@ -43,6 +43,9 @@ struct RasterSettings : RenderSettings {
     /// the time the shutter opens.
     int multisamples = 0;
     bool sample_shading = false;  ///< with multisamples: shade every sample, i.e. supersample with its pattern
+    /// Returns whether multisamples are shaded one by one. Deferred shading always does: its effects look at the
+    /// neighbors in the image, which the second and further primitives of pixels do not have.
+    bool shades_each_sample() const { return sample_shading || shading == Shading::kLit; }
     bool edges = false;           ///< draw lines where depth, normals or objects change (raster/overlay/edges.h)
     LightComponentSet components; ///< turn parts off to examine the others or to measure their cost
     bool shadows = true; ///< Shading::kLit: use shadow maps; prepare() must be called with this setting as well

@@ -9,7 +9,6 @@
 #include "common/system/control.h"
 #include "common/system/parallel.h"
 
-#include <atomic>
 #include <bit>
 #include <optional>
 
@@ -80,17 +79,14 @@ public:
           emits_(frame.emits), rect_(rect), gbuffer_(gbuffer), emission_(emission), reader_(geometry_.triangles),
           shader_(frame.data, geometry_, view_, rect, frame.shader) {}
 
-    /// packet_at(x, y) returns the packet whose first pixel is (x, y), or null where nothing is visible.
-    template <typename PacketAt> void run(const PacketAt& packet_at) {
+    void run(const DepthTile& tile) {
         for (int y = rect_.y0; y < rect_.y1; y += DepthTile::kPacketRows)
             for (int x = rect_.x0; x < rect_.x1; x += static_cast<int>(kPacketWidth))
-                fill_packet(packet_at(x, y), x, y);
+                fill_packet(sample_packet(tile, x, y), x, y);
     }
 
 private:
-    void fill_packet(const SamplePacket* visible, int x, int y) {
-        if (visible == nullptr) return clear_packet(x, y);
-        const SamplePacket& packet = *visible;
+    void fill_packet(const SamplePacket& packet, int x, int y) {
         reader_.read(packet.ids, samples_);
         if (samples_.visible == 0) return clear_packet(x, y);
         shader_.shade(packet, shaded_);
@@ -270,8 +266,8 @@ void store_surface(const Scene& scene, const VisibleSurface& surface, bool emits
     store_lobes(surface_lobes(surface.bsdf, cosine), x, y, gbuffer);
     gbuffer.object(x, y) = static_cast<std::int32_t>(point.object);
     gbuffer.material(x, y) = static_cast<std::int32_t>(point.material);
-    emission.set_at(x, y, emits ? emitted(scene.materials[point.material], scene.textures, point, surface.to_viewer)
-                                : Rgb());
+    emission.set_at(x, y,
+                    emits ? emitted(scene.materials[point.material], scene.textures, point, surface.to_viewer) : Rgb());
 }
 
 void clear(GBuffer& gbuffer, Planes3& emission) {
@@ -301,42 +297,8 @@ void fill_gbuffer(const RasterSceneData& data, const RasterSettings& settings, c
         if (control.stopped()) return;
         DepthTile tile;
         rasterize_tile(geometry, view, offset, grid.tile(i), i, tile);
-        SamplePacket packet;
-        TileFiller(frame, tile.rect(), gbuffer, emission).run([&](int x, int y) {
-            packet = sample_packet(tile, x, y);
-            return &packet;
-        });
+        TileFiller(frame, tile.rect(), gbuffer, emission).run(tile);
     });
-}
-
-bool fill_gbuffer_layer(const RasterSceneData& data, const RasterSettings& settings, const Geometry& geometry,
-                        const PassView& view, const TileGrid& grid, std::size_t k, const Control& control,
-                        GBuffer& gbuffer, Planes3& emission, PlaneInt& counts) {
-    const Frame frame = frame_of(data, settings, geometry, view);
-    std::atomic<bool> any = false;
-    parallel_for(grid.size(), settings.threads, [&](std::size_t i) {
-        if (control.stopped()) return;
-        const PixelRect rect = grid.tile(i);
-        LayeredTile tile(rect, static_cast<int>(view.samples.size()));
-        DepthTile depths;
-        for (const SampleOffset offset : view.samples) {
-            rasterize_tile(geometry, view, offset, rect, i, depths);
-            tile.add(depths);
-        }
-        const bool has_layer = k < tile.layers();
-        if (has_layer) any = true;
-        for (int y = rect.y0; y < rect.y1; ++y)
-            for (int x = rect.x0; x < rect.x1; ++x)
-                counts(x, y) = has_layer ? tile.layer(k).count(tile.sample_index(x, y)) : 0;
-        LayeredTile::LayerPacket packet;
-        TileFiller(frame, rect, gbuffer, emission).run([&](int x, int y) -> const SamplePacket* {
-            if (!has_layer) return nullptr;
-            tile.layer_packet(k, x, y, packet);
-            packet.packet.reversed_depth = packet.mean_reversed_depth.data();
-            return packet.packet.ids != nullptr ? &packet.packet : nullptr;
-        });
-    });
-    return any;
 }
 
 } // namespace duet::raster

@@ -4,7 +4,6 @@
 #include "raster/gbuffer/gbuffer.h"
 #include "raster/geometry/geometry.h"
 #include "raster/geometry/tiles.h"
-#include "raster/visibility/multisample.h"
 
 namespace duet {
 struct Control;
@@ -18,13 +17,6 @@ namespace duet::raster {
 void fill_gbuffer(const RasterSceneData& data, const RasterSettings& settings, const Geometry& geometry,
                   const PassView& view, const TileGrid& grid, SampleOffset offset, const Control& control,
                   GBuffer& gbuffer, Planes3& emission);
-
-/// Fills the G-buffer with the k-th primitive that the samples of each pixel see (raster/visibility/multisample.h).
-/// `counts` receives the number of samples that see it; pixels with fewer primitives become background, with 0. Returns
-/// whether any pixel has a k-th primitive.
-bool fill_gbuffer_layer(const RasterSceneData& data, const RasterSettings& settings, const Geometry& geometry,
-                        const PassView& view, const TileGrid& grid, std::size_t k, const Control& control,
-                        GBuffer& gbuffer, Planes3& emission, PlaneInt& counts);
 
 /// Describes a visible surface, evaluated by the functions that both pipelines share.
 struct VisibleSurface {

@@ -3,12 +3,12 @@
 #include "raster/gbuffer/gbuffer_pass.h"
 #include "raster/lighting/background.h"
 #include "raster/lighting/direct_light.h"
+#include "raster/lighting/shadow_filter.h"
+#include "raster/lighting/sky_light.h"
 #include "raster/probes/indirect_light.h"
 #include "raster/probes/reflections.h"
 #include "raster/probes/refraction.h"
-#include "raster/lighting/sky_light.h"
 #include "raster/shadows/shadow_map_lookup.h"
-#include "raster/lighting/shadow_filter.h"
 
 #include "common/system/control.h"
 #include "common/system/stopwatch.h"
@@ -85,8 +85,7 @@ void shade_gbuffer(const RasterSceneData& data, const RasterSettings& settings, 
     const LightComponentSet& parts = settings.components;
     if (parts.direct && !data.scene.lights.empty()) {
         std::optional<MapShadows> shadows;
-        if (settings.shadows && data.soft_shadows)
-            shadows.emplace(data, gbuffer, options.time, threads, options.sparse);
+        if (settings.shadows && data.soft_shadows) shadows.emplace(data, gbuffer, options.time, threads);
         compute_direct_light(data, settings, gbuffer, shadows ? &*shadows : nullptr, frame.direct);
         done("direct light and shadows");
         add_direct_light(gbuffer, frame.direct, threads, radiance);
@@ -123,8 +122,7 @@ void shade_gbuffer(const RasterSceneData& data, const RasterSettings& settings, 
     if (!settings.fog || data.scene.media.empty()) return;
     if (options.fog == nullptr)
         frame.fog.compute(data, settings, gbuffer, ambient_light(data, settings, gbuffer.projection),
-                          {.time = options.time, .background = options.background && !options.sparse,
-                           .threads = threads});
+                          {.time = options.time, .background = options.background, .threads = threads});
     const FogGrid& fog = options.fog != nullptr ? *options.fog : frame.fog;
     fog.apply(gbuffer, threads, true, radiance);
     done("fog");
@@ -150,28 +148,11 @@ void shade_deferred(const SampleView& sample, DeferredFrame& frame) {
     const Stopwatch blending;
     for (std::size_t k = 0; k < layers->count() && !sample.control.stopped(); ++k) {
         layers->fill(sample, k, *blended->gbuffer, blended->radiance);
-        shade_gbuffer(data, sample.settings,
-                      {.time = sample.view.time, .background = false, .fog = &frame.fog}, *blended);
+        shade_gbuffer(data, sample.settings, {.time = sample.view.time, .background = false, .fog = &frame.fog},
+                      *blended);
         layers->add(k, blended->radiance, frame.radiance);
     }
     frame.seconds.emplace_back("blended surfaces", blending.seconds());
-}
-
-void shade_multisampled(const SampleView& sample, DeferredFrame& frame,
-                        const std::function<void(const Planes3& radiance, const PlaneInt& counts)>& use) {
-    const int width = sample.grid.region.width(), height = sample.grid.region.height();
-    frame.seconds.clear();
-    frame.start(sample.data.scene, ScreenProjection(sample.view.pinhole, {}), width, height);
-    PlaneInt counts(width, height);
-    for (std::size_t k = 0; !sample.control.stopped(); ++k) {
-        const Stopwatch watch;
-        const bool any = fill_gbuffer_layer(sample.data, sample.settings, sample.geometry, sample.view, sample.grid, k,
-                                            sample.control, *frame.gbuffer, frame.radiance, counts);
-        frame.seconds.emplace_back("surface attributes", watch.seconds());
-        if (!any) break;
-        shade_gbuffer(sample.data, sample.settings, {.time = sample.view.time, .sparse = k > 0}, frame);
-        use(frame.radiance, counts);
-    }
 }
 
 } // namespace duet::raster

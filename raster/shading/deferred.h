@@ -9,7 +9,6 @@
 #include "raster/screen_space/gtao.h"
 #include "raster/shading/blended_layers.h"
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -48,7 +47,6 @@ struct DeferredFrame {
 struct ShadeOptions {
     float time = 0;         ///< of the shadows
     bool background = true; ///< else pixels without a surface stay black
-    bool sparse = false;    ///< surfaces have too few neighbors to average shadows over
     const FogGrid* fog = nullptr; ///< of the same view, or null to compute one
     LightComponentImages* components = nullptr; ///< without fog: receives the parts of the radiance, if any
 };
@@ -60,10 +58,5 @@ void shade_gbuffer(const RasterSceneData& data, const RasterSettings& settings, 
 /// Computes the radiance of one sample per pixel: fills the G-buffer, shades it, and composites the blended surfaces
 /// in front of it.
 void shade_deferred(const SampleView& sample, DeferredFrame& frame);
-
-/// Computes the radiance of a multisampled view, which shades each primitive that a pixel's samples see once. Calls
-/// use(radiance, counts) for each layer; counts holds the number of a pixel's samples that see it.
-void shade_multisampled(const SampleView& sample, DeferredFrame& frame,
-                        const std::function<void(const Planes3& radiance, const PlaneInt& counts)>& use);
 
 } // namespace duet::raster

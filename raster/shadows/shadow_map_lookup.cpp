@@ -5,8 +5,6 @@ namespace {
 
 using Mask = Floats::batch_bool_type;
 
-constexpr int kPatterns = 16;
-
 Ints patterns(int x, int y) {
     alignas(64) std::array<std::int32_t, Ints::size> result;
     for (std::size_t i = 0; i < result.size(); ++i)
@@ -26,10 +24,9 @@ SoftShadowMaps::SoftShadowMaps(const Shadows& shadows) {
     }
 }
 
-MapShadows::MapShadows(const RasterSceneData& data, const GBuffer& gbuffer, float time, int threads, bool all_taps)
+MapShadows::MapShadows(const RasterSceneData& data, const GBuffer& gbuffer, float time, int threads)
     : shadows_(*data.shadows), soft_(*data.soft_shadows), gbuffer_(gbuffer), eye_(gbuffer.projection.eye()),
-      to_moment_(shadows_.motions(time)), moment_(shadows_.moment_at(time)), all_taps_(all_taps),
-      unblocked_(data, gbuffer, threads) {
+      to_moment_(shadows_.motions(time)), moment_(shadows_.moment_at(time)), unblocked_(data, gbuffer, threads) {
     const Vec3d eye = eye_;
     for (const Shadows::Source& from : shadows_.sources()) {
         Source& source = sources_.emplace_back();
@@ -61,14 +58,6 @@ Floats MapShadows::sharp_visibility(const Source& source, const Vec3T<Floats>& p
     return result;
 }
 
-Floats MapShadows::mean_visibility(std::span<const SoftShadowMap> cells, const Vec3T<Floats>& p,
-                                   const Vec3T<Floats>& n) const {
-    Floats sum(0.0f);
-    for (const SoftShadowMap& cell : cells)
-        for (int pattern = 0; pattern < kPatterns; ++pattern) sum += cell.visibility(eye_, p, n, Ints(pattern));
-    return sum * Floats(1 / static_cast<float>(cells.size() * kPatterns));
-}
-
 MapShadows::Receivers MapShadows::at_moment(const Receivers& receivers, int x, int y) const {
     PacketOf<float> px, py, pz, nx, ny, nz;
     const auto [p, n] = receivers;
@@ -94,7 +83,6 @@ Floats MapShadows::visibility(std::size_t light, const Vec3T<Floats>& point, con
     const auto [p, n] = to_moment_.empty() ? receivers : at_moment(receivers, x, y);
     const std::span<const SoftShadowMap> cells = soft_.of(source, moment_);
     if (cells.empty()) return sharp_visibility(sources_[source], p, n);
-    if (all_taps_) return mean_visibility(cells, p, n);
     const Ints pattern = patterns(x, y);
     // Four cells share the rows of a block, so a batch looks at one cell only.
     if (cells.size() <= 4) return cells[static_cast<std::size_t>(y) % cells.size()].visibility(eye_, p, n, pattern);

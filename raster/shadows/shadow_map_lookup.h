@@ -2,10 +2,10 @@
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"
-#include "raster/shadows/shadow_lookup.h"
-#include "raster/shadows/shadow_maps.h"
 #include "raster/shadows/pcf.h"
 #include "raster/shadows/pcss.h"
+#include "raster/shadows/shadow_lookup.h"
+#include "raster/shadows/shadow_maps.h"
 #include "raster/shadows/unblocked_tiles.h"
 
 namespace duet::raster {
@@ -26,13 +26,12 @@ class MapShadows final : public ShadowLookup {
 public:
     /// None of the references is copied. `data` must have its shadow maps. The points are those of the G-buffer's
     /// pixels at `time`. A point of a moving object is looked up where it is at the map's moment, so that the object
-    /// does not shade itself by its motion. With `all_taps`, each pixel takes the taps of all sixteen pixels of a
-    /// block, for surfaces whose neighbors are too few to average. `threads` = 0 stands for all.
-    MapShadows(const RasterSceneData& data, const GBuffer& gbuffer, float time, int threads, bool all_taps = false);
+    /// does not shade itself by its motion. `threads` = 0 stands for all.
+    MapShadows(const RasterSceneData& data, const GBuffer& gbuffer, float time, int threads);
 
     bool shadows(std::size_t light) const override { return shadows_.source_of(light) < shadows_.sources().size(); }
     bool noisy(std::size_t light) const override {
-        return !all_taps_ && shadows(light) && !soft_.of(shadows_.source_of(light), moment_).empty();
+        return shadows(light) && !soft_.of(shadows_.source_of(light), moment_).empty();
     }
     /// Each pixel of a block of 4 × 4 looks at one cell of an area light, with taps of its own. The mean over a block
     /// is the shadow; add_direct_light() (raster/lighting/shadow_filter.h) computes it.
@@ -41,10 +40,10 @@ public:
 
 private:
     struct Source {
-        std::vector<SharpShadowMap> views;          ///< tried in order
+        std::vector<SharpShadowMap> views;              ///< tried in order
         std::vector<std::vector<SharpShadowMap>> cubes; ///< six faces each; a missing face shadows nothing
     };
-    Floats mean_visibility(std::span<const SoftShadowMap> cells, const Vec3T<Floats>& p, const Vec3T<Floats>& n) const;
+
     struct Receivers {
         Vec3T<Floats> p, n;
     };
@@ -57,7 +56,6 @@ private:
     Vec3d eye_;
     std::vector<std::optional<Mat4d>> to_moment_; ///< for each object: from its position now; empty if nothing moves
     std::size_t moment_;
-    bool all_taps_;
     UnblockedTiles unblocked_;
     std::vector<Source> sources_;
 };

@@ -18,8 +18,22 @@ const std::vector<SampleOffset>& multisample_pattern(int count) {
     static const auto k2 = pattern({{4, 4}, {-4, -4}});
     static const auto k4 = pattern({{-2, -6}, {6, -2}, {-6, 2}, {2, 6}});
     static const auto k8 = pattern({{1, -3}, {-1, 3}, {5, 1}, {-3, -5}, {-5, 5}, {-7, -1}, {3, 7}, {7, -7}});
-    static const auto k16 = pattern({{1, 1}, {-1, -3}, {-3, 2}, {4, -1}, {-5, -2}, {2, 5}, {5, 3}, {3, -5},
-                                     {-2, 6}, {0, -7}, {-4, -6}, {-6, 4}, {-8, 0}, {7, -4}, {6, 7}, {-7, -8}});
+    static const auto k16 = pattern({{1, 1},
+                                     {-1, -3},
+                                     {-3, 2},
+                                     {4, -1},
+                                     {-5, -2},
+                                     {2, 5},
+                                     {5, 3},
+                                     {3, -5},
+                                     {-2, 6},
+                                     {0, -7},
+                                     {-4, -6},
+                                     {-6, 4},
+                                     {-8, 0},
+                                     {7, -4},
+                                     {6, 7},
+                                     {-7, -8}});
     for (const auto* known : {&k2, &k4, &k8, &k16})
         if (static_cast<int>(known->size()) == count) return *known;
     throw Error(message("multisampling: found ", count, " samples a pixel, expected 2, 4, 8 or 16"));
@@ -35,18 +49,17 @@ Layer& LayeredTile::layer_at(std::size_t i) {
     return *layers_[i];
 }
 
-void LayeredTile::add_one(std::uint32_t sample_index, std::int32_t id, SampleOffset offset, float reversed_depth) {
+void LayeredTile::add_one(std::uint32_t sample_index, std::int32_t id, SampleOffset offset) {
     std::size_t i = 0;
     while (i < layers_.size() && layers_[i]->counts_[sample_index] > 0 && layers_[i]->ids_[sample_index] != id) ++i;
     Layer& layer = layer_at(i);
     if (layer.counts_[sample_index]++ == 0) {
         layer.ids_[sample_index] = id;
-        layer.sum_x_[sample_index] = layer.sum_y_[sample_index] = 0, layer.sum_depth_[sample_index] = 0;
+        layer.sum_x_[sample_index] = layer.sum_y_[sample_index] = 0;
         layer.used_[sample_index / kPacketSize] = true;
     }
     layer.sum_x_[sample_index] += offset.x;
     layer.sum_y_[sample_index] += offset.y;
-    layer.sum_depth_[sample_index] += reversed_depth;
 }
 
 void LayeredTile::add(const DepthTile& tile) {
@@ -58,19 +71,17 @@ void LayeredTile::add(const DepthTile& tile) {
         for (std::size_t i = first; same && i < first + kPacketSize; i += Ints::size)
             same = xsimd::all(Ints::load_aligned(&layers_[0]->ids_[i]) == Ints::load_aligned(tile.ids() + i));
         if (!same) { // the first sample, or more than one primitive
-            for (std::uint32_t i = first; i < first + kPacketSize; ++i)
-                add_one(i, tile.ids()[i], offset, tile.reversed_depth()[i]);
+            for (std::uint32_t i = first; i < first + kPacketSize; ++i) add_one(i, tile.ids()[i], offset);
             continue;
         }
         Layer& layer = *layers_[0];
         for (std::size_t i = first; i < first + kPacketSize; i += Ints::size) {
-            const auto add_to = [i]<typename T>(std::array<T, kTileSamples>& sums, const xsimd::batch<T>& by) {
-                (xsimd::batch<T>::load_aligned(&sums[i]) + by).store_aligned(&sums[i]);
+            const auto add_to = [i](std::array<std::int32_t, kTileSamples>& sums, const Ints& by) {
+                (Ints::load_aligned(&sums[i]) + by).store_aligned(&sums[i]);
             };
             add_to(layer.counts_, one);
             add_to(layer.sum_x_, x);
             add_to(layer.sum_y_, y);
-            add_to(layer.sum_depth_, Floats::load_aligned(tile.reversed_depth() + i));
         }
     }
 }
@@ -84,7 +95,6 @@ void LayeredTile::layer_packet(std::size_t i, int x, int y, LayerPacket& layer_p
     for (std::size_t k = 0; k < kPacketSize; ++k) {
         const int count = layer.counts_[first + k];
         layer_packet.offsets[k] = {};
-        layer_packet.mean_reversed_depth[k] = count > 0 ? layer.sum_depth_[first + k] / static_cast<float>(count) : 0;
         if (count == 0 || count == count_) continue;
         layer_packet.offsets[k] = {(layer.sum_x_[first + k] + count / 2) / count,
                                    (layer.sum_y_[first + k] + count / 2) / count};

@@ -29,7 +29,6 @@ private:
     static constexpr std::size_t kTile = kTileSamples;
     alignas(64) std::array<std::int32_t, kTile> ids_;
     alignas(64) std::array<std::int32_t, kTile> counts_, sum_x_, sum_y_; ///< sums of sample offsets
-    alignas(64) std::array<float, kTile> sum_depth_;                     ///< sums of the samples' reversed depths
     std::array<bool, kTile / kPacketSize> used_;                         ///< packets with any nonzero count
 };
 
@@ -47,12 +46,10 @@ public:
     std::size_t layers() const { return layers_.size(); }
     const Layer& layer(std::size_t i) const { return *layers_[i]; }
     /// Holds the input of shading for a packet of two rows of eight pixels in one layer. `packet.ids` is null if the
-    /// layer has none of them. `offsets` stores the per-sample positions that `packet` may point to. The mean reversed
-    /// depth of a triangle's samples is that at their centroid, because it is linear in the image.
+    /// layer has none of them. `offsets` stores the per-sample positions that `packet` may point to.
     struct LayerPacket {
         SamplePacket packet;
         std::array<SampleOffset, kPacketSize> offsets;
-        alignas(64) std::array<float, kPacketSize> mean_reversed_depth;
     };
     /// Fills `layer_packet` with the packet whose first pixel is (x, y).
     void layer_packet(std::size_t layer, int x, int y, LayerPacket& layer_packet) const;
@@ -61,7 +58,7 @@ public:
     }
 
 private:
-    void add_one(std::uint32_t sample_index, std::int32_t id, SampleOffset offset, float reversed_depth);
+    void add_one(std::uint32_t sample_index, std::int32_t id, SampleOffset offset);
     Layer& layer_at(std::size_t i);
 
     PixelRect rect_;
