@@ -26,6 +26,7 @@ std::span<const Model> all_models() {
         {"plinth", kCommitted, {"meshes/plinth.obj"}, write_plinth},
         {"ring", kCommitted, {"meshes/ring.obj"}, write_ring},
         {"sky", kCommitted, {"textures/sky.hdr"}, write_sky},
+        {"smoke", kCommitted, {"textures/smoke.raw"}, write_smoke},
         {"spheres", kCommitted, {"spheres.json"}, write_spheres},
         {"test-ball", kCommitted, ball_files(), write_test_ball},
         {"hall", kBuilt, {kHallFile}, write_hall},

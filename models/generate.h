@@ -42,6 +42,7 @@ void write_pear(const std::filesystem::path& folder);
 void write_plinth(const std::filesystem::path& folder);
 void write_ring(const std::filesystem::path& folder);
 void write_sky(const std::filesystem::path& folder);
+void write_smoke(const std::filesystem::path& folder);
 void write_spheres(const std::filesystem::path& folder);
 ///@}
 inline constexpr const char* kHallFile = "generated/hall.obj";

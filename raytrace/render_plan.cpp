@@ -83,7 +83,7 @@ std::vector<SkippedWork> skipped(const RenderPlan& plan, const PathTracerSetting
         list.push_back({"textures", "materials without one, whose BSDF is made once", constant});
     if (!plan.scene.needs.alpha) skip("opacity tests", "no material has holes");
     if (!plan.scene.needs.normal_maps) skip("normal maps", "no material has one");
-    if (!plan.needs_medium_stack) skip("insides", "there is no fog, and no glass absorbs or stands in other glass");
+    if (!plan.needs_medium_stack) skip("insides", "there are no media, and no glass absorbs or stands in other glass");
     if (!plan.pixel_footprint) skip("texture footprints", "no material has an image that is filtered");
     if (!plan.lens) skip("lens samples", "the camera has no aperture");
     if (!plan.motion) skip("time samples", "nothing moves");

@@ -19,7 +19,7 @@ endforeach()
 
 # Models and pages. The pages lie as in the source tree; their links to sources lead nowhere.
 install(DIRECTORY models DESTINATION share/duet COMPONENT shared FILES_MATCHING
-    PATTERN *.json PATTERN *.obj PATTERN *.mtl PATTERN *.png PATTERN *.hdr)
+    PATTERN *.json PATTERN *.obj PATTERN *.mtl PATTERN *.png PATTERN *.hdr PATTERN *.raw)
 file(GLOB_RECURSE pages CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} gallery/*.svg gallery/*.jpg gallery/*.png
     common/*.md raster/*.md raster/*.png raytrace/*.md raytrace/*.png compare/*.md compare/*.png models/*.md
     gallery/*.md raster/*.svg raytrace/*.svg compare/*.svg)

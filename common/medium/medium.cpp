@@ -1,25 +1,19 @@
 #include "common/medium/medium.h"
 
-#include <algorithm>
+#include "common/medium/density_grid.h"
 
 namespace duet {
 
-MediumStretch stretch_at(std::span<const Medium> media, const Ray& ray, float t, float t_end) {
-    MediumStretch stretch;
-    stretch.end = t_end;
-    for (const Medium& medium : media) {
-        const Interval inside = overlap(medium.box, ray, t_end);
-        if (inside.empty() || inside.end <= t) continue;
-        if (inside.begin > t) {
-            stretch.end = std::min(stretch.end, inside.begin);
-            continue;
-        }
-        stretch.end = std::min(stretch.end, inside.end);
-        stretch.scattering += medium.scattering;
-        stretch.absorption += medium.absorption;
-        stretch.emission += medium.absorption * medium.radiance;
+float density_at(const Medium& medium, Vec3 p) { return medium.density ? medium.density->density(medium.box, p) : 1; }
+
+PassedColumn follow(const Medium& medium, const Ray& ray, Interval inside, float column) {
+    if (medium.density) {
+        const DensityGrid::Reached reached =
+            medium.density->follow(medium.box, ray, inside, static_cast<double>(column));
+        return {reached.t, static_cast<float>(reached.column)};
     }
-    return stretch;
+    const float length = inside.end - inside.begin;
+    return column < length ? PassedColumn{inside.begin + column, column} : PassedColumn{kInfinity, length};
 }
 
 } // namespace duet

@@ -4,23 +4,33 @@
 
 #include "common/image/rgb.h"
 #include "common/vec/box.h"
+#include "common/vec/interval.h"
 #include "common/vec/ray.h"
 
+#include <array>
 #include <cmath>
+#include <memory>
 #include <span>
 
 namespace duet {
 
-/// A Medium fills an axis-aligned box evenly; a box without bounds is all of space. Where several overlap, their
-/// coefficients add up. Glass and other dielectrics displace it: it is not inside of them.
+class DensityGrid; // common/medium/density_grid.h
+
+/// A scene may have at most this many media, because each ray looks at each.
+inline constexpr std::size_t kMaxMedia = 64;
+
+/// A Medium fills an axis-aligned box; a box without bounds is all of space. Where several overlap, their coefficients
+/// add up. Glass and other dielectrics displace it: it is not inside of them.
 struct Medium {
     Box3 box = unbounded();
-    Rgb scattering; ///< σs: the fraction of light that is scattered per meter, 1/m
-    Rgb absorption; ///< σa: the fraction of light that is absorbed per meter, 1/m
+    Rgb scattering; ///< σs: the fraction of light that is scattered per meter where the density is 1, 1/m
+    Rgb absorption; ///< σa: the fraction of light that is absorbed per meter where the density is 1, 1/m
     /// The radiance that a layer which is thick beyond measure and scatters nothing emits, W/(m² sr). Over a short
     /// distance d the medium adds σa·d times that (Kirchhoff's law).
     Rgb radiance;
     float asymmetry = 0; ///< g, the mean cosine of the angle by which light is scattered, in (−1, 1)
+    /// The density in the box, which must have bounds then. If it is null, the density is 1.
+    std::shared_ptr<const DensityGrid> density{};
 
     static constexpr Box3 unbounded() {
         Box3 box;
@@ -29,12 +39,6 @@ struct Medium {
     }
 };
 
-/// An Interval holds all t with begin < t < end. It is empty where begin >= end.
-template <typename T> struct IntervalT {
-    T begin = T(0), end = T(0);
-    MaskOf<T> empty() const { return !(begin < end); }
-};
-using Interval = IntervalT<float>;
 /// Returns the part of [0, t_end] in which a ray is inside of the box (Kay and Kajiya 1986, "Ray Tracing Complex
 /// Scenes"). t_end may be infinite. T is float or a batch of floats.
 template <typename T>
@@ -57,27 +61,55 @@ inline Interval overlap(const Box3& box, const Ray& ray, float t_end) {
     return overlap(box, ray.origin, ray.direction, t_end);
 }
 
-/// A MediumStretch is a piece of a ray on which the coefficients of all media together do not change.
-struct MediumStretch {
-    float end = 0; ///< where it ends, at most at the end of the ray
-    Rgb scattering, absorption;
-    Rgb emission; ///< the sum of absorption times radiance, W/(m³ sr)
-};
-/// Returns the stretch of the ray that begins at t < t_end.
-MediumStretch stretch_at(std::span<const Medium> media, const Ray& ray, float t, float t_end);
+/// Returns the density of a medium at a point of its box.
+float density_at(const Medium& medium, Vec3 p);
 
-/// Returns ∫(σs + σa) over [0, t_end] of a ray. T is float or a batch of floats.
+/// A PassedColumn says how far a ray comes before it has passed a given column of a medium.
+struct PassedColumn {
+    float t = 0;      ///< where it has; infinite if the interval ends before
+    float column = 0; ///< what it has passed up to there, or on the whole interval
+};
+/// Follows a ray through a part of its overlap with a medium until it has passed a column, > 0 or infinite. A column is
+/// the integral of the density over the distance, in meters.
+PassedColumn follow(const Medium& medium, const Ray& ray, Interval inside, float column);
+
+/// Returns the column of a medium on a part of a ray's overlap with it, in meters. T is float or a batch of floats.
+template <typename T>
+T column_of(const Medium& medium, const Vec3T<T>& origin, const Vec3T<T>& direction, const IntervalT<T>& inside) {
+    if (medium.density == nullptr) return select(inside.empty(), T(0), inside.end - inside.begin);
+    if constexpr (std::is_same_v<T, float>) {
+        return inside.empty() ? 0 : follow(medium, Ray{origin, direction}, inside, kInfinity).column;
+    } else {
+        const auto lanes = [](const T& batch) {
+            std::array<float, T::size> values;
+            batch.store_unaligned(values.data());
+            return values;
+        };
+        const std::array o{lanes(origin.x), lanes(origin.y), lanes(origin.z)};
+        const std::array d{lanes(direction.x), lanes(direction.y), lanes(direction.z)};
+        const auto begin = lanes(inside.begin), end = lanes(inside.end);
+        std::array<float, T::size> columns;
+        for (std::size_t i = 0; i < T::size; ++i)
+            columns[i] =
+                column_of<float>(medium, {o[0][i], o[1][i], o[2][i]}, {d[0][i], d[1][i], d[2][i]}, {begin[i], end[i]});
+        return T::load_unaligned(columns.data());
+    }
+}
+
+/// Returns the optical depth of columns of a medium: the integral of σs + σa. T is float or a batch of floats.
+template <typename T> RgbT<T> optical_depth(const Medium& medium, const T& column) {
+    // The column may be infinite and the coefficient 0.
+    const auto channel = [&](float coefficient) { return coefficient > 0 ? T(coefficient) * column : T(0); };
+    const Rgb extinction = medium.scattering + medium.absorption;
+    return {channel(extinction.r), channel(extinction.g), channel(extinction.b)};
+}
+/// Returns the optical depth of all media over [0, t_end] of a ray. T is float or a batch of floats.
 template <typename T>
 RgbT<T> optical_depth(std::span<const Medium> media, const Vec3T<T>& origin, const Vec3T<T>& direction, T t_end) {
     RgbT<T> depth(T(0));
-    for (const Medium& medium : media) {
-        const IntervalT<T> inside = overlap(medium.box, origin, direction, t_end);
-        const T distance = select(inside.empty(), T(0), inside.end - inside.begin);
-        // The distance may be infinite and the coefficient 0.
-        const auto channel = [&](float coefficient) { return coefficient > 0 ? T(coefficient) * distance : T(0); };
-        const Rgb extinction = medium.scattering + medium.absorption;
-        depth += RgbT<T>(channel(extinction.r), channel(extinction.g), channel(extinction.b));
-    }
+    for (const Medium& medium : media)
+        depth +=
+            optical_depth(medium, column_of(medium, origin, direction, overlap(medium.box, origin, direction, t_end)));
     return depth;
 }
 

@@ -12,8 +12,8 @@
 
 namespace duet {
 
-/// A FileCache returns values that it has read before, unless one of their files has changed since. It keeps every
-/// value. Only one thread may use it at a time.
+/// A FileCache returns values that it has read before, unless one of their files has changed since. It keeps all of
+/// these. Only one thread may use it at a time.
 class FileCache {
 public:
     /// A value and the files that it was made of.
@@ -31,6 +31,17 @@ public:
         }));
     }
 
+    /// Returns a value that is computed from its key alone: that of an earlier call if it is still in use, else a new
+    /// one, made by `make`.
+    template <typename Value>
+    std::shared_ptr<const Value> reuse(const std::string& key, const std::function<Value()>& make) {
+        std::erase_if(computed_, [](const auto& entry) { return entry.second.expired(); });
+        std::weak_ptr<const void>& known = computed_[key];
+        auto value = std::static_pointer_cast<const Value>(known.lock());
+        if (!value) known = value = std::make_shared<const Value>(make());
+        return value;
+    }
+
 private:
     struct Entry {
         std::shared_ptr<const void> value;
@@ -41,6 +52,7 @@ private:
                                      const std::function<Read<std::shared_ptr<const void>>()>& read);
 
     std::map<std::string, Entry> entries_;
+    std::map<std::string, std::weak_ptr<const void>> computed_;
 };
 
 /// This is the size limit of a scene file in bytes. Scene files are text, and meshes and images are in separate

@@ -1,4 +1,5 @@
 // This file computes the data that is derived from a scene's description, once for both pipelines.
+#include "common/medium/density_grid.h"
 #include "common/scene/bake.h"
 #include "common/scene/emitter_texture.h"
 #include "common/scene/json/json_reader.h"
@@ -19,6 +20,7 @@ constexpr float kMaxCoordinate = 1.001e18f;
 /// Checks the scene's references. A broken reference is an error of the program that built the scene, not of a file.
 void check_references(const Scene& scene) {
     DUET_CHECK_EQ(scene.materials.size(), scene.material_names.size());
+    DUET_CHECK(scene.media.size() <= kMaxMedia);
     for (const Object& object : scene.objects) {
         DUET_CHECK_LT(object.shape, scene.shapes.size());
         DUET_CHECK(!object.materials.empty());
@@ -66,7 +68,9 @@ std::optional<float> constant_red(const TextureSet& set, const Texture& texture)
 /// nothing. The alpha channel of many an image is 1 everywhere.
 void drop_ineffective(Scene& scene) {
     std::erase_if(scene.lights, [](const Light& light) { return is_black(light); });
-    std::erase_if(scene.media, [](const Medium& m) { return is_black(m.scattering) && is_black(m.absorption); });
+    std::erase_if(scene.media, [](const Medium& m) {
+        return (is_black(m.scattering) && is_black(m.absorption)) || (m.density && m.density->largest() == 0);
+    });
     for (SurfaceMaps& maps : scene.maps) {
         if (maps.opacity.constant()) continue;
         const Texture& texture = scene.textures.textures[static_cast<std::size_t>(maps.opacity.texture)];

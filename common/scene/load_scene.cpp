@@ -52,7 +52,7 @@ Scene read_scene(const std::filesystem::path& path, std::string_view text, FileC
     read_objects(file.at("objects"), materials, images, scene);
     if (file.has("lights"))
         for (const JsonValue& light : file.at("lights").elements()) scene.lights.push_back(read_light(light));
-    if (file.has("media")) scene.media = read_media(file.at("media"));
+    if (file.has("media")) read_media(file.at("media"), scene, cache);
     if (file.has("environment")) scene.environment = read_environment(file.at("environment"), scene.files);
     return scene;
 }

@@ -48,7 +48,7 @@ struct SceneNeeds {
     bool glossy = false;       ///< rough metal, frosted glass and layered materials
     bool layers = false;       ///< principled and coated materials
     bool interiors = false;    ///< glass that absorbs or has a priority
-    bool media = false;        ///< fog
+    bool media = false;        ///< fog, clouds, smoke
     bool specular = false;     ///< mirrors and glass
     bool transmission = false; ///< glass
     bool meshes = false, quads = false, spheres = false;

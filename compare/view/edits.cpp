@@ -120,6 +120,15 @@ std::string with_new_element(const std::string& text, NewElement element, Vec3d 
     if (element == NewElement::kPointLight)
         return appended(text, "lights",
                         {{"type", "point"}, {"position", vector(at)}, {"intensity", typed_number(size * size)}});
+    const Vec3d low = at - Vec3d(half, half, half), high = at + Vec3d(half, half, half);
+    if (element == NewElement::kCloud)
+        return appended(text, "media",
+                        {{"type", "cloud"},
+                         {"low", vector(low)},
+                         {"high", vector(high)},
+                         {"scattering", typed_number(20 / size)},
+                         {"scale", typed_number(3 / size)},
+                         {"resolution", 48}});
     std::string result = text;
     std::string material;
     if (element == NewElement::kAreaLight) {
@@ -136,9 +145,7 @@ std::string with_new_element(const std::string& text, NewElement element, Vec3d 
     if (element == NewElement::kSphere)
         shape = {{"type", "sphere"}, {"center", vector(at)}, {"radius", typed_number(half)}};
     else if (element == NewElement::kBox)
-        shape = {{"type", "box"},
-                 {"low", vector(at - Vec3d(half, half, half))},
-                 {"high", vector(at + Vec3d(half, half, half))}};
+        shape = {{"type", "box"}, {"low", vector(low)}, {"high", vector(high)}};
     else { // an area light's normal, u × v, points downward, a quad's upward
         const Vec3d x(size, 0, 0), z(0, 0, size);
         const bool light = element == NewElement::kAreaLight;

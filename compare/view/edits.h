@@ -15,8 +15,8 @@ std::string transformed(const std::string& text, const JsonPath& element, const 
 std::string duplicated(const std::string& text, const JsonPath& element);
 
 /// What can be added to a scene.
-enum class NewElement { kSphere, kBox, kQuad, kAreaLight, kPointLight };
-inline constexpr std::array<const char*, 5> kNewElementNames{"sphere", "box", "quad", "area light", "point light"};
+enum class NewElement { kSphere, kBox, kQuad, kAreaLight, kPointLight, kCloud };
+inline constexpr std::array kNewElementNames{"sphere", "box", "quad", "area light", "point light", "cloud"};
 /// Adds an element of about this size at a point. An area light shines downward. Shapes get the first material of the
 /// file, or a new one.
 std::string with_new_element(const std::string& text, NewElement element, Vec3d at, double size);

@@ -26,6 +26,13 @@ Color mean_transmittance(const Color& depth) {
     return {mean_transmittance(depth.r), mean_transmittance(depth.g), mean_transmittance(depth.b)};
 }
 
+/// Returns the fraction of the light that a medium stops which it scatters.
+Rgb albedo(const Medium& medium) {
+    const Rgb& s = medium.scattering;
+    const Rgb all = s + medium.absorption;
+    return {s.r > 0 ? s.r / all.r : 0, s.g > 0 ? s.g / all.g : 0, s.b > 0 ? s.b / all.b : 0};
+}
+
 Floats lane_offsets(float first, float step) { return Floats(first) + load(kLanesAsFloats, 0) * Floats(step); }
 
 } // namespace
@@ -137,17 +144,23 @@ public:
         : grid_(grid), lights_(lights), light_set_(light_set), shadows_(shadows), ambient_(ambient),
           crossed_(grid.media_.size(), kNone) {}
 
-    void light_columns(int x, int y, Planes3& result) {
+    /// Stores what arrives from before each slice's end, and the fraction of light that is stopped there, unless
+    /// `stopped` is empty.
+    void light_columns(int x, int y, Planes3& result, Planes3& stopped) {
         const Columns columns = grid_.columns(x, y);
         Color sum(kNone), through(kOne);
-        result.set(x, grid_.row(y, 0), sum);
+        const auto store = [&](int ends) {
+            result.set(x, grid_.row(y, ends), sum);
+            if (!stopped.empty()) stopped.set(x, grid_.row(y, ends), Color(kOne) - through);
+        };
+        store(0);
         for (int k = 0; k < grid_.slices_; ++k) {
             const auto slice = static_cast<std::size_t>(k);
             const float begin = grid_.distances_[slice], end = grid_.distances_[slice + 1];
             if (begin >= columns.farthest) break;
             if (k % kClusterSlices == 0) find_lights(columns, k);
             add_slice(columns, {begin, end}, sum, through);
-            result.set(x, grid_.row(y, k + 1), sum);
+            store(k + 1);
         }
     }
 
@@ -181,7 +194,7 @@ private:
         for (std::size_t i = 0; i < crossed_.size(); ++i) {
             const Medium& medium = grid_.media_[i];
             const IntervalT<Floats> inside{max(columns.inside[i].begin, begin), min(columns.inside[i].end, end)};
-            const Floats length = crossed_[i] = max(inside.end - inside.begin, kNone);
+            const Floats length = crossed_[i] = column_of(medium, columns.origin, columns.direction, inside);
             const Lanes in = length > kNone;
             if (lane_bits(in) == 0) continue;
             piece.begin = xsimd::select(in, min(piece.begin, inside.begin), piece.begin);
@@ -205,29 +218,49 @@ private:
         through *= transmittance(depth);
     }
 
+    /// Adds the light of a light that the slice scatters. Light that a cloud has scattered before is estimated by
+    /// octaves: as if it came through thinner media that scatter it more evenly (Wrenninge et al. 2013, "Oz: The Great
+    /// and Volumetric"). An octave counts by what the media stop. Light that even fog has scattered is the probes'
+    /// task.
     void add_light(const FrameLight& light, float weight, const RayPieces& rays, Color& sum) const {
         const Vec3s p = rays.p();
         const LightDirection to = direction_to(light, p);
-        Color arriving = light_in_space(light, to, rays);
+        Color arriving = light_in_space(light, to, rays) * Floats(weight);
         if (lane_bits(max_component(arriving) > kNone) == 0) return;
         if (shadows_ != nullptr) arriving *= shadows_->visibility(light.index, p);
-        arriving *= transmittance(optical_depth<Floats>(grid_.media_, p, to.wi, to.distance)) * Floats(weight);
-        Color scattered(kNone);
+        if (lane_bits(max_component(arriving) > kNone) == 0) return;
+        const Color depth = optical_depth<Floats>(grid_.media_, p, to.wi, to.distance), through = transmittance(depth);
+        sum += arriving * through * scattered(rays.direction, to.wi, 0);
+        for (int octave = 1; octave < kOctaves && !grid_.stopped_.empty(); ++octave) {
+            arriving *= Color(kOne) - through;
+            if (lane_bits(max_component(arriving) > kNone) == 0) break;
+            const float thinness = std::ldexp(1.0f, -octave);
+            sum += arriving * transmittance(depth * Floats(thinness)) * scattered(rays.direction, to.wi, octave);
+        }
+    }
+
+    /// Returns the fraction of light from wi that the media of the slice scatter along the ray in an octave, 1/sr.
+    Color scattered(const Vec3s& direction, const Vec3s& wi, int octave) const {
+        Color sum(kNone);
         for (std::size_t i = 0; i < crossed_.size(); ++i) {
             const Medium& medium = grid_.media_[i];
-            if (is_black(medium.scattering)) continue;
-            scattered +=
-                broadcast<Floats>(medium.scattering) * (crossed_[i] * phase(rays.direction, to.wi, medium.asymmetry));
+            if (is_black(medium.scattering) || (octave > 0 && !medium.density)) continue;
+            Rgb scattering = medium.scattering;
+            for (int k = 0; k < octave; ++k) scattering *= albedo(medium);
+            const float asymmetry = std::ldexp(medium.asymmetry, -octave);
+            sum += broadcast<Floats>(scattering) * (crossed_[i] * phase(direction, wi, asymmetry));
         }
-        sum += arriving * scattered;
+        return sum;
     }
+
+    static constexpr int kOctaves = 4;
 
     const FogGrid& grid_;
     std::span<const FrameLight> lights_;
     const LightSet& light_set_;
     const SpaceShadows* shadows_;
     const AmbientLight& ambient_;
-    std::vector<Floats, xsimd::aligned_allocator<Floats>> crossed_; ///< meters of each medium in the slice
+    std::vector<Floats, xsimd::aligned_allocator<Floats>> crossed_; ///< column of each medium in the slice
     LightsOfCluster found_;
     std::vector<WeightedLight> near_;
     float random_ = 0;
@@ -245,6 +278,11 @@ void FogGrid::compute(const RasterSceneData& data, const RasterSettings& setting
     scale_ = static_cast<float>(std::max(length(camera.look_at - camera.eye), 1e-6));
     find_distances(gbuffer, options);
     light_.set_size(columns_, rows_ * (slices_ + 1));
+    const bool varies = std::ranges::any_of(media_, [](const Medium& medium) { return medium.density != nullptr; });
+    if (varies)
+        stopped_.set_size(columns_, rows_ * (slices_ + 1));
+    else
+        stopped_ = {};
     std::vector<FrameLight> lights;
     if (settings.components.direct) lights = frame_lights(data.scene.lights, *projection_);
     const LightSet light_set(lights, nullptr);
@@ -252,13 +290,14 @@ void FogGrid::compute(const RasterSceneData& data, const RasterSettings& setting
     if (settings.shadows && data.soft_shadows) shadows.emplace(data, projection_->eye(), options.time);
     parallel_for(static_cast<std::size_t>(rows_), options.threads, [&](std::size_t y) {
         Lighter lighter(*this, lights, light_set, shadows ? &*shadows : nullptr, ambient);
-        for (int x = 0; x < columns_; x += kBatch) lighter.light_columns(x, static_cast<int>(y), light_);
+        for (int x = 0; x < columns_; x += kBatch) lighter.light_columns(x, static_cast<int>(y), light_, stopped_);
     });
 }
 
 /// Returns the light that arrives from before the surfaces. The slice in which they are counts as if it scattered light
 /// evenly.
-Color FogGrid::light_before(int x, int y, const PixelRays& rays) const {
+/// `depth` is the optical depth up to the surface.
+Color FogGrid::light_before(int x, int y, const PixelRays& rays, const Color& depth) const {
     const Floats distance = min(rays.distance, Floats(distances_.back()));
     const Floats slice =
         xsimd::log1p(max(distance - Floats(nearest_), kNone) * Floats(1 / scale_)) * Floats(slices_per_log_);
@@ -272,18 +311,27 @@ Color FogGrid::light_before(int x, int y, const PixelRays& rays) const {
         const Floats scattered = some * mean_transmittance(some) / max(all * mean_transmittance(all), Floats(1e-12f));
         return xsimd::select(all > Floats(1e-6f), scattered, within / length);
     };
-    return interpolate(x, y, k, {fraction(whole.r, part.r), fraction(whole.g, part.g), fraction(whole.b, part.b)});
+    const Color fractions{fraction(whole.r, part.r), fraction(whole.g, part.g), fraction(whole.b, part.b)};
+    const Color light = interpolate(light_, x, y, k, fractions);
+    if (stopped_.empty()) return light;
+    // A cloud's edge is sharper than froxels. What it scatters to a pixel is in proportion to what it stops there.
+    const Color around = interpolate(stopped_, x, y, k, fractions);
+    const auto share = [](const Floats& own_depth, const Floats& mean) {
+        const Floats least(1e-5f); // of both, so that thin haze keeps its light
+        return min((least - xsimd::expm1(-own_depth)) / (least + mean), Floats(2.0f));
+    };
+    return light * Color(share(depth.r, around.r), share(depth.g, around.g), share(depth.b, around.b));
 }
 
 /// Interpolates between the rays of the four nearest columns, and linearly between both ends of each slice.
-Color FogGrid::interpolate(int x, int y, const Ints& slices, const Color& within) const {
+Color FogGrid::interpolate(const Planes3& planes, int x, int y, const Ints& slices, const Color& within) const {
     const float per_pixel = 1 / static_cast<float>(side_);
     const Floats across = lane_offsets(static_cast<float>(x), 1) * Floats(per_pixel);
     const Floats left = min(xsimd::floor(across), Floats(static_cast<float>(std::max(columns_ - 2, 0)))),
                  fx = across - left;
     const int top = std::min(y / side_, std::max(rows_ - 2, 0)), right = columns_ > 1 ? 1 : 0;
     const float below = static_cast<float>(y) * per_pixel - static_cast<float>(top);
-    const Ints at = slices * Ints(light_.x.stride()) + truncated(left);
+    const Ints at = slices * Ints(planes.x.stride()) + truncated(left);
     Color result(kNone);
     for (int j = 0; j < std::min(rows_, 2); ++j) {
         const auto channel = [&](const PlaneFloat& plane, const Floats& fz) {
@@ -293,7 +341,7 @@ Color FogGrid::interpolate(int x, int y, const Ints& slices, const Color& within
             };
             return lerp(at_end(0), at_end(1), fz);
         };
-        result += Color(channel(light_.x, within.r), channel(light_.y, within.g), channel(light_.z, within.b)) *
+        result += Color(channel(planes.x, within.r), channel(planes.y, within.g), channel(planes.z, within.b)) *
                   Floats(j == 0 ? 1 - below : below);
     }
     return result;
@@ -316,9 +364,9 @@ Planes3 FogGrid::haze(const GBuffer& gbuffer, int threads) const {
 void FogGrid::apply(const GBuffer& gbuffer, int threads, bool scattered, Planes3& radiance) const {
     for_each_batch(gbuffer.width(), gbuffer.height(), threads, [&](int x, int y) {
         const PixelRays rays(gbuffer, x, y);
-        Color sum = radiance.color(x, y) *
-                    transmittance(optical_depth<Floats>(media_, rays.origin, rays.direction, rays.distance));
-        if (scattered) sum += light_before(x, y, rays);
+        const Color depth = optical_depth<Floats>(media_, rays.origin, rays.direction, rays.distance);
+        Color sum = radiance.color(x, y) * transmittance(depth);
+        if (scattered) sum += light_before(x, y, rays, depth);
         radiance.set(x, y, sum);
     });
 }

@@ -45,7 +45,7 @@ public:
     /// Returns, for each pixel, the fraction of light that fills the media evenly which they scatter to the viewer. It
     /// is exact where the media scatter the same fraction of the light that they stop.
     Planes3 haze(const GBuffer& gbuffer, int threads) const;
-    std::size_t memory_bytes() const { return light_.memory_bytes(); }
+    std::size_t memory_bytes() const { return light_.memory_bytes() + stopped_.memory_bytes(); }
 
     static constexpr std::size_t kMostLights = 64; ///< that stand for all that reach some neighboring froxels
 
@@ -56,8 +56,8 @@ private:
 
     void find_distances(const GBuffer& gbuffer, const FogOptions& options);
     Columns columns(int x, int y) const;
-    RgbT<Floats> light_before(int x, int y, const PixelRays& rays) const;
-    RgbT<Floats> interpolate(int x, int y, const Ints& slices, const RgbT<Floats>& within) const;
+    RgbT<Floats> light_before(int x, int y, const PixelRays& rays, const RgbT<Floats>& depth) const;
+    RgbT<Floats> interpolate(const Planes3& planes, int x, int y, const Ints& slices, const RgbT<Floats>& within) const;
     int row(int y, int slice) const { return y * (slices_ + 1) + slice; }
 
     std::vector<Medium> media_; ///< relative to the eye
@@ -66,7 +66,8 @@ private:
     PlaneFloat farthest_;          ///< distance of the farthest surface in a froxel's column of pixels
     std::vector<float> distances_; ///< of the slices' ends, from the nearest
     float nearest_ = 0, scale_ = 1, slices_per_log_ = 0;
-    Planes3 light_; ///< that arrives from before each slice's end; row(y, slice) holds a row of froxels
+    Planes3 light_;   ///< that arrives from before each slice's end; row(y, slice) holds a row of froxels
+    Planes3 stopped_; ///< likewise, the fraction of light that is stopped; empty unless a density varies
 };
 
 } // namespace duet::raster

@@ -110,7 +110,7 @@ private:
     void add(const LitBatch& batch, const FrameLight& light, float weight, LitBatch::Lobes lobes,
              const Vec3T<Floats>& facet, int x, int y, Sum& sum) const {
         RgbT<Floats> reflected = batch.reflected(light, lobes) * Floats(weight);
-        if (!media_.empty()) {
+        if (!media_.empty() && lane_bits(max_component(reflected) > Floats(0.0f)) != 0) {
             const LightDirection to = direction_to(light, batch.p());
             reflected *= transmittance(optical_depth(media_, batch.p(), to.wi, to.distance));
         }

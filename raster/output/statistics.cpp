@@ -122,6 +122,8 @@ std::vector<std::string> approximations(const RasterSceneData& data, const Raste
            "Emissive surfaces that move, and stretched spheres, are visible but light nothing.");
     if (scene.media.empty() || !settings.fog) return result;
     add_if(true, "Light that media scatter is computed in cells of 8 x 8 pixels by 64 slices.");
+    add_if(parts.direct && std::ranges::any_of(scene.media, [](const Medium& m) { return m.density != nullptr; }),
+           "Light that clouds scatter more than once is estimated by octaves.");
     add_if(parts.direct && scene.lights.size() > FogGrid::kMostLights,
            "Where more than 64 lights reach a part of the media, as many stand for all.");
     add_if(parts.environment && data.irradiance_probes && settings.indirect_light,

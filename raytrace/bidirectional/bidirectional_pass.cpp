@@ -22,7 +22,7 @@ void check_bidirectional(const Scene& scene, const PathTracerSettings& settings)
         throw Error(message("a dielectric of the scene absorbs or has a priority, which the integrator ",
                             integrator_name(settings.integrator), " does not support: expected another"));
     if (scene.needs.media)
-        throw Error(message("the scene has fog, which the integrator ", integrator_name(settings.integrator),
+        throw Error(message("the scene has media, which the integrator ", integrator_name(settings.integrator),
                             " does not support: expected another"));
 }
 

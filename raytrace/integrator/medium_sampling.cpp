@@ -3,7 +3,6 @@
 #include "common/sampling/hash.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 
@@ -11,251 +10,158 @@ namespace duet::raytrace {
 
 namespace {
 
+// Draws random numbers in [0, 1) that follow from one.
+class RandomSequence {
+public:
+    explicit RandomSequence(float u) : stream_(mix_bits(std::bit_cast<std::uint32_t>(u) + kGoldenGamma)) {}
+    float operator()() { return unit_float(high_bits(stream_number(stream_, drawn_++))); }
+
+private:
+    std::uint64_t stream_, drawn_ = 0;
+};
+
+// A channel that was chosen with a probability in proportion to its weight.
+struct ChosenChannel {
+    Rgb probabilities; // of all channels
+    std::size_t index;
+
+    ChosenChannel(Rgb weights, float u) : probabilities(weights / (weights.r + weights.g + weights.b)) {
+        const Rgb& p = probabilities;
+        index = u < p.r ? 0 : u < p.r + p.g || p.b == 0 ? 1 : 2;
+    }
+    // Returns the mean over the choice.
+    float mean(Rgb values) const {
+        const Rgb products = probabilities * values;
+        return products.r + products.g + products.b;
+    }
+};
+
 // Returns x · y, or 0 if x is 0 and y is infinite.
 float product(float x, float y) { return x > 0 ? x * y : 0.0f; }
-// Returns x / y, or 0 if both are 0.
-Rgb ratio(Rgb x, Rgb y) {
-    const auto divide = [](float a, float b) { return b > 0 ? a / b : 0.0f; };
-    return {divide(x.r, y.r), divide(x.g, y.g), divide(x.b, y.b)};
+
+// Calls function(channel) for each channel.
+template <typename Function> Rgb for_channels(const Function& function) {
+    return {function(0), function(1), function(2)};
 }
 
-// Carries a path over a distance on which it is not scattered.
-void pass(const MediumStretch& stretch, float distance, Rgb& throughput, Rgb& emitted) {
-    if (is_black(stretch.absorption)) return;
-    const auto depth = [&](float absorption) { return product(absorption, distance); };
-    const Rgb depths(depth(stretch.absorption.r), depth(stretch.absorption.g), depth(stretch.absorption.b));
-    // Several media emit like one whose radiance is their mean by absorption.
-    const Rgb absorbed(-std::expm1(-depths.r), -std::expm1(-depths.g), -std::expm1(-depths.b));
-    emitted += throughput * absorbed * ratio(stretch.emission, stretch.absorption);
-    throughput *= Rgb(std::exp(-depths.r), std::exp(-depths.g), std::exp(-depths.b));
+// Returns the optical depth of all media but media[index] on [0, t_end] of the ray.
+Rgb depth_of_others(std::span<const Medium> media, std::size_t index, const Ray& ray, float t_end) {
+    return optical_depth(media.first(index), ray.origin, ray.direction, t_end) +
+           optical_depth(media.subspan(index + 1), ray.origin, ray.direction, t_end);
 }
-
-// Returns the coefficients of scattering in the channels in which the path still carries light.
-Rgb scattering_of_path(const MediumStretch& stretch, Rgb throughput) {
-    const Rgb& s = stretch.scattering;
-    return {throughput.r > 0 ? s.r : 0, throughput.g > 0 ? s.g : 0, throughput.b > 0 ? s.b : 0};
-}
-
-// Returns the asymmetry of one of the media on the stretch that begins at t, chosen by its share of their scattering.
-float choose_asymmetry(std::span<const Medium> media, const Ray& ray, float t, float t_end, const Rgb& all, float u,
-                       Rgb& throughput) {
-    float left = u * average(all);
-    const Medium* chosen = nullptr;
-    for (const Medium& medium : media) {
-        const Interval inside = overlap(medium.box, ray, t_end);
-        if (inside.empty() || !(inside.begin <= t && t < inside.end) || is_black(medium.scattering)) continue;
-        chosen = &medium;
-        left -= average(medium.scattering);
-        if (left < 0) break;
+// Returns whether another medium than media[index] is on the interval of the ray.
+bool others_overlap(std::span<const Medium> media, std::size_t index, const Ray& ray, Interval interval) {
+    for (std::size_t i = 0; i < media.size(); ++i) {
+        const Interval other = overlap(media[i].box, ray, interval.end);
+        if (i != index && !other.empty() && other.end > interval.begin) return true;
     }
-    throughput *= ratio(chosen->scattering, all) * (average(all) / average(chosen->scattering));
-    return chosen->asymmetry;
+    return false;
+}
+
+// Returns the light that a medium emits on [0, t_end] of the ray, times the path's throughput. A medium alone is
+// integrated in closed form, whatever its density is. If others overlap it on the ray, the light of one random point
+// stands for all.
+Rgb sample_emission(std::span<const Medium> media, std::size_t index, const Ray& ray, float t_end, Rgb throughput,
+                    RandomSequence& random) {
+    const Medium& medium = media[index];
+    if (is_black(throughput * medium.absorption * medium.radiance)) return {};
+    const Interval inside = overlap(medium.box, ray, t_end);
+    const float column = column_of(medium, ray.origin, ray.direction, inside);
+    if (!(column > 0)) return {};
+    // Of the light that the medium stops, σa / (σs + σa) is absorbed, and it emits as much of its radiance.
+    const Rgb extinction = medium.scattering + medium.absorption;
+    const Rgb stopped = for_channels([&](std::size_t c) { return -std::expm1(-product(extinction[c], column)); });
+    const Rgb source = throughput * medium.radiance * for_channels([&](std::size_t c) {
+                           return medium.absorption[c] > 0 ? medium.absorption[c] / extinction[c] : 0.0f;
+                       });
+    const Rgb alone = source * stopped;
+    if (is_black(alone)) return {};
+    if (!others_overlap(media, index, ray, inside))
+        return alone * transmittance(depth_of_others(media, index, ray, inside.begin));
+
+    const ChosenChannel channel(alone, random());
+    const float sigma = extinction[channel.index]; // > 0, because the medium emits in this channel
+    const float passed = -std::log1p(-random() * stopped[channel.index]) / sigma;
+    const float t = std::min(follow(medium, ray, inside, passed).t, inside.end);
+    const Rgb before = for_channels([&](std::size_t c) { return std::exp(-extinction[c] * passed); });
+    const Rgb density =
+        for_channels([&](std::size_t c) { return alone[c] > 0 ? extinction[c] * before[c] / stopped[c] : 0.0f; });
+    return source * extinction * before * transmittance(depth_of_others(media, index, ray, t)) / channel.mean(density);
+}
+
+// The optical depths of all media up to a point of a ray.
+struct OpticalDepths {
+    Rgb extinction, scattering;
+
+    void add(const Medium& medium, float column) {
+        const Rgb& s = medium.scattering;
+        extinction += optical_depth(medium, column);
+        scattering += Rgb(product(s.r, column), product(s.g, column), product(s.b, column));
+    }
+};
+OpticalDepths optical_depths(std::span<const Medium> media, const Ray& ray, float t_end) {
+    OpticalDepths depths;
+    for (const Medium& medium : media)
+        depths.add(medium, column_of(medium, ray.origin, ray.direction, overlap(medium.box, ray, t_end)));
+    return depths;
 }
 
 } // namespace
 
 std::optional<MediumCollision> sample_collision(std::span<const Medium> media, const Ray& ray, float t_end, float u,
                                                 Rgb& throughput, Rgb& emitted) {
-    const std::uint64_t stream = mix_bits(std::bit_cast<std::uint32_t>(u) + kGoldenGamma);
-    std::uint64_t drawn = 0;
-    const auto random = [&] { return unit_float(high_bits(stream_number(stream, drawn++))); };
-    float depth = -std::log1p(-u); // optical depth up to the next tentative collision
-    for (float t = 0; t < t_end;) {
-        const MediumStretch stretch = stretch_at(media, ray, t, t_end);
-        const Rgb scattering = scattering_of_path(stretch, throughput);
-        const float majorant = max_component(scattering), rest = product(majorant, stretch.end - t);
-        if (rest <= depth) {
-            pass(stretch, stretch.end - t, throughput, emitted);
-            depth -= rest;
-            t = stretch.end;
-            continue;
+    if (is_black(throughput)) return std::nullopt;
+    RandomSequence random(u);
+    for (std::size_t i = 0; i < media.size(); ++i) emitted += sample_emission(media, i, ray, t_end, throughput, random);
+    const ChosenChannel channel(throughput, random());
+    OpticalDepths depths; // up to the first collision so far
+    const Medium* collided = nullptr;
+    bool first = true; // the given number, which samples spread evenly, is that of the first medium on the ray
+    for (std::size_t i = 0; i < media.size(); ++i) {
+        const Interval inside = overlap(media[i].box, ray, t_end);
+        if (inside.empty()) continue;
+        const float depth = -std::log1p(first ? -u : -random());
+        first = false;
+        const float sigma = media[i].scattering[channel.index];
+        const PassedColumn passed = follow(media[i], ray, inside, sigma > 0 ? depth / sigma : kInfinity);
+        if (passed.t < t_end) {
+            t_end = passed.t;
+            collided = &media[i];
+            depths = optical_depths(media.first(i), ray, t_end);
         }
-        const float begin = t;
-        t += depth / majorant;
-        pass(stretch, depth / majorant, throughput, emitted);
-        const Rgb real = scattering / majorant, null = Rgb(1.0f) - real;
-        const float weight = max_component(throughput * real), null_weight = max_component(throughput * null);
-        if (!(weight + null_weight > 0)) return MediumCollision{t, 0}; // absorption leaves nothing, or it is invalid
-        const float probability = weight / (weight + null_weight);
-        if (random() < probability) {
-            throughput *= real / probability;
-            return MediumCollision{
-                t, choose_asymmetry(media, ray, begin, t_end, stretch.scattering, random(), throughput)};
-        }
-        // This ends the path in the channel that scatters most. So there are two null collisions at most.
-        throughput *= null / (1 - probability);
-        depth = -std::log1p(-random());
+        depths.add(media[i], passed.column);
     }
-    return std::nullopt;
+    Rgb value = transmittance(depths.extinction), density = transmittance(depths.scattering);
+    if (collided != nullptr) {
+        value *= collided->scattering;
+        density *= collided->scattering;
+    }
+    const float mean = channel.mean(density);
+    throughput *= mean == 0 ? Rgb() : value / mean; // of a throughput that is invalid, the result is invalid
+    if (collided == nullptr) return std::nullopt;
+    return MediumCollision{t_end, collided->asymmetry};
 }
 
-namespace {
-
-// Returns the part of [0, t_end] from the first to the last point at which a medium scatters light, if there is any.
-Interval scattering_range(std::span<const Medium> media, const Ray& ray, float t_end) {
-    Interval range{t_end, 0};
+Rgb estimate_transmittance(std::span<const Medium> media, const Ray& ray, float t_end, float u) {
+    constexpr float kDeep = 3; // an optical depth behind which 5 % of the light are left
+    RandomSequence random(u);
+    Rgb depth;
     for (const Medium& medium : media) {
         const Interval inside = overlap(medium.box, ray, t_end);
-        if (inside.empty() || is_black(medium.scattering)) continue;
-        range.begin = std::min(range.begin, inside.begin);
-        range.end = std::max(range.end, inside.end);
+        if (inside.empty()) continue;
+        const Rgb extinction = medium.scattering + medium.absorption;
+        const float least = std::min({extinction.r, extinction.g, extinction.b});
+        if (!medium.density || least == 0) {
+            depth += optical_depth(medium, column_of(medium, ray.origin, ray.direction, inside));
+            continue;
+        }
+        const float survived = kDeep - std::log1p(-random()); // the optical depth at which roulette ends the ray
+        const PassedColumn passed = follow(medium, ray, inside, survived / least);
+        if (passed.t < kInfinity) return {};
+        depth += optical_depth(medium, passed.column);
+        depth += Rgb(std::min(kDeep - least * passed.column, 0.0f)); // over the probability to survive
     }
-    return range;
-}
-
-// Returns the sum of σs times the phase function over the media at t, 1/(m sr), for light from wi.
-Rgb scattering_at(std::span<const Medium> media, const Ray& ray, float t, Vec3 wi) {
-    Rgb sum;
-    for (const Medium& medium : media) {
-        const Interval inside = overlap(medium.box, ray, kInfinity);
-        if (inside.begin <= t && t < inside.end) sum += medium.scattering * phase(ray.direction, wi, medium.asymmetry);
-    }
-    return sum;
-}
-
-// Returns the part of the range in which a ray is inside of the cone of a spot light, or a longer one. A point of the
-// ray is inside if its height over the apex, along the axis, is at least cos θ times its distance from there. The
-// squares of both are equal at the roots of a quadratic equation.
-Interval lit_range(const SpotLight& light, const Ray& ray, Interval range) {
-    if (light.cos_outer <= 0) return range; // the cone is not convex
-    const Vec3d axis(light.direction), d(ray.direction), from_apex = Vec3d(ray.origin) - Vec3d(light.position);
-    const double cosine2 = sqr(static_cast<double>(light.cos_outer));
-    const double height = dot(axis, from_apex), slope = dot(axis, d);
-    const double a = sqr(slope) - cosine2, b = height * slope - cosine2 * dot(from_apex, d);
-    const double c = sqr(height) - cosine2 * length_squared(from_apex);
-    const double discriminant = sqr(b) - a * c;
-    if (std::abs(a) < 1e-9) return range;
-    if (discriminant <= 0) return a < 0 ? Interval{} : range;
-    const double q = -(b + std::copysign(std::sqrt(discriminant), b)); // without cancellation
-    const double roots[] = {q / a, q == 0 ? 0 : c / q};
-    const float first = static_cast<float>(std::min(roots[0], roots[1])),
-                second = static_cast<float>(std::max(roots[0], roots[1]));
-    if (a > 0) // the ray is steeper than the cone, and stays inside of it
-        return slope > 0 ? Interval{std::max(range.begin, second), range.end}
-                         : Interval{range.begin, std::min(range.end, first)};
-    if (height + slope * (roots[0] + roots[1]) / 2 < 0) return {}; // the mirror image of the cone, behind the light
-    return {std::max(range.begin, first), std::min(range.end, second)};
-}
-
-// A LightOnRay says how to sample the distances at which the light of a delta light is scattered.
-struct LightOnRay {
-    float intensity; // mean of the channels
-    ScatteringDistance distance;
-
-    // Returns what the light sends to the ray without media and occluders, by the roughest estimate.
-    float weight() const { return intensity * distance.integral(); }
-};
-// Returns nothing if the light does not reach the range.
-std::optional<LightOnRay> light_on_ray(std::span<const Medium> media, const Light& light, const Ray& ray,
-                                       Interval range) {
-    const auto extinction = [&](float t) {
-        const MediumStretch stretch = stretch_at(media, ray, t, range.end);
-        return average(stretch.scattering + stretch.absorption);
-    };
-    if (const auto* sun = std::get_if<SunLight>(&light))
-        return LightOnRay{average(sun->irradiance), {range, extinction(range.begin)}};
-    if (const auto* point = std::get_if<PointLight>(&light))
-        return LightOnRay{average(point->intensity), {ray, point->position, range, extinction(range.begin)}};
-    const auto& spot = std::get<SpotLight>(light);
-    range = lit_range(spot, ray, range);
-    if (range.empty()) return std::nullopt;
-    return LightOnRay{average(spot.intensity), {ray, spot.position, range, extinction(range.begin)}};
-}
-
-// Chooses one delta light of at most kCandidates by its weight. If there are more, every k-th is a candidate, from a
-// random one on.
-constexpr std::size_t kCandidates = 8;
-
-struct ChosenLight {
-    std::size_t index;
-    float probability;
-    ScatteringDistance distance;
-};
-std::optional<ChosenLight> choose_light(const RenderPlan& plan, const Ray& ray, Interval range, float u) {
-    const std::size_t stride = (plan.delta_lights + kCandidates - 1) / kCandidates;
-    const float scaled = u * static_cast<float>(stride);
-    const std::size_t first = std::min(static_cast<std::size_t>(scaled), stride - 1);
-    std::array<std::optional<LightOnRay>, kCandidates> candidates;
-    float sum = 0;
-    for (std::size_t i = first, k = 0; i < plan.delta_lights; i += stride, ++k) {
-        candidates[k] = light_on_ray(plan.scene.media, plan.scene.lights[i], ray, range);
-        if (candidates[k]) sum += candidates[k]->weight();
-    }
-    float left = (scaled - static_cast<float>(first)) * sum;
-    std::optional<ChosenLight> chosen;
-    for (std::size_t i = first, k = 0; i < plan.delta_lights && left >= 0; i += stride, ++k) {
-        const float weight = candidates[k] ? candidates[k]->weight() : 0;
-        if (!(weight > 0)) continue;
-        chosen = ChosenLight{i, weight / (sum * static_cast<float>(stride)), candidates[k]->distance};
-        left -= weight;
-    }
-    return chosen;
-}
-
-} // namespace
-
-std::optional<ScatteredLight> sample_scattered_light(const RenderPlan& plan, const Ray& ray, float t_end, Vec2 u) {
-    const std::vector<Medium>& media = plan.scene.media;
-    const Interval range = scattering_range(media, ray, t_end);
-    if (range.empty()) return std::nullopt;
-    const std::optional<ChosenLight> chosen = choose_light(plan, ray, range, u.y);
-    if (!chosen) return std::nullopt;
-    const float t = chosen->distance.sample(u.x);
-    const MediumVertex vertex{ray.at(t), ray.direction, ray.time, 0};
-    const std::optional<LightSample> s = sample_light(plan.scene.lights[chosen->index], vertex.p, {});
-    if (!s) return std::nullopt;
-    const float pdf = chosen->probability * chosen->distance.pdf(t);
-    const Rgb scattering = scattering_at(media, ray, t, s->wi) / pdf; // at first, because each of both may be huge
-    const Rgb radiance = transmittance(media, ray, t) * scattering * s->radiance *
-                         transmittance(media, spawn_ray(plan, vertex, s->wi), s->distance);
-    if (is_black(radiance)) return std::nullopt;
-    return ScatteredLight{vertex, light_sample(*s, {chosen->index, pdf, 0}), radiance};
-}
-
-ScatteringDistance::ScatteringDistance(Interval range, float extinction)
-    : range_(range), extinction_(extinction), scattered_(-std::expm1(-product(extinction, range.end - range.begin))) {}
-
-ScatteringDistance::ScatteringDistance(const Ray& ray, Vec3 light, Interval range, float extinction)
-    : ScatteringDistance(range, extinction) {
-    const Vec3 to_light = light - ray.at(range.begin);
-    // A light on the ray itself would leave no distance but its own to draw, so it counts as slightly beside it.
-    height_ = std::max(length(cross(to_light, ray.direction)), 1e-5f * std::max(length(to_light), 1e-30f));
-    begin_ = -dot(to_light, ray.direction);
-    const float end = begin_ + (range.end - range.begin);
-    // The difference of the angles to both ends would cancel for a distant light.
-    angle_ = end < kInfinity ? std::atan2(height_ * (range.end - range.begin), sqr(height_) + begin_ * end)
-                             : std::atan2(height_, begin_);
-    share_of_angles_ = scattered_ > 0 ? 0.5f : 1.0f;
-}
-
-float ScatteringDistance::sample_angle(float u) const {
-    // This is the tangent of a sum of angles, less the tangent of the first. The sum is below π/2, so the denominator
-    // is positive.
-    const float cosine = std::cos(angle_ * u), sine = std::sin(angle_ * u);
-    const float distance = (sqr(height_) + sqr(begin_)) * sine / (height_ * cosine - begin_ * sine);
-    return distance >= 0 ? std::min(range_.begin + distance, range_.end) : range_.end; // rounded beyond π/2
-}
-
-float ScatteringDistance::sample_transmittance(float u) const {
-    return std::min(range_.begin - std::log1p(-u * scattered_) / extinction_, range_.end);
-}
-
-float ScatteringDistance::sample(float u) const {
-    return u < share_of_angles_ ? sample_angle(u / share_of_angles_)
-                                : sample_transmittance((u - share_of_angles_) / (1 - share_of_angles_));
-}
-
-float ScatteringDistance::pdf(float t) const {
-    const float distance = t - range_.begin;
-    float density = 0;
-    if (share_of_angles_ > 0) density = share_of_angles_ * height_ / (angle_ * (sqr(height_) + sqr(begin_ + distance)));
-    if (share_of_angles_ < 1)
-        density += (1 - share_of_angles_) * extinction_ * std::exp(-extinction_ * distance) / scattered_;
-    return density;
-}
-
-float ScatteringDistance::integral() const {
-    return share_of_angles_ > 0 ? angle_ / height_ : std::min(range_.end - range_.begin, 1 / extinction_);
+    return transmittance(depth);
 }
 
 } // namespace duet::raytrace

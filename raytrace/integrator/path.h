@@ -12,6 +12,7 @@
 #include "raytrace/integrator/medium_stack.h"
 #include "raytrace/integrator/path_footprint.h"
 #include "raytrace/integrator/path_state.h"
+#include "raytrace/integrator/scattered_light.h"
 
 #include <type_traits>
 #include <utility>
@@ -192,7 +193,7 @@ private:
         if constexpr (std::is_same_v<AnyVertex, MediumVertex>)
             if (light_sample->delta) return log_no_light_sample("the chosen light is sampled along the whole ray");
         Rgb scattered = scattered_light(vertex, *light_sample);
-        if constexpr (kHasMedia) scattered *= transmittance_to_light(vertex, *light_sample);
+        if constexpr (kHasMedia) scattered *= transmittance_to_light(vertex, *light_sample, u.light.y);
         if (is_black(scattered) && !plan_.black_shadow_rays)
             return log_no_light_sample("the surface does not scatter the chosen light towards here");
         const LightSource source = light_sample->light < 0 ? LightSource::kEnvironment : LightSource::kLight;
@@ -253,20 +254,22 @@ private:
         return glass != nullptr && !glass->thin;
     }
 
-    // Returns the transmittance of a light sample through what fills the space on its side of the surface.
-    Rgb transmittance_to_light(const Vertex& vertex, const LightLiSample& light_sample) const {
+    // Returns the transmittance of a light sample through what fills the space on its side of the surface. It is an
+    // estimate, which u decides.
+    Rgb transmittance_to_light(const Vertex& vertex, const LightLiSample& light_sample, float u) const {
         const Ray ray{vertex.point.p, light_sample.wi};
         if (same_hemisphere(vertex.wo, vertex.frame.to_local(light_sample.wi)) || !has_interior(vertex))
-            return transmittance_inside(medium_stack_, ray, light_sample.distance);
+            return transmittance_inside(medium_stack_, ray, light_sample.distance, u);
         MediumStack beyond = medium_stack_;
         beyond.cross(vertex.point.material, vertex.wo.z > 0);
-        return transmittance_inside(beyond, ray, light_sample.distance);
+        return transmittance_inside(beyond, ray, light_sample.distance, u);
     }
-    Rgb transmittance_to_light(const MediumVertex& vertex, const LightLiSample& light_sample) const {
-        return transmittance(plan_.scene.media, Ray{vertex.p, light_sample.wi}, light_sample.distance);
+    Rgb transmittance_to_light(const MediumVertex& vertex, const LightLiSample& light_sample, float u) const {
+        return estimate_transmittance(plan_.scene.media, Ray{vertex.p, light_sample.wi}, light_sample.distance, u);
     }
-    Rgb transmittance_inside(const MediumStack& stack, const Ray& ray, float distance) const {
-        return stack.in_dielectric() ? stack.transmittance(distance) : transmittance(plan_.scene.media, ray, distance);
+    Rgb transmittance_inside(const MediumStack& stack, const Ray& ray, float distance, float u) const {
+        return stack.in_dielectric() ? stack.transmittance(distance)
+                                     : estimate_transmittance(plan_.scene.media, ray, distance, u);
     }
 
     // Carries the path through the media on [0, t_end] of the ray, and adds the light that they emit, and that they

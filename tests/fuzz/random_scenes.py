@@ -20,7 +20,7 @@ import pathlib
 import random
 import struct
 
-from scene_assets import ENVIRONMENTS, IMAGES, MESHES, write_assets
+from scene_assets import ENVIRONMENTS, IMAGES, MESHES, SMOKE, SMOKE_POINTS, write_assets
 
 CONDUCTORS = ["aluminium", "chromium", "cobalt", "copper", "gold", "iron", "nickel", "palladium", "platinum", "silver",
               "titanium", "tungsten"]
@@ -389,11 +389,19 @@ class Scene:
             "rotate_degrees": self.pick([90, self.uniform(-720, 720), LARGEST])})}
 
     def medium(self):
-        """Fog in a box, in a part of space that is open on some sides, or everywhere."""
+        """Fog in a box, in a part of space that is open on some sides, or everywhere; a cloud; smoke."""
         self.places.append(self.place())
-        return {"type": "fog", **self.some(self.box(), 0.9), **self.some({
+        coefficients = self.some({
             "scattering": self.power(0.3 / self.unit), "absorption": self.power(0.3 / self.unit),
-            "radiance": self.power(1), "asymmetry": self.pick([-0.99, 0, 0.99, self.uniform(-0.9, 0.9)])}, 0.6)}
+            "radiance": self.power(1), "asymmetry": self.pick([-0.99, 0, 0.99, self.uniform(-0.9, 0.9)])}, 0.6)
+        kind = self.pick(["fog", "cloud", "smoke"])
+        if kind == "fog":
+            return {"type": kind, **self.some(self.box(), 0.9), **coefficients}
+        if kind == "smoke":
+            return {"type": kind, **self.box(), "file": SMOKE, "resolution": SMOKE_POINTS, **coefficients}
+        return {"type": kind, **self.box(), "resolution": self.random.randint(1, 24), **coefficients, **self.some({
+            "scale": self.log_uniform(0.1, 10) / self.unit, "octaves": self.random.randint(1, 16),
+            "coverage": self.fraction(), "softness": self.log_uniform(1e-3, 1e3)}, 0.6)}
 
     def file(self):
         """The whole scene. The order of its keys is random."""

@@ -6,6 +6,7 @@ import zlib
 
 MESHES = ["torus.obj", "sheet.obj", "soup.obj", "polygons.obj", "materials.obj"]
 IMAGES = ["rgb.png", "rgba.png", "gray.png", "colors.ppm", "colors.tga", "linear.pfm", "sky.hdr"]
+SMOKE, SMOKE_POINTS = "smoke.raw", [3, 5, 4]
 ENVIRONMENTS = ["sky.hdr", "linear.pfm", "rgb.png"]
 
 # One material for each row of the table of MTL files in models/README.md, and further ones for the maps.
@@ -46,6 +47,7 @@ def images():
         "rgb.png": png(16, 8, 3, pixel_values), "rgba.png": png(9, 7, 4, pixel_values),
         "gray.png": png(1, 13, 1, pixel_values), "colors.ppm": b"P6\n6 4\n255\n" + ppm, "colors.tga": tga,
         "linear.pfm": b"PF\n10 5\n-1.0\n" + pfm,
+        SMOKE: bytes(i * 37 % 256 if i % 4 else 0 for i in range(3 * 5 * 4)),
         "sky.hdr": b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8 +X 16\n" + bytes(hdr),
     }
 

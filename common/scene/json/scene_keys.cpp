@@ -58,6 +58,11 @@ const std::vector<JsonKeys>& scene_keys() {
         {"image_environment", {"type", "file"}, {"scale", "rotate_degrees"}},
 
         {"fog", {"type"}, {"low", "high", "scattering", "absorption", "radiance", "asymmetry"}},
+        {"cloud",
+         {"type", "low", "high"},
+         {"scattering", "absorption", "radiance", "asymmetry", "scale", "octaves", "coverage", "softness",
+          "resolution"}},
+        {"smoke", {"type", "low", "high", "file", "resolution"}, {"scattering", "absorption", "radiance", "asymmetry"}},
     };
     return all;
 }

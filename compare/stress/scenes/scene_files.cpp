@@ -44,9 +44,9 @@ std::string triangle_soup(TrialRandom& random) {
     std::ostringstream obj;
     for (int i = 0; i < 40; ++i) {
         const Vec3 a = random.vector(), edge = random.vector() * random.log_uniform(1e-4f, 2);
-        const Vec3 b = a + edge, c = i % 4 == 0 ? a + edge * 0.5f + random.vector() * random.log_uniform(1e-9f, 1e-3f)
-                                : i % 9 == 0    ? a
-                                                : a + random.vector();
+        const Vec3 b = a + edge, c = i % 4 == 0   ? a + edge * 0.5f + random.vector() * random.log_uniform(1e-9f, 1e-3f)
+                                     : i % 9 == 0 ? a
+                                                  : a + random.vector();
         for (const Vec3 p : {a, b, c}) obj << "v " << p.x << ' ' << p.y << ' ' << p.z << '\n';
         obj << "f -3 -2 -1\n";
     }
@@ -97,7 +97,12 @@ std::map<std::string, std::vector<std::string>> write_scene_files(const fs::path
     write_image(folder / "pixel.ppm", noise(1, 1, 1, random));
     write_image(folder / "sky.exr", noise(16, 8, 1e5f, random));
     write_image(folder / "dim.hdr", noise(5, 3, 0, random));
-    return {{"mesh", {"sphere.obj", "waves.obj", "soup.obj", "tetrahedron.obj", "materials.obj"}},
+    std::string densities;
+    for (int i = 0; i < kGridPoints[0] * kGridPoints[1] * kGridPoints[2]; ++i)
+        densities.push_back(static_cast<char>(i % 3 == 0 ? 0 : random.below(256)));
+    write_file(folder / "smoke.raw", densities);
+    return {{"smoke", {"smoke.raw"}},
+            {"mesh", {"sphere.obj", "waves.obj", "soup.obj", "tetrahedron.obj", "materials.obj"}},
             {"image_texture", {"colors.png", "mask.tga", "pixel.ppm", "sky.exr"}},
             {"image_environment", {"sky.exr", "dim.hdr", "colors.png"}}};
 }

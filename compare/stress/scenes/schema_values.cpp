@@ -1,6 +1,7 @@
 #include "compare/stress/scenes/schema_values.h"
 
 #include "common/system/error.h"
+#include "compare/stress/scenes/scene_files.h"
 
 #include <algorithm>
 #include <cmath>
@@ -102,7 +103,11 @@ void repair_motion(Json& object) {
 void repair(Json& object, const std::string& definition) {
     const std::string type = object.value("type", "");
     const bool has_corners = object.contains("low") && object.contains("high");
-    if (has_corners && (type == "box" || type == "fog")) repair_box(object["low"], object["high"]);
+    if (has_corners && (type == "box" || type == "fog" || type == "cloud" || type == "smoke"))
+        repair_box(object["low"], object["high"]);
+    if (type == "cloud") // a scene's grids together may not have too many points
+        object["resolution"] = 1 + object.value("resolution", 12) % 24;
+    if (type == "smoke") object["resolution"] = kGridPoints;
     if (object.contains("transform_end")) repair_motion(object);
     if (object.contains("conductor")) object.erase("reflectance");
     if (type == "dielectric" && object.value("thin", false))

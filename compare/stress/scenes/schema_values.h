@@ -19,9 +19,9 @@ using Json = nlohmann::ordered_json;
 
 /// Sizes of the numbers of one scene.
 struct SceneSizes {
-    double unit = 1;             ///< coordinates are within a few units of the middle
+    double unit = 1;                ///< coordinates are within a few units of the middle
     std::array<double, 3> middle{}; ///< of the scene, in meters
-    double extreme = 0;          ///< probability of a number from anywhere in its range
+    double extreme = 0;             ///< probability of a number from anywhere in its range
 };
 
 /// Draws the value of one scene. All values of the schema can come up: every key, every kind, all numbers.
@@ -63,7 +63,7 @@ private:
     SceneSizes sizes_;
     TrialRandom& random_;
     std::map<std::string, std::vector<std::string>> names_; ///< drawn so far: "textures", "materials", "groups"
-    std::vector<Json> points_; ///< where objects and lights are
+    std::vector<Json> points_;                              ///< where objects and lights are
     int objects_ = 0;
 };
 

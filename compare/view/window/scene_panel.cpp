@@ -267,10 +267,10 @@ void App::draw_additions() {
         if (!ImGui::Selectable(kNewElementNames[i])) continue;
         attempt([&] {
             const double size = 0.1 * length(camera.look_at - camera.eye);
+            const std::size_t before = document_.json().at("objects").size();
             edit(with_new_element(document_.text(), static_cast<NewElement>(i), camera.look_at, size));
             document_.commit();
-            if (static_cast<NewElement>(i) != NewElement::kPointLight)
-                selected_ = static_cast<int>(document_.json().at("objects").size()) - 1;
+            if (document_.json().at("objects").size() > before) selected_ = static_cast<int>(before);
         });
     }
     ImGui::EndCombo();

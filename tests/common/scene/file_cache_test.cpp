@@ -54,6 +54,22 @@ TEST_SUITE("unit") {
         CHECK_THROWS_AS(parse_scene(path, text, cache), Error);
     }
 
+    TEST_CASE("a cloud is the same while a scene uses it, and is not kept afterwards") {
+        const auto text = [](int resolution) {
+            return message(R"({"camera": {"eye": [0, 0, 5], "look_at": [0, 0, 0]}, "objects": [], "media": [)",
+                           R"({"type": "cloud", "low": [0, 0, 0], "high": [1, 1, 1], "scattering": 1, "resolution": )",
+                           resolution, "}]}");
+        };
+        FileCache cache;
+        const Scene first = parse_scene("scene.json", text(8), cache),
+                    second = parse_scene("scene.json", text(8), cache);
+        CHECK(second.media[0].density == first.media[0].density);
+        const Scene other = parse_scene("scene.json", text(9), cache);
+        CHECK(other.media[0].density != first.media[0].density);
+        std::weak_ptr<const DensityGrid> gone = other.media[0].density;
+        CHECK(gone.use_count() == 1);
+    }
+
     TEST_CASE("what has not changed is not read again, and what was written meanwhile is") {
         const ScratchFolder folder;
         const std::filesystem::path file = folder.path() / "file";

@@ -1,11 +1,14 @@
 // These tests check which scene files are read and which are rejected with which message.
 #include "common/scene/scene.h"
 
+#include "common/medium/density_grid.h"
+
 #include "tests/support/errors.h"
 #include "tests/support/scratch.h"
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 using namespace duet;
@@ -265,6 +268,46 @@ TEST_SUITE("unit") {
             {with(R"("environment": {"type": "constant", "radiance": 1e300})"), "$.environment.radiance: found 1e+300"},
             {with(R"("environment": {"type": "image", "file": "gone.hdr"})"), "gone.hdr: no such file"},
         });
+    }
+
+    TEST_CASE("Clouds come from noise, and smoke from a file") {
+        const ScratchFolder folder;
+        folder.write("smoke.raw", std::string("\0\xff\x33\0\0\0\0\0\0\0\0\xff", 12));
+        const Parts parts = with(R"("media": [
+            {"type": "cloud", "low": [0, 0, 0], "high": [4, 2, 1], "scattering": 1, "resolution": 8, "coverage": 1},
+            {"type": "smoke", "low": [0, 0, 0], "high": [2, 1, 1], "absorption": 1, "file": "smoke.raw",
+             "resolution": [3, 2, 2]}])");
+        const Scene scene = load_scene(folder.write("scene.json", parts.text()));
+        REQUIRE(scene.media.size() == 2);
+        REQUIRE((scene.media[0].density && scene.media[1].density));
+        CHECK(scene.media[0].density->size() == std::array{9, 5, 3});
+        CHECK(scene.media[0].density->largest() > 0);
+        CHECK(density_at(scene.media[1], {0, 0, 0}) == 0);
+        CHECK(density_at(scene.media[1], {1, 0, 0}) == 1);
+        CHECK(density_at(scene.media[1], {2, 0, 0}) == doctest::Approx(0.2f));
+        CHECK(density_at(scene.media[1], {2, 1, 1}) == 1);
+        CHECK(std::ranges::count(scene.files, folder.path() / "smoke.raw") == 1);
+    }
+
+    TEST_CASE("What is wrong with a cloud or smoke is said") {
+        const std::string box = R"("low": [0, 0, 0], "high": [1, 1, 1], "scattering": 1)";
+        const auto smoke = [&](const std::string& keys) {
+            return with(R"("media": [{"type": "smoke", )" + box + ", " + keys + "}]");
+        };
+        const auto clouds = [&](int count) {
+            std::string list;
+            for (int i = 0; i < count; ++i)
+                list += (i > 0 ? ", " : "") + (R"({"type": "cloud", "resolution": 256, )" + box + "}");
+            return with(R"("media": [)" + list + "]");
+        };
+        check_refusals({{with(R"("media": [{"type": "cloud", "low": [0, 0, 0]}])"), "high"},
+                        {with(R"("media": [{"type": "mist", )" + box + "}]"), "cloud"},
+                        {smoke(R"("file": "none.raw", "resolution": [2, 2, 2])"), "none.raw"},
+                        {smoke(R"("file": "scene.json", "resolution": [2, 2, 2])"), "expected 8"},
+                        {smoke(R"("file": "scene.json", "resolution": [2, 2])"), "three numbers"},
+                        {smoke(R"("file": "scene.json", "resolution": [1, 2, 2])"), "resolution"},
+                        {smoke(R"("file": "scene.json", "resolution": [4096, 4096, 4096])"), "at most"},
+                        {clouds(2), "at most"}});
     }
 
     TEST_CASE("What is wrong with an object is said") {

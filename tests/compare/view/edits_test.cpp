@@ -97,6 +97,12 @@ TEST_SUITE("unit") {
                     check_near(light->position, {1, 2, 3});
                     continue;
                 }
+                if (element == NewElement::kCloud) {
+                    const Medium& cloud = scene.media.back();
+                    CHECK(cloud.density != nullptr);
+                    check_near((cloud.box.low + cloud.box.high) / 2.0f, {1, 2, 3});
+                    continue;
+                }
                 REQUIRE(scene.objects.size() == before.objects.size() + 1);
                 const Object& object = scene.objects.back();
                 const Box3 box = motion_bounds(object, scene.shapes[object.shape]);

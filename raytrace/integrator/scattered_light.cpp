@@ -1,0 +1,236 @@
+#include "raytrace/integrator/scattered_light.h"
+
+#include "common/medium/density_grid.h"
+#include "raytrace/integrator/medium_sampling.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace duet::raytrace {
+
+namespace {
+
+// Returns the part of [0, t_end] from the first to the last point at which a medium scatters light, if there is any.
+Interval scattering_range(std::span<const Medium> media, const Ray& ray, float t_end) {
+    Interval range{t_end, 0};
+    for (const Medium& medium : media) {
+        const Interval inside = overlap(medium.box, ray, t_end);
+        if (inside.empty() || is_black(medium.scattering)) continue;
+        range.begin = std::min(range.begin, inside.begin);
+        range.end = std::max(range.end, inside.end);
+    }
+    return range;
+}
+
+// Returns the sum of σs times the phase function over the media at t, 1/(m sr), for light from wi.
+Rgb scattering_at(std::span<const Medium> media, const Ray& ray, float t, Vec3 wi) {
+    Rgb sum;
+    for (const Medium& medium : media) {
+        const Interval inside = overlap(medium.box, ray, kInfinity);
+        if (!(inside.begin <= t && t < inside.end)) continue;
+        sum += medium.scattering * (density_at(medium, ray.at(t)) * phase(ray.direction, wi, medium.asymmetry));
+    }
+    return sum;
+}
+
+// Returns the part of the range in which a ray is inside of the cone of a spot light, or a longer one. A point of the
+// ray is inside if its height over the apex, along the axis, is at least cos θ times its distance from there. The
+// squares of both are equal at the roots of a quadratic equation.
+Interval lit_range(const SpotLight& light, const Ray& ray, Interval range) {
+    if (light.cos_outer <= 0) return range; // the cone is not convex
+    const Vec3d axis(light.direction), d(ray.direction), from_apex = Vec3d(ray.origin) - Vec3d(light.position);
+    const double cosine2 = sqr(static_cast<double>(light.cos_outer));
+    const double height = dot(axis, from_apex), slope = dot(axis, d);
+    const double a = sqr(slope) - cosine2, b = height * slope - cosine2 * dot(from_apex, d);
+    const double c = sqr(height) - cosine2 * length_squared(from_apex);
+    const double discriminant = sqr(b) - a * c;
+    if (std::abs(a) < 1e-9) return range;
+    if (discriminant <= 0) return a < 0 ? Interval{} : range;
+    const double q = -(b + std::copysign(std::sqrt(discriminant), b)); // without cancellation
+    const double roots[] = {q / a, q == 0 ? 0 : c / q};
+    const float first = static_cast<float>(std::min(roots[0], roots[1])),
+                second = static_cast<float>(std::max(roots[0], roots[1]));
+    if (a > 0) // the ray is steeper than the cone, and stays inside of it
+        return slope > 0 ? Interval{std::max(range.begin, second), range.end}
+                         : Interval{range.begin, std::min(range.end, first)};
+    if (height + slope * (roots[0] + roots[1]) / 2 < 0) return {}; // the mirror image of the cone, behind the light
+    return {std::max(range.begin, first), std::min(range.end, second)};
+}
+
+// A LightOnRay says how to sample the distances at which the light of a delta light is scattered.
+struct LightOnRay {
+    Interval range;
+    std::optional<EquiangularDistance> angle; // for a light at a point
+    float weight = 0; // what the light sends to the range without media and occluders, by the roughest estimate
+};
+// Returns a weight of 0 if the light does not reach the range.
+LightOnRay light_on_ray(const Light& light, const Ray& ray, Interval range, const StoppedDistance& stopped) {
+    if (const auto* sun = std::get_if<SunLight>(&light))
+        return {range, std::nullopt, average(sun->irradiance) * stopped.lit_length()};
+    const auto* point = std::get_if<PointLight>(&light);
+    const auto* spot = std::get_if<SpotLight>(&light);
+    if (spot != nullptr) range = lit_range(*spot, ray, range);
+    if (range.empty()) return {range, std::nullopt, 0};
+    const EquiangularDistance angle(ray, range, point != nullptr ? point->position : spot->position);
+    return {range, angle, average(point != nullptr ? point->intensity : spot->intensity) * angle.integral()};
+}
+
+// Chooses one delta light of at most kCandidates by its weight. If there are more, every k-th is a candidate, from a
+// random one on.
+constexpr std::size_t kCandidates = 8;
+
+struct ChosenLight {
+    std::size_t index;
+    float probability;
+    LightOnRay on_ray;
+};
+std::optional<ChosenLight> choose_light(const RenderPlan& plan, const Ray& ray, Interval range,
+                                        const StoppedDistance& stopped, float u) {
+    const std::size_t stride = (plan.delta_lights + kCandidates - 1) / kCandidates;
+    const float scaled = u * static_cast<float>(stride);
+    const std::size_t first = std::min(static_cast<std::size_t>(scaled), stride - 1);
+    std::array<LightOnRay, kCandidates> candidates;
+    float sum = 0;
+    for (std::size_t i = first, k = 0; i < plan.delta_lights; i += stride, ++k) {
+        candidates[k] = light_on_ray(plan.scene.lights[i], ray, range, stopped);
+        sum += candidates[k].weight;
+    }
+    float left = (scaled - static_cast<float>(first)) * sum;
+    std::optional<ChosenLight> chosen;
+    for (std::size_t i = first, k = 0; i < plan.delta_lights && left >= 0; i += stride, ++k) {
+        const float weight = candidates[k].weight;
+        if (!(weight > 0)) continue;
+        chosen = ChosenLight{i, weight / (sum * static_cast<float>(stride)), candidates[k]};
+        left -= weight;
+    }
+    return chosen;
+}
+
+} // namespace
+
+std::optional<ScatteredLight> sample_scattered_light(const RenderPlan& plan, const Ray& ray, float t_end, Vec2 u) {
+    const std::vector<Medium>& media = plan.scene.media;
+    const Interval range = scattering_range(media, ray, t_end);
+    if (range.empty()) return std::nullopt;
+    const StoppedDistance stopped(media, ray, range);
+    const std::optional<ChosenLight> chosen = choose_light(plan, ray, range, stopped, u.y);
+    if (!chosen) return std::nullopt;
+    const LightOnRay& on_ray = chosen->on_ray;
+    const bool lights_all = on_ray.range.begin == range.begin && on_ray.range.end == range.end;
+    std::optional<StoppedDistance> stopped_there;
+    if (!lights_all) stopped_there.emplace(media, ray, on_ray.range);
+    if (!(stopped_there ? *stopped_there : stopped).possible()) return std::nullopt;
+    const ScatteringDistance distance(stopped_there ? *stopped_there : stopped, on_ray.angle);
+    const float t = distance.sample(u.x);
+    if (t == kInfinity) return std::nullopt;
+    const MediumVertex vertex{ray.at(t), ray.direction, ray.time, 0};
+    const std::optional<LightSample> s = sample_light(plan.scene.lights[chosen->index], vertex.p, {});
+    if (!s) return std::nullopt;
+    const PointOnRay point = distance.at(t);
+    const float pdf = chosen->probability * point.pdf;
+    if (!(pdf > 0)) return std::nullopt;                              // rounding has moved t out of the media
+    const Rgb scattering = scattering_at(media, ray, t, s->wi) / pdf; // at first, because each of both may be huge
+    const Rgb radiance = point.transmittance * scattering * s->radiance *
+                         estimate_transmittance(media, spawn_ray(plan, vertex, s->wi), s->distance, u.x);
+    if (is_black(radiance)) return std::nullopt;
+    return ScatteredLight{vertex, light_sample(*s, {chosen->index, pdf, 0}), radiance};
+}
+
+EquiangularDistance::EquiangularDistance(const Ray& ray, Interval range, Vec3 light) : range_(range) {
+    const Vec3 to_light = light - ray.at(range.begin);
+    // A light on the ray itself would leave no distance but its own to draw, so it counts as slightly beside it.
+    height_ = std::max(length(cross(to_light, ray.direction)), 1e-5f * std::max(length(to_light), 1e-30f));
+    begin_ = -dot(to_light, ray.direction);
+    const float end = begin_ + (range.end - range.begin);
+    // The difference of the angles to both ends would cancel for a distant light.
+    angle_ = end < kInfinity ? std::atan2(height_ * (range.end - range.begin), sqr(height_) + begin_ * end)
+                             : std::atan2(height_, begin_);
+}
+
+float EquiangularDistance::sample(float u) const {
+    // This is the tangent of a sum of angles, less the tangent of the first. The sum is below π/2, so the denominator
+    // is positive.
+    const float cosine = std::cos(angle_ * u), sine = std::sin(angle_ * u);
+    const float distance = (sqr(height_) + sqr(begin_)) * sine / (height_ * cosine - begin_ * sine);
+    return distance >= 0 ? std::min(range_.begin + distance, range_.end) : range_.end; // rounded beyond π/2
+}
+
+float EquiangularDistance::pdf(float t) const {
+    return height_ / (angle_ * (sqr(height_) + sqr(begin_ + (t - range_.begin))));
+}
+
+StoppedDistance::StoppedDistance(std::span<const Medium> media, const Ray& ray, Interval range)
+    : media_(media), ray_(ray), range_(range), lit_length_(range.end - range.begin) {
+    constexpr float kDeep = 4; // an optical depth behind which 2 % of the light are left
+    for (std::size_t i = 0; i < media_.size(); ++i) {
+        const Medium& medium = media_[i];
+        shares_[i] = Rgb();
+        const Interval in = inside(medium);
+        if (in.empty() || is_black(medium.scattering)) continue;
+        const Rgb sigma = medium.scattering + medium.absorption;
+        float least = max_component(sigma);
+        for (std::size_t c = 0; c < 3; ++c)
+            if (sigma[c] > 0) least = std::min(least, sigma[c]);
+        const PassedColumn passed = follow(medium, ray_, in, kDeep / least);
+        const bool deep = passed.t < kInfinity;
+        for (std::size_t c = 0; c < 3; ++c) {
+            shares_[i][c] = sigma[c] == 0 ? 0 : deep ? 1 : -std::expm1(-sigma[c] * passed.column);
+            stopped_ += shares_[i][c];
+        }
+        const float largest = medium.density ? medium.density->largest() : 1;
+        if (deep) lit_length_ = std::min(lit_length_, std::max(passed.t - range_.begin, kDeep / (least * largest)));
+    }
+}
+
+Interval StoppedDistance::inside(const Medium& medium) const {
+    const Interval all = overlap(medium.box, ray_, range_.end);
+    return {std::max(all.begin, range_.begin), all.end};
+}
+
+float StoppedDistance::sample(float u) const {
+    float left = u * stopped_;
+    for (std::size_t i = 0; i < media_.size(); ++i)
+        for (std::size_t c = 0; c < 3; ++c) {
+            if (left < shares_[i][c]) {
+                const float sigma = media_[i].scattering[c] + media_[i].absorption[c];
+                return follow(media_[i], ray_, inside(media_[i]), -std::log1p(-left) / sigma).t;
+            }
+            left -= shares_[i][c];
+        }
+    return kInfinity;
+}
+
+PointOnRay StoppedDistance::at(float t) const {
+    PointOnRay point;
+    Rgb depth;
+    for (std::size_t i = 0; i < media_.size(); ++i) {
+        const Medium& medium = media_[i];
+        const Interval all = overlap(medium.box, ray_, t);
+        const Interval in{std::max(all.begin, range_.begin), all.end},
+            earlier{all.begin, std::min(all.end, range_.begin)};
+        const float column = column_of(medium, ray_.origin, ray_.direction, in);
+        depth += optical_depth(medium, column + column_of(medium, ray_.origin, ray_.direction, earlier));
+        if (!(in.begin <= t) || in.end < t) continue; // t is not in the medium; it may be its begin
+        const float density = density_at(medium, ray_.at(t));
+        for (std::size_t c = 0; c < 3; ++c)
+            if (const float sigma = medium.scattering[c] + medium.absorption[c]; shares_[i][c] > 0)
+                point.pdf += sigma * density * std::exp(-sigma * column);
+    }
+    point.pdf /= stopped_;
+    point.transmittance = transmittance(depth);
+    return point;
+}
+
+float ScatteringDistance::sample(float u) const {
+    if (!angle_) return stopped_.sample(u);
+    return u < 0.5f ? angle_->sample(2 * u) : stopped_.sample(2 * u - 1);
+}
+
+PointOnRay ScatteringDistance::at(float t) const {
+    PointOnRay point = stopped_.at(t);
+    if (angle_) point.pdf = (angle_->pdf(t) + point.pdf) / 2;
+    return point;
+}
+
+} // namespace duet::raytrace
