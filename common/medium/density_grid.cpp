@@ -29,23 +29,22 @@ int cell_of(float coordinate, int side, int low, int high) {
 // Visits the cells of [low, high) that the ray passes between s and s_end, in order. A cell has the given side. Calls
 // visit(cell, s where the ray enters, s where it leaves), until that returns false; returns whether it never did
 // (Amanatides and Woo 1987, "A Fast Voxel Traversal Algorithm for Ray Tracing"). Where the ray leaves is computed from
-// the cell's index, so that errors do not add up.
+// the cell's index, so that errors do not add up. The outermost cells have no end: what rounding leaves over is theirs.
 template <typename Visit>
 bool visit_cells(const GridRay& ray, float s, float s_end, int side, const Cell& low, const Cell& high, Visit visit) {
-    const float size = static_cast<float>(side);
-    Cell cell{}, step{}, ahead{}; // `ahead` is 1 where the ray leaves a cell through its upper side
+    Cell cell{}, step{}, last{};
     Vec3 inverse, leaves;
     const auto find_end = [&](std::size_t axis) {
-        const float plane = static_cast<float>(cell[axis] + ahead[axis]) * size;
-        leaves[axis] = step[axis] == 0 ? kInfinity : (plane - ray.origin[axis]) * inverse[axis];
+        const float plane = static_cast<float>((cell[axis] + std::max(step[axis], 0)) * side);
+        leaves[axis] = cell[axis] == last[axis] ? kInfinity : (plane - ray.origin[axis]) * inverse[axis];
     };
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const float d = ray.direction[axis];
         cell[axis] = cell_of(ray.origin[axis] + d * s, side, low[axis], high[axis]);
         inverse[axis] = 1 / d;
+        step[axis] = d > 0 ? 1 : -1;
         const bool moves = std::abs(inverse[axis]) < kInfinity;
-        step[axis] = !moves ? 0 : d > 0 ? 1 : -1;
-        ahead[axis] = d > 0 ? 1 : 0;
+        last[axis] = !moves ? cell[axis] : d > 0 ? high[axis] - 1 : low[axis];
         find_end(axis);
     }
     for (;;) {
@@ -55,9 +54,8 @@ bool visit_cells(const GridRay& ray, float s, float s_end, int side, const Cell&
             if (!visit(cell, s, end)) return false;
             s = end;
         }
-        if (s >= s_end) return true;
+        if (!(s < s_end)) return true;
         cell[axis] += step[axis];
-        if (step[axis] == 0 || cell[axis] < low[axis] || cell[axis] >= high[axis]) return true; // the rest is rounding
         find_end(axis);
     }
 }

@@ -30,8 +30,8 @@ StressOutcome& StressOutcome::operator+=(const StressOutcome& other) {
 std::vector<StressTest> all_stress_tests() {
     std::vector<StressTest> all;
     for (const auto group : {arithmetic_tests(), leak_tests(), intersection_tests(), ray_origin_tests(),
-                             material_tests(), light_tests(), coverage_tests(), projection_tests(), pipeline_tests(),
-                             scene_tests()})
+                             material_tests(), light_tests(), medium_tests(), coverage_tests(), projection_tests(),
+                             pipeline_tests(), scene_tests()})
         all.insert(all.end(), group.begin(), group.end());
     return all;
 }
