@@ -198,8 +198,8 @@ constexpr StressTest kTests[] = {
     {"medium/columns",
      "the integral of a cloud's density along a ray, and the distance to a part of it, at scales 1e-6 to 1e6, from "
      "sides and corners, along axes",
-     4, "2^-24 of its terms",
-     "4 roundings of coordinates and of their interpolation; judged by double, plane by plane", "64 steps", 20'000,
+     8, "2^-24 of its terms",
+     "8 roundings of coordinates and of their interpolation; judged by double, plane by plane", "64 steps", 20'000,
      trials_of<columns>},
     {"medium/collisions",
      "the sum of a path's throughput never grows in fog and clouds, of depths from 1e-6 to 1e6, and is kept where they "

@@ -362,6 +362,7 @@ Planes3 FogGrid::haze(const GBuffer& gbuffer, int threads) const {
 }
 
 void FogGrid::apply(const GBuffer& gbuffer, int threads, bool scattered, Planes3& radiance) const {
+    if (media_.empty()) return; // all boxes are too thin for floats
     for_each_batch(gbuffer.width(), gbuffer.height(), threads, [&](int x, int y) {
         const PixelRays rays(gbuffer, x, y);
         const Color depth = optical_depth<Floats>(media_, rays.origin, rays.direction, rays.distance);

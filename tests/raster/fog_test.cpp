@@ -229,6 +229,14 @@ TEST_SUITE("unit") {
         CHECK(static_cast<double>(middle.g) < 0.8);
     }
 
+    TEST_CASE("a medium whose box has no thickness in floats, seen from afar, is left out") {
+        Scene scene = shining_wall(Rgb(2.0f));
+        scene.media = {cloud(Rgb(0.2f), Rgb(0.5f))};
+        finish_scene(scene);
+        const View view = view_of(look({0, 1e18, 0}, {0, 0, 1}, 60), 8, 8);
+        for (const Rgb& color : render(scene, view, {}).radiance) CHECK(is_finite(color));
+    }
+
     TEST_CASE("without fog, a scene looks as if it had no media") {
         Scene scene = varied_scene(24);
         const Rendering clear = render(scene, perspective(), {});
