@@ -46,6 +46,8 @@ trace glass-sphere gallery/glass-sphere --integrator vcm --spp 500
 picture glass-sphere
 trace caustics caustics --integrator vcm --spp 300
 picture caustics --tone filmic --exposure 0.5
+trace smoke smoke --spp 1024 --adaptive
+picture smoke
 trace spheres spheres --size 960x540 --spp 700 --adaptive
 picture spheres
 trace cornell cornell --spp 512 --adaptive
