@@ -103,6 +103,29 @@ def cycles(run):
     return table(["scene", "path", "adaptive", "difference of the means"], rows)
 
 
+@figure("embree", 4)
+def embree(run):
+    """rates of rays and builds beside Embree's best setting, and rays that are lost"""
+    works = {"build": "build", "camera": "camera rays", "camera-bulk": "camera rays, many at a time",
+             "bounce": "bounced rays", "shadow": "shadow rays"}
+    rows, lost = [], []
+    for mesh in ("meshes/test-ball.obj", "generated/octopus.obj"):
+        data = run("compare", "kernels", f"models/{mesh}", "--scene", "room", "--repeats", 5, "--quiet").data
+        best = {row["work"]: row for row in data["rows"] if row["best"] and row["threads"] == 1}
+        triangles = f"{best['build']['triangles']:,}"
+        for work, name in works.items():
+            row = best[work]
+            ours, peer = ((f"{number(1e3 * row[key])} ms" if work == "build" else f"{number(row[key])} M/s")
+                          for key in ("ours", "peer"))
+            rows.append([triangles, name, ours, f"{peer}, {row['peer_name'].removeprefix('embree 3.13.5 ')}",
+                         number(row["ratio"]["median"])])
+        for kernel in data["watertight"]:
+            misses = 1e6 * (kernel["misses"] + kernel["edge_faults"]) / kernel["rays"]
+            lost.append([triangles, kernel["kernel"].replace("duet", "Duet"), number(misses) if misses else "none"])
+    return (table(["triangles", "work, one thread", "Duet", "Embree 3.13.5", "times as fast"], rows) + "\n\n" +
+            table(["triangles", "kernel", "lost of a million rays that are aimed at edges and vertices"], lost))
+
+
 @figure("integrators", 4)
 def integrators(run):
     """relMSE of the integrators at equal time"""
