@@ -14,8 +14,6 @@ struct Cloud {
     float coverage = 0.5f; ///< 0 to 1: how much of the box is filled
     float softness = 0.3f; ///< > 0: by how much noise exceeds the threshold where the density becomes 1
     int resolution = 96;   ///< cells along the longest side of the box, ≥ 1
-
-    bool operator==(const Cloud&) const = default;
 };
 /// Returns the number of points along each axis of a grid of nearly cubic cells, `resolution` of them along the longest
 /// side of a box with bounds.

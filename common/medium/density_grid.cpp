@@ -141,7 +141,7 @@ DensityGrid::DensityGrid(std::array<int, 3> size, std::vector<float> densities)
                 for (int bz = first(z); bz <= std::min(z / kBlockSide, blocks_[2] - 1); ++bz)
                     for (int by = first(y); by <= std::min(y / kBlockSide, blocks_[1] - 1); ++by)
                         for (int bx = first(x); bx <= std::min(x / kBlockSide, blocks_[0] - 1); ++bx)
-                            empty_[static_cast<std::size_t>(bx + blocks_[0] * (by + blocks_[1] * bz))] = 0;
+                            empty_[block_index(bx, by, bz)] = 0;
             }
 }
 
@@ -175,8 +175,7 @@ DensityGrid::Reached DensityGrid::follow(const Box3& box, const Ray& ray, Interv
     if (!is_finite(local.origin) || !is_finite(local.direction)) return reached; // the box is thinner than floats are
     visit_cells(local, 0, inside.end - inside.begin, kBlockSide, {}, blocks_,
                 [&](const Cell& block, float s, float s_end) {
-                    if (empty_[static_cast<std::size_t>(block[0] + blocks_[0] * (block[1] + blocks_[1] * block[2]))])
-                        return true;
+                    if (empty_[block_index(block[0], block[1], block[2])]) return true;
                     Cell low{}, high{};
                     for (std::size_t axis = 0; axis < 3; ++axis) {
                         low[axis] = block[axis] * kBlockSide;

@@ -40,6 +40,9 @@ public:
 
 private:
     class OnRay;
+    std::size_t block_index(int x, int y, int z) const {
+        return static_cast<std::size_t>(x + blocks_[0] * (y + blocks_[1] * z));
+    }
 
     std::array<int, 3> size_;
     std::vector<float> densities_;

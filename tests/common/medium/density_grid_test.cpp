@@ -1,25 +1,17 @@
 #include "common/medium/cloud.h"
 #include "common/medium/density_grid.h"
 #include "common/medium/medium.h"
-#include "common/sampling/hash.h"
 #include "common/sampling/warp.h"
+#include "tests/support/random.h"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 
 using namespace duet;
+using duet::test::Random;
 
 namespace {
-
-class Random {
-public:
-    explicit Random(std::uint64_t seed) : state_(mix_bits(seed + kGoldenGamma)) {}
-    float operator()() { return unit_float(high_bits(stream_number(state_, count_++))); }
-
-private:
-    std::uint64_t state_, count_ = 0;
-};
 
 DensityGrid random_grid(std::array<int, 3> size, float share_of_empty, std::uint64_t seed) {
     Random random(seed);
@@ -49,7 +41,7 @@ double naive_density(const DensityGrid& grid, const Box3& box, Vec3d p) {
 Ray random_ray(Random& random, const Box3& box, int kind) {
     const Vec3 size = box.diagonal();
     const auto point = [&] { return box.low + Vec3(random(), random(), random()) * size; };
-    Vec3 direction = uniform_sphere({random(), random()});
+    Vec3 direction = uniform_sphere(random.pair());
     if (kind % 3 == 1) direction = {0, 0, -1};
     if (kind % 3 == 2) direction = normalize(Vec3(direction.x, 0, direction.z));
     return Ray{point() - direction * (kind % 2 == 0 ? 0 : 3 * size.x), direction};

@@ -1,6 +1,6 @@
 #include "common/medium/medium.h"
 #include "common/medium/phase_function.h"
-#include "common/sampling/hash.h"
+#include "tests/support/random.h"
 
 #include <doctest/doctest.h>
 
@@ -9,18 +9,9 @@
 #include <vector>
 
 using namespace duet;
+using duet::test::Random;
 
 namespace {
-
-class Random {
-public:
-    explicit Random(std::uint64_t seed) : state_(mix_bits(seed + kGoldenGamma)) {}
-    float operator()() { return unit_float(high_bits(stream_number(state_, count_++))); }
-    Vec2 pair() { return {(*this)(), (*this)()}; }
-
-private:
-    std::uint64_t state_, count_ = 0;
-};
 
 Ray random_ray(Random& random, float scale) {
     const Vec3 origin(4 * random() - 2, 4 * random() - 2, 4 * random() - 2);
