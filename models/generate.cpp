@@ -21,6 +21,7 @@ std::span<const Model> all_models() {
     static const std::vector<Model> models{
         {"amphora", kCommitted, {"meshes/amphora.obj", "textures/amphora.png"}, write_amphora},
         {"bowl", kCommitted, {"meshes/bowl.obj"}, write_bowl},
+        {"candle", kCommitted, {"meshes/candle.obj", "meshes/flame.obj", "meshes/wick.obj"}, write_candle},
         {"lanterns", kCommitted, {"lanterns.json"}, write_lanterns},
         {"pear", kCommitted, {"meshes/pear.obj", "meshes/pear.mtl", "textures/pear.png"}, write_pear},
         {"plinth", kCommitted, {"meshes/plinth.obj"}, write_plinth},

@@ -34,6 +34,7 @@ void generate_model(const Model& model, const std::filesystem::path& folder);
 ///@{
 void write_amphora(const std::filesystem::path& folder);
 void write_bowl(const std::filesystem::path& folder);
+void write_candle(const std::filesystem::path& folder);
 void write_gyroid(const std::filesystem::path& folder);
 void write_hall(const std::filesystem::path& folder);
 void write_lanterns(const std::filesystem::path& folder);

@@ -40,6 +40,8 @@ int main(int argc, char** argv) {
                               "GTAO: near surfaces hide diffuse light, by the image's depths (default: on)");
         command_line.add_flag("--indirect,!--no-indirect", options.indirect_light,
                               "Diffuse light between surfaces, from irradiance probes (default: on)");
+        command_line.add_flag("--subsurface,!--no-subsurface", options.subsurface,
+                              "Light bleeds inside of solids with subsurface scattering, by a blur (default: on)");
         command_line.add_flag("--fog,!--no-fog", options.fog,
                               "Media, from froxels: cells of a grid that is aligned with the view (default: on)");
         command_line

@@ -55,6 +55,7 @@ struct RasterSettings : RenderSettings {
     int shadow_cells = 2; ///< a rectangular light is divided into this many cells per side, in [1, 8], each with a map
     bool ambient_occlusion = true; ///< Shading::kLit: GTAO on diffuse surfaces (raster/screen_space/gtao.h)
     bool indirect_light = true;    ///< Shading::kLit: diffuse light between surfaces, from irradiance probes
+    bool subsurface = true; ///< Shading::kLit: subsurface scattering of solids (raster/screen_space/subsurface.h)
     bool fog = true; ///< Shading::kLit: media (raster/fog/fog_grid.h); prepare() needs this setting as well
     /// Without indirect light, occluders of the environment are at most this far away, in meters. 0 stands for half of
     /// the minimum of the scene's diagonal and the distance from the camera's eye to its look-at point. With it, the

@@ -36,6 +36,11 @@ int depth(const PathTracerSettings& settings) {
     return 0;
 }
 
+// The other integrators follow no light from where it enters a solid to where it leaves it.
+bool enters_solids(Integrator integrator) {
+    return integrator == Integrator::kPath || integrator == Integrator::kNaive;
+}
+
 } // namespace
 
 RenderPlan::RenderPlan(const PathTracerSceneData& prepared_, const View& view, const PathTracerSettings& settings)
@@ -51,7 +56,9 @@ RenderPlan::RenderPlan(const PathTracerSceneData& prepared_, const View& view, c
     for (std::uint32_t i = 0; i < scene.materials.size(); ++i) details.push_back(surface_detail(scene, i));
     emission = prepared.emitters || !skips.emission;
     specular_light_samples = !skips.mirror_light;
-    needs_medium_stack = scene.needs.interiors || scene.needs.media;
+    subsurface = scene.needs.subsurface && enters_solids(settings.integrator);
+    random_distances = subsurface || scene.needs.media;
+    needs_medium_stack = scene.needs.interiors || random_distances;
     black_shadow_rays = !skips.shadow_rays;
     const bool with_environment =
         settings.environment && (prepared.environment || !skips.environment) && computes_light(settings.integrator);
@@ -131,6 +138,8 @@ std::vector<std::string> approximations(const RenderPlan& plan, const PathTracer
         settings.integrator == Integrator::kUnshadowed || settings.integrator == Integrator::kWhitted;
     if (leaves_out_media && plan.scene.needs.media)
         list.emplace_back("media are left out");
+    if (plan.scene.needs.subsurface && !plan.subsurface)
+        list.emplace_back("light leaves solids with subsurface scattering where it has entered them");
     if (settings.integrator == Integrator::kUnshadowed)
         list.emplace_back("direct light only, and nothing casts a shadow");
     if (settings.integrator == Integrator::kLights)

@@ -31,9 +31,11 @@ struct RenderPlan {
     bool hits_find_light = false; ///< whether rays may find an emitter, the environment, or a medium that emits
     bool specular_light_samples =
         false; ///< whether lights are sampled at mirrors and glass, too, which cannot reflect them
-    /// Whether light meets something between surfaces, so that paths need a medium stack: media, or a dielectric that
-    /// absorbs or has a priority.
+    bool subsurface = false; ///< whether paths enter solids with subsurface scattering; else these are diffuse surfaces
+    /// Whether light meets something between surfaces: media, the inside of solids, or a dielectric that absorbs or has
+    /// a priority. Then paths have a medium stack.
     bool needs_medium_stack = false;
+    bool random_distances = false; ///< whether paths are scattered between surfaces, at random distances
     std::size_t delta_lights = 0; ///< this many, the first of Scene::lights, are sampled along rays in media
     bool black_shadow_rays = false; ///< whether shadow rays are traced even if the surface reflects none of the light
     BatchedSurfaces batched;        ///< surfaces at which paths are scattered in batches (wavefront/batch.h)

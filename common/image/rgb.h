@@ -33,6 +33,7 @@ template <typename T> constexpr RgbT<T> operator-(RgbT<T> a, RgbT<T> b) { return
 template <typename T> constexpr RgbT<T> operator*(RgbT<T> a, RgbT<T> b) { return {a.r * b.r, a.g * b.g, a.b * b.b}; }
 template <typename T> constexpr RgbT<T> operator*(RgbT<T> a, T s) { return {a.r * s, a.g * s, a.b * s}; }
 template <typename T> constexpr RgbT<T> operator*(T s, RgbT<T> a) { return a * s; }
+template <typename T> constexpr RgbT<T> operator/(RgbT<T> a, RgbT<T> b) { return {a.r / b.r, a.g / b.g, a.b / b.b}; }
 template <typename T> constexpr RgbT<T> operator/(RgbT<T> a, T s) { return {a.r / s, a.g / s, a.b / s}; }
 template <typename T> constexpr RgbT<T>& operator+=(RgbT<T>& a, RgbT<T> b) { return a = a + b; }
 template <typename T> constexpr RgbT<T>& operator*=(RgbT<T>& a, RgbT<T> b) { return a = a * b; }

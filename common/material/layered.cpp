@@ -140,4 +140,16 @@ LayeredBsdf::Albedos LayeredBsdf::albedos(float cosine) const {
             Rgb(1 - w.transmitted_by_coat)};
 }
 
+float LayeredBsdf::passed(float cosine) const {
+    const LayerTransport w = layer_transport(*this, ggx_average_albedo(glossy.alpha), cosine);
+    return w.transmitted * w.transmitted_by_coat;
+}
+
+float LayeredBsdf::mean_passed() const {
+    const float stopped = mean_layer_albedo(ggx_average_albedo(glossy.alpha), dielectric, dielectric_multiple);
+    const float stopped_by_coat =
+        coat > 0 ? coat * mean_layer_albedo(ggx_average_albedo(coat_alpha), kCoat, coat_multiple) : 0;
+    return max((1 - stopped) * (1 - stopped_by_coat), 1e-4f);
+}
+
 } // namespace duet

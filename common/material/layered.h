@@ -62,6 +62,11 @@ struct LayeredBsdf {
     };
     /// Returns the albedos for a viewer at the angle of this cosine, in [0, 1].
     Albedos albedos(float cosine) const;
+    /// Returns the fraction of the light from this cosine, in [0, 1], that passes the dielectric and the coat.
+    float passed(float cosine) const;
+    /// Returns the fraction of diffuse light that passes both: the cosine-weighted mean of passed(), if few directions
+    /// are stopped by both.
+    float mean_passed() const;
 };
 
 } // namespace duet

@@ -29,6 +29,34 @@ Bsdf bsdf_at(const Material& material, const TextureSet& textures, const Surface
     return std::visit(make, material);
 }
 
+const Rgb* mean_free_path(const Material& material) {
+    if (const auto* coated = std::get_if<Coated>(&material)) return &coated->mean_free_path;
+    if (const auto* principled = std::get_if<Principled>(&material)) return &principled->mean_free_path;
+    return nullptr;
+}
+
+Rgb* mean_free_path(Material& material) { return const_cast<Rgb*>(mean_free_path(std::as_const(material))); }
+
+bool has_subsurface(const Material& material) {
+    const Rgb* path = mean_free_path(material);
+    return path != nullptr && !is_black(*path);
+}
+
+SubsurfaceBsdf subsurface_at(const Material& material, const TextureSet& textures, const SurfacePoint& point) {
+    if (const auto* principled = std::get_if<Principled>(&material)) return principled->subsurface_at(textures, point);
+    return std::get<Coated>(material).subsurface_at(textures, point);
+}
+
+SubsurfaceExitBsdf subsurface_exit_at(const Material& material, const TextureSet& textures, const SurfacePoint& point) {
+    const LayeredBsdf surface = std::get<LayeredBsdf>(bsdf_at(material, textures, point));
+    return {surface, surface.mean_passed()};
+}
+
+float internal_reflectance(const Material& material) {
+    const auto* coated = std::get_if<Coated>(&material);
+    return coated != nullptr ? coated->internal_reflectance() : 0;
+}
+
 bool is_specular(const Bsdf& bsdf) {
     if (const auto* metal = std::get_if<MetalBsdf>(&bsdf)) return metal->smooth();
     return std::holds_alternative<DielectricBsdf>(bsdf) || std::holds_alternative<ThinDielectricBsdf>(bsdf);

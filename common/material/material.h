@@ -18,10 +18,24 @@ using Material = std::variant<Diffuse, Metal, Dielectric, Emissive, Principled, 
 // Alternatives of one kind are adjacent, so that a test for the kind compiles to one comparison of the variant's
 // index.
 using Bsdf = std::variant<DiffuseBsdf, RoughDiffuseBsdf, MetalBsdf, LayeredBsdf, RoughDielectricBsdf, DielectricBsdf,
-                          ThinDielectricBsdf>;
+                          ThinDielectricBsdf, SubsurfaceBsdf, SubsurfaceExitBsdf>;
 
-/// Returns the BSDF of a material at a point, where textures have been evaluated.
+/// Returns the BSDF of a material at a point, where textures have been evaluated. In place of subsurface scattering it
+/// has diffuse reflection, which scatters as much light.
 Bsdf bsdf_at(const Material& material, const TextureSet& textures, const SurfacePoint& point);
+
+/// Returns the mean free path of the light inside of the material, in meters, or null if the material has no subsurface
+/// scattering. The result may be black: then it has none, either.
+const Rgb* mean_free_path(const Material& material);
+Rgb* mean_free_path(Material& material);
+/// Returns whether light is scattered below the material's surface.
+bool has_subsurface(const Material& material);
+/// Returns the BSDF of the surface of a solid, seen from outside. The material must have subsurface scattering.
+SubsurfaceBsdf subsurface_at(const Material& material, const TextureSet& textures, const SurfacePoint& point);
+/// Returns the BSDF of a point at which light leaves a solid. The material must have subsurface scattering.
+SubsurfaceExitBsdf subsurface_exit_at(const Material& material, const TextureSet& textures, const SurfacePoint& point);
+/// Returns the fraction of diffuse light from inside that the surface of a solid reflects back.
+float internal_reflectance(const Material& material);
 
 /// Returns the BSDF without the cosine; 0 for specular lobes.
 inline Rgb eval(const Bsdf& bsdf, Vec3 wo, Vec3 wi, TransportMode mode = TransportMode::kRadiance) {
@@ -90,7 +104,8 @@ void for_each_texture(AnyMaterial& material, const Visit& visit) {
     if (auto* coated = std::get_if<Coated>(&material)) visit(coated->roughness.texture);
     if (auto* principled = std::get_if<Principled>(&material))
         for (auto* slot :
-             {&principled->metallic, &principled->roughness, &principled->clearcoat, &principled->clearcoat_roughness})
+             {&principled->metallic, &principled->roughness, &principled->clearcoat, &principled->clearcoat_roughness,
+              &principled->subsurface})
             visit(slot->texture);
 }
 /// Returns the material's base color at the point for the albedo AOV: its albedo, reflectance or tint.

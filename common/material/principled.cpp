@@ -18,6 +18,14 @@ LayeredBsdf Principled::at(const TextureSet& textures, const SurfacePoint& point
                         evaluate_clamped(textures, clearcoat_roughness, point)});
 }
 
+SubsurfaceBsdf Principled::subsurface_at(const TextureSet& textures, const SurfacePoint& point) const {
+    LayeredBsdf surface = at(textures, point);
+    const float fraction = evaluate_clamped(textures, subsurface, point);
+    surface.diffuse *= 1 - fraction;
+    return {surface, fraction * (1 - evaluate_clamped(textures, metallic, point)),
+            solid_interior(evaluate_reflectance(textures, base_color, point), mean_free_path)};
+}
+
 /// The boundary reflects 1 − (1 − F̅)/η², because only 1/η² of the directions can leave (Kubelka's relation; Egan and
 /// Hilgeman 1973).
 float Coated::internal_reflectance() const { return 1 - (1 - schlick_average(Rgb(f0_from_ior(ior))).r) / sqr(ior); }
@@ -34,6 +42,12 @@ LayeredBsdf Coated::at(const TextureSet& textures, const SurfacePoint& point) co
                         evaluate_clamped(textures, roughness, point),
                         0,
                         0});
+}
+
+SubsurfaceBsdf Coated::subsurface_at(const TextureSet& textures, const SurfacePoint& point) const {
+    LayeredBsdf surface = at(textures, point);
+    surface.diffuse = Rgb();
+    return {surface, 1, solid_interior(evaluate_reflectance(textures, albedo, point), mean_free_path)};
 }
 
 } // namespace duet

@@ -2,7 +2,7 @@
 // surface.
 #pragma once
 
-#include "common/material/layered.h"
+#include "common/material/subsurface.h"
 #include "common/texture/texture.h"
 
 namespace duet {
@@ -18,20 +18,28 @@ struct Principled {
     float ior = 1.5f;              ///< index of refraction of the dielectric, in [1, 4]
     ScalarSlot clearcoat{0};       ///< fraction of the surface that a clear coat covers, in [0, 1]
     ScalarSlot clearcoat_roughness{0};
+    ScalarSlot subsurface{0}; ///< fraction of the diffuse surface that is subsurface scattering instead, in [0, 1]
+    Rgb mean_free_path{0.0f}; ///< of light inside, in meters; black: there is no subsurface scattering
 
-    /// Returns the BSDF at a point.
+    /// Returns the BSDF at a point, without subsurface scattering.
     LayeredBsdf at(const TextureSet& textures, const SurfacePoint& point) const;
+    /// Returns the BSDF of the surface of a solid, seen from outside.
+    SubsurfaceBsdf subsurface_at(const TextureSet& textures, const SurfacePoint& point) const;
 };
 
 /// Coated is a diffuse surface under a dielectric layer: plastic, varnish, glazed clay. The layer also reflects light
-/// back down, so colors are more saturated than on the bare surface.
+/// back down, so colors are more saturated than on the bare surface. With a mean free path it is a solid of subsurface
+/// scattering under that layer.
 struct Coated {
     RgbSlot albedo{Rgb(0.5f)};  ///< albedo of the bare diffuse surface
     ScalarSlot roughness{0.1f}; ///< roughness of the coat, perceptual
     float ior = 1.5f;           ///< index of refraction of the coat, in [1, 4]
+    Rgb mean_free_path{0.0f};   ///< of light inside, in meters; black: there is no subsurface scattering
 
-    /// Returns the BSDF at a point.
+    /// Returns the BSDF at a point, without subsurface scattering.
     LayeredBsdf at(const TextureSet& textures, const SurfacePoint& point) const;
+    /// Returns the BSDF of the surface of a solid, seen from outside.
+    SubsurfaceBsdf subsurface_at(const TextureSet& textures, const SurfacePoint& point) const;
     /// Returns the fraction of diffuse light from below that the coat reflects back down.
     float internal_reflectance() const;
 };

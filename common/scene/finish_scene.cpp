@@ -64,6 +64,25 @@ std::optional<float> constant_red(const TextureSet& set, const Texture& texture)
     return constant ? std::optional(pixels.front().r) : std::nullopt;
 }
 
+/// Raises the mean free paths of solids to the least that rays can follow, at which no light comes far enough to be
+/// seen elsewhere than where it entered. A path below it in all channels becomes 0, which is a diffuse surface.
+void limit_mean_free_paths(Scene& scene) {
+    constexpr float kLeast = 1.0f / 65536; // of the largest coordinate; rays start up to a hundredth of that off it
+    std::vector<float> extents(scene.materials.size());
+    for (const Object& object : scene.objects) {
+        const Box3 box = motion_bounds(object, scene.shapes[object.shape]);
+        const float extent = max_component(max(abs(box.low), abs(box.high)));
+        for (const std::uint32_t material : object.materials) extents[material] = max(extents[material], extent);
+    }
+    for (std::size_t i = 0; i < extents.size(); ++i) {
+        Rgb* path = mean_free_path(scene.materials[i]);
+        if (path == nullptr || is_black(*path)) continue;
+        const float least = kLeast * extents[i];
+        const Rgb raised(max(path->r, least), max(path->g, least), max(path->b, least));
+        *path = max_component(*path) < least ? Rgb() : raised;
+    }
+}
+
 /// Drops what costs time and changes no pixel: lights that emit nothing, media that do nothing, and masks that hide
 /// nothing. The alpha channel of many an image is 1 everywhere.
 void drop_ineffective(Scene& scene) {
@@ -161,6 +180,7 @@ void add_material_needs(const Scene& scene, const Material& material, SceneNeeds
     }
     if (std::holds_alternative<Principled>(material) || std::holds_alternative<Coated>(material))
         needs.layers = needs.glossy = true;
+    needs.subsurface = needs.subsurface || has_subsurface(material);
     for_each_texture(material, [&](std::int32_t texture) { add_texture_needs(scene, texture, needs); });
 }
 
@@ -206,6 +226,7 @@ void finish_scene(Scene& scene) {
     build_mipmaps(scene.textures);
     bake_single_objects(scene);
     find_bounds(scene);
+    limit_mean_free_paths(scene);
     for (Shape& shape : scene.shapes)
         if (auto* mesh = std::get_if<Mesh>(&shape)) mesh->closed = is_closed_outwards(*mesh);
     add_surface_lights(scene);

@@ -49,6 +49,7 @@ struct SceneNeeds {
     bool layers = false;       ///< principled and coated materials
     bool interiors = false;    ///< glass that absorbs or has a priority
     bool media = false;        ///< fog, clouds, smoke
+    bool subsurface = false;   ///< solids with subsurface scattering
     bool specular = false;     ///< mirrors and glass
     bool transmission = false; ///< glass
     bool meshes = false, quads = false, spheres = false;

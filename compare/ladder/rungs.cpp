@@ -31,7 +31,8 @@ RungRenderers light_renderers(const char* name, const PreparedPair& pair, const 
     raster::RasterSettings raster = pair.raster_settings;
     raster.components = parts;
     raster.environment = environment;
-    raster.fog = integrator == raytrace::Integrator::kPath; // the others leave media out
+    const bool paths = integrator == raytrace::Integrator::kPath;
+    raster.fog = raster.subsurface = paths; // the others leave media out, and draw solids as diffuse surfaces
     raytrace::PathTracerSettings raytrace = pair.raytrace_settings;
     raytrace.integrator = integrator;
     raytrace.environment = environment;

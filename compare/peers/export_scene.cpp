@@ -107,6 +107,7 @@ private:
     }
 
     json material(const Material& m) {
+        if (has_subsurface(m)) fail_unsupported("subsurface scattering is not exported");
         const RgbSlot& slot = texture_slot(m);
         json result = {
             {"slot",

@@ -1,9 +1,12 @@
-// These tests check rays in fog and clouds: columns against double, and the weights of paths.
+// These tests check rays in fog, clouds and solids: columns against double, and the weights of paths.
 #include "common/medium/density_grid.h"
 #include "common/medium/medium.h"
+#include "compare/stress/accelerated_scene.h"
 #include "compare/stress/errors.h"
 #include "compare/stress/trials.h"
 #include "raytrace/integrator/medium_sampling.h"
+#include "raytrace/integrator/random_walk.h"
+#include "raytrace/render.h"
 
 #include <algorithm>
 #include <array>
@@ -194,6 +197,62 @@ void collisions(Trial& trial) {
     trial.record(absorbs ? in_roundoffs(std::max(ratio - 1, 0.0)) : in_roundoffs(ratio - 1));
 }
 
+/// Returns a closed shape of about this size, and a point on it with the normal there.
+struct ClosedShape {
+    Shape shape;
+    Vec3 point, normal;
+};
+ClosedShape random_closed_shape(TrialRandom& random, float size, Vec3 center) {
+    const Vec3 direction = random.direction();
+    if (random.below(3) == 0) return {Sphere{center, size}, center + direction * size, direction};
+    if (random.coin()) {
+        const Vec3 half(random.log_uniform(0.02f, 1), random.log_uniform(0.02f, 1), random.log_uniform(0.02f, 1));
+        const Vec3 p(half.x * random.uniform(-1, 1), half.y, half.z * random.uniform(-1, 1));
+        return {box_quads(center - half * size, center + half * size), center + p * size, Vec3(0, 1, 0)};
+    }
+    Mesh mesh = scaled_and_moved(icosphere(static_cast<int>(random.below(4)), 0.3f), size, center);
+    const auto& corners = mesh.triangles[random.below(static_cast<std::uint32_t>(mesh.triangles.size()))];
+    const Vec3 a = mesh.positions[corners[0]], b = mesh.positions[corners[1]], c = mesh.positions[corners[2]];
+    const Vec3 normal = normalize(Vec3(cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a))));
+    return {std::move(mesh), (a + b + c) * (1.0f / 3), normal};
+}
+
+/// No path is lost in a solid that absorbs nothing, and its throughput stays.
+void walks(Trial& trial) {
+    TrialRandom& random = trial.random;
+    const float size = random.log_uniform(1e-6f, 1e6f);
+    const Vec3 center = random.vector() * (size * (random.coin() ? 1 : random.log_uniform(1, 100)));
+    ClosedShape solid = random_closed_shape(random, size, center);
+    const float mean_free_path = size * random.log_uniform(0.03f, 1e3f);
+    Scene scene = make_scene({solid.shape});
+    scene.materials[0] = Coated{{Rgb(1.0f)}, 0.3f, 1.5f, Rgb(mean_free_path)};
+    finish_scene(scene);
+    raytrace::PathTracerSettings settings;
+    settings.threads = 1;
+    const raytrace::PathTracerScene prepared = raytrace::prepare(scene, settings);
+    const raytrace::RenderPlan plan(prepared.data(), View{scene.camera, 1, 1}, settings);
+    const Vec3 inward = -solid.normal, p = solid.point;
+    const Vec3 error = abs(p) * 0x1p-20f;
+    for (int i = 0; i < 20; ++i) {
+        Vec3 direction = random.direction();
+        if (dot(direction, inward) < 0) direction = -direction;
+        const Ray ray{offset_origin(p, error, inward), direction};
+        const Hit hit = plan.prepared.accelerator.closest(ray);
+        if (!hit.valid()) continue; // the point is at an edge, and the offset has left the solid
+        raytrace::PathThroughputT<float> path;
+        raytrace::RayCounts counts;
+        Rgb emitted;
+        const SolidInterior interior = solid_interior(Rgb(1.0f), *duet::mean_free_path(scene.materials[0]));
+        const auto exit = raytrace::random_walk(plan, interior, ray, hit, random.uniform(), path, emitted, counts);
+        trial.note("size ", size, ", center ", exact(center), ", mean free path ", mean_free_path, ", from ",
+                   exact(ray.origin), " towards ", exact(direction), ": ", exit ? exit->collisions : -1,
+                   " collisions, throughput ", exact(path.throughput.g));
+        if (!exit) return trial.record(kWrong);
+        const double grown = static_cast<double>(path.throughput.g) - 1;
+        trial.record(in_roundoffs(grown) / static_cast<double>(counts.indirect + 1));
+    }
+}
+
 constexpr StressTest kTests[] = {
     {"medium/columns",
      "the integral of a cloud's density along a ray, and the distance to a part of it, at scales 1e-6 to 1e6, from "
@@ -206,6 +265,10 @@ constexpr StressTest kTests[] = {
      "absorb nothing",
      8, "2^-24", "8 roundings; the density is the mean over the channels (Wilkie et al. 2014, §3)", "", 50'000,
      trials_of<collisions>},
+    {"medium/walks",
+     "no path is lost in a closed solid that absorbs nothing, and each keeps its throughput: spheres, boxes, meshes, "
+     "at scales 1e-6 to 1e6, up to 100 sizes from the origin",
+     4, "2^-24 per ray", "4 roundings for each ray of the walk", "", 2'000, trials_of<walks>},
 };
 
 } // namespace

@@ -70,7 +70,7 @@ std::span<const StressTest> intersection_tests(); ///< spheres, slivers, degener
 std::span<const StressTest> ray_origin_tests();   ///< leaving a surface: self-hits, parallel surfaces, instances
 std::span<const StressTest> material_tests();     ///< refraction, furnaces, chi-squared, reciprocity
 std::span<const StressTest> light_tests();        ///< solid angles, samples and densities of lights
-std::span<const StressTest> medium_tests();       ///< columns of clouds, weights of collisions
+std::span<const StressTest> medium_tests();       ///< columns of clouds, weights of collisions and walks
 std::span<const StressTest> coverage_tests();     ///< edges covered once, exact integers, guard band
 std::span<const StressTest> projection_tests();   ///< near plane, attributes, derivatives, depth order
 std::span<const StressTest> pipeline_tests();     ///< thread counts, both pipelines' Hits

@@ -61,6 +61,9 @@ public:
     template <typename T> T pixel_size(T depth) const {
         return perspective_ ? T(length(direction_dx_)) * depth : T(length(origin_dx_));
     }
+    /// Returns the unit directions of rows and of columns, in which pixels follow each other.
+    Vec3 right() const { return normalize(perspective_ ? direction_dx_ : origin_dx_); }
+    Vec3 down() const { return normalize(perspective_ ? direction_dy_ : origin_dy_); }
     float near() const { return near_; }
     bool perspective() const { return perspective_; }
 

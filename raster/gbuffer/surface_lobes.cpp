@@ -26,6 +26,9 @@ struct LobesOf {
         return {.specular = outer_reflectance(b.eta), .alpha = 0};
     }
     SurfaceLobes operator()(const ThinDielectricBsdf&) const { return {.alpha = 0}; }
+    /// bsdf_at(), which makes the BSDFs here, makes none of these.
+    SurfaceLobes operator()(const SubsurfaceBsdf& b) const { return (*this)(b.surface); }
+    SurfaceLobes operator()(const SubsurfaceExitBsdf& b) const { return (*this)(b.surface); }
 };
 
 bool varies(const Principled& p) {

@@ -120,6 +120,9 @@ std::vector<std::string> approximations(const RasterSceneData& data, const Raste
     add_if(parts.direct && needs.emitter_textures, "Textured area lights light other surfaces by their mean radiance.");
     add_if(parts.direct && data.unsampled_emitters,
            "Emissive surfaces that move, and stretched spheres, are visible but light nothing.");
+    add_if(needs.subsurface && settings.subsurface,
+           "Light that is scattered inside of solids is blurred over the image; none comes through thin parts.");
+    add_if(needs.subsurface && !settings.subsurface, "Light leaves solids where it has entered them.");
     if (scene.media.empty() || !settings.fog) return result;
     add_if(true, "Light that media scatter is computed in cells of 8 x 8 pixels by 64 slices.");
     add_if(parts.direct && std::ranges::any_of(scene.media, [](const Medium& m) { return m.density != nullptr; }),

@@ -8,6 +8,7 @@
 #include "raster/probes/indirect_light.h"
 #include "raster/probes/reflections.h"
 #include "raster/probes/refraction.h"
+#include "raster/screen_space/subsurface.h"
 #include "raster/shadows/shadow_map_lookup.h"
 
 #include "common/system/control.h"
@@ -70,6 +71,79 @@ void DeferredFrame::start(const Scene& scene, const ScreenProjection& projection
     }
 }
 
+namespace {
+
+/// The stages of diffuse light, which also reflect direct light in other lobes.
+class LightStages {
+public:
+    LightStages(const RasterSceneData& data, const RasterSettings& settings, const ShadeOptions& options,
+                DeferredFrame& frame, Stopwatch& watch)
+        : data_(data), settings_(settings), options_(options), frame_(frame), watch_(watch) {}
+
+    void done(const char* stage) { frame_.seconds.emplace_back(stage, watch_.lap()); }
+
+    /// Adds the light of lights.
+    void add_direct(Planes3& radiance, ComponentRecorder& recorder) {
+        if (!settings_.components.direct || data_.scene.lights.empty()) return;
+        const GBuffer& gbuffer = *frame_.gbuffer;
+        const int threads = settings_.threads;
+        std::optional<MapShadows> shadows;
+        if (settings_.shadows && data_.soft_shadows) shadows.emplace(data_, gbuffer, options_.time, threads);
+        compute_direct_light(data_, settings_, gbuffer, shadows ? &*shadows : nullptr, frame_.direct);
+        done("direct light and shadows");
+        add_direct_light(gbuffer, frame_.direct, threads, radiance);
+        recorder.record(&LightComponentImages::direct);
+        if (options_.components != nullptr) {
+            compute_direct_light(data_, settings_, gbuffer, nullptr, frame_.direct);
+            recorder.record_shadowed(frame_.direct);
+        }
+        done("shadow filter");
+    }
+    /// Adds the light of the environment and of other surfaces.
+    void add_indirect(Planes3& radiance) {
+        const GBuffer& gbuffer = *frame_.gbuffer;
+        const int threads = settings_.threads;
+        const bool occluded = settings_.ambient_occlusion;
+        if (!settings_.components.environment) return;
+        if (data_.irradiance_probes && settings_.indirect_light) {
+            const float radius = occluded ? kOccluded * data_.irradiance_probes->spacing() : 0;
+            frame_.occlusion.compute(gbuffer, radius, threads);
+            done("ambient occlusion");
+            add_indirect_light(settings_, gbuffer, *data_.irradiance_probes, frame_.occlusion, radiance);
+            done("indirect light");
+        } else if (shows_environment(data_, settings_)) {
+            const auto radius = static_cast<float>(occlusion_radius(data_, settings_));
+            if (occluded) frame_.occlusion.compute(gbuffer, radius, threads);
+            done("ambient occlusion");
+            add_sky_light(data_, settings_, gbuffer, occluded ? &frame_.occlusion : nullptr, radiance);
+            done("sky light");
+        }
+    }
+    /// Adds the light that is scattered inside of solids, of which `lobes` shows the diffuse lobes.
+    void add_subsurface(const SolidMaterials& materials, SolidLobes& lobes, Planes3& radiance) {
+        const GBuffer& gbuffer = *frame_.gbuffer;
+        const int width = gbuffer.width(), height = gbuffer.height(), threads = settings_.threads;
+        lobes.show_diffuse();
+        Planes3& light = frame_.solid_light = Planes3(width, height);
+        ComponentRecorder none(light, threads, nullptr);
+        add_direct(light, none);
+        add_indirect(light);
+        blur_solid_light(materials, gbuffer, threads, light);
+        for_each_batch(width, height, threads,
+                       [&](int x, int y) { radiance.set(x, y, radiance.color(x, y) + light.color(x, y)); });
+        done("subsurface scattering");
+    }
+
+private:
+    const RasterSceneData& data_;
+    const RasterSettings& settings_;
+    const ShadeOptions& options_;
+    DeferredFrame& frame_;
+    Stopwatch& watch_;
+};
+
+} // namespace
+
 void shade_gbuffer(const RasterSceneData& data, const RasterSettings& settings, const ShadeOptions& options,
                    DeferredFrame& frame) {
     const GBuffer& gbuffer = *frame.gbuffer;
@@ -77,45 +151,29 @@ void shade_gbuffer(const RasterSceneData& data, const RasterSettings& settings, 
     const int threads = settings.threads;
     ComponentRecorder recorder(radiance, threads, options.components);
     Stopwatch watch;
-    const auto done = [&](const char* stage) { frame.seconds.emplace_back(stage, watch.lap()); };
+    LightStages stages(data, settings, options, frame, watch);
 
     if (options.background) draw_background(data, settings, gbuffer, radiance);
     recorder.record(&LightComponentImages::emission);
-    done("background");
-    const LightComponentSet& parts = settings.components;
-    if (parts.direct && !data.scene.lights.empty()) {
-        std::optional<MapShadows> shadows;
-        if (settings.shadows && data.soft_shadows) shadows.emplace(data, gbuffer, options.time, threads);
-        compute_direct_light(data, settings, gbuffer, shadows ? &*shadows : nullptr, frame.direct);
-        done("direct light and shadows");
-        add_direct_light(gbuffer, frame.direct, threads, radiance);
-        recorder.record(&LightComponentImages::direct);
-        if (options.components != nullptr) {
-            compute_direct_light(data, settings, gbuffer, nullptr, frame.direct);
-            recorder.record_shadowed(frame.direct);
+    stages.done("background");
+    {
+        std::optional<SolidMaterials> solids;
+        std::optional<SolidLobes> lobes; // it takes them out of the G-buffer for the time being
+        if (settings.subsurface && data.scene.needs.subsurface && gbuffer.position.empty()) {
+            solids.emplace(data.scene);
+            lobes.emplace(*solids, *frame.gbuffer, threads);
         }
-        done("shadow filter");
-    }
-    const bool occluded = settings.ambient_occlusion;
-    if (data.irradiance_probes && settings.indirect_light && parts.environment) {
-        const float radius = occluded ? kOccluded * data.irradiance_probes->spacing() : 0;
-        frame.occlusion.compute(gbuffer, radius, threads);
-        done("ambient occlusion");
-        add_indirect_light(settings, gbuffer, *data.irradiance_probes, frame.occlusion, radiance);
-        done("indirect light");
-    } else if (shows_environment(data, settings) && parts.environment) {
-        if (occluded) frame.occlusion.compute(gbuffer, static_cast<float>(occlusion_radius(data, settings)), threads);
-        done("ambient occlusion");
-        add_sky_light(data, settings, gbuffer, occluded ? &frame.occlusion : nullptr, radiance);
-        done("sky light");
+        stages.add_direct(radiance, recorder);
+        stages.add_indirect(radiance);
+        if (lobes) stages.add_subsurface(*solids, *lobes, radiance);
     }
     recorder.record(&LightComponentImages::environment);
-    if (data.reflection_probes && parts.reflection) {
+    if (data.reflection_probes && settings.components.reflection) {
         add_reflections(data, settings, gbuffer, data.reflection_probes.get(), radiance);
-        done("reflections");
+        stages.done("reflections");
         if (data.scene.needs.transmission) {
             add_refraction(data, settings, gbuffer, radiance);
-            done("refraction");
+            stages.done("refraction");
         }
     }
     recorder.record(&LightComponentImages::reflection);
@@ -125,7 +183,7 @@ void shade_gbuffer(const RasterSceneData& data, const RasterSettings& settings, 
                           {.time = options.time, .background = options.background, .threads = threads});
     const FogGrid& fog = options.fog != nullptr ? *options.fog : frame.fog;
     fog.apply(gbuffer, threads, true, radiance);
-    done("fog");
+    stages.done("fog");
 }
 
 void shade_deferred(const SampleView& sample, DeferredFrame& frame) {

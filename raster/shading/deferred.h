@@ -31,6 +31,7 @@ struct DeferredFrame {
     std::optional<GBuffer> gbuffer;
     Planes3 radiance;
     DirectLight direct;
+    Planes3 solid_light; ///< diffuse light of solids with subsurface scattering; empty if there are none
     GtaoImage occlusion;
     FogGrid fog;
     std::vector<std::pair<std::string, double>> seconds; ///< wall-clock time of each stage, in order
@@ -39,7 +40,7 @@ struct DeferredFrame {
     void start(const Scene& scene, const ScreenProjection& projection, int width, int height);
     std::size_t memory_bytes() const {
         return (gbuffer ? gbuffer->memory_bytes() : 0) + radiance.memory_bytes() + direct.memory_bytes() +
-               occlusion.memory_bytes() + fog.memory_bytes();
+               solid_light.memory_bytes() + occlusion.memory_bytes() + fog.memory_bytes();
     }
 };
 

@@ -21,6 +21,9 @@ void check_bidirectional(const Scene& scene, const PathTracerSettings& settings)
     if (scene.needs.interiors)
         throw Error(message("a dielectric of the scene absorbs or has a priority, which the integrator ",
                             integrator_name(settings.integrator), " does not support: expected another"));
+    if (scene.needs.subsurface)
+        throw Error(message("the scene has subsurface scattering, which the integrator ",
+                            integrator_name(settings.integrator), " does not support: expected another"));
     if (scene.needs.media)
         throw Error(message("the scene has media, which the integrator ", integrator_name(settings.integrator),
                             " does not support: expected another"));

@@ -1,40 +1,13 @@
 #include "raytrace/integrator/medium_sampling.h"
 
-#include "common/sampling/hash.h"
+#include "raytrace/integrator/random_sequence.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 namespace duet::raytrace {
 
 namespace {
-
-// Draws random numbers in [0, 1) that follow from one.
-class RandomSequence {
-public:
-    explicit RandomSequence(float u) : stream_(mix_bits(std::bit_cast<std::uint32_t>(u) + kGoldenGamma)) {}
-    float operator()() { return unit_float(high_bits(stream_number(stream_, drawn_++))); }
-
-private:
-    std::uint64_t stream_, drawn_ = 0;
-};
-
-// A channel that was chosen with a probability in proportion to its weight.
-struct ChosenChannel {
-    Rgb probabilities; // of all channels
-    std::size_t index;
-
-    ChosenChannel(Rgb weights, float u) : probabilities(weights / (weights.r + weights.g + weights.b)) {
-        const Rgb& p = probabilities;
-        index = u < p.r ? 0 : u < p.r + p.g || p.b == 0 ? 1 : 2;
-    }
-    // Returns the mean over the choice.
-    float mean(Rgb values) const {
-        const Rgb products = probabilities * values;
-        return products.r + products.g + products.b;
-    }
-};
 
 // Returns x · y, or 0 if x is 0 and y is infinite.
 float product(float x, float y) { return x > 0 ? x * y : 0.0f; }

@@ -12,6 +12,8 @@
 #include "raytrace/integrator/medium_stack.h"
 #include "raytrace/integrator/path_footprint.h"
 #include "raytrace/integrator/path_state.h"
+#include "raytrace/integrator/random_walk.h"
+#include "raytrace/integrator/russian_roulette.h"
 #include "raytrace/integrator/scattered_light.h"
 
 #include <type_traits>
@@ -68,23 +70,6 @@ inline ScatteringT<T> scatter(const AnyVertex& vertex, const VertexRandomSamples
     return next;
 }
 
-/// Holds the outcome of Russian roulette.
-template <typename T> struct RouletteT {
-    T probability; ///< of survival; may exceed 1
-    MaskOf<T> survives;
-};
-/// Decides by Russian roulette with the random number u whether the path continues, and weights survivors up for the
-/// paths that end. The throughput is taken without the factor of refraction. A path with a throughput of at least
-/// 1 / kSurvivalFactor continues for certain.
-template <typename T> inline RouletteT<T> russian_roulette(T u, PathThroughputT<T>& path) {
-    const T probability = max_component(path.throughput) * T(kSurvivalFactor) / path.refraction;
-    const MaskOf<T> certain = !(probability < T(1)); // NaN survives, too, so that it is counted as invalid
-    if (all(certain)) return {probability, certain};
-    path.throughput *= select(certain, T(1), T(1) / probability);
-    const MaskOf<T> lucky = u < probability;
-    return {probability, MaskOf<T>(certain | lucky)};
-}
-
 /// A sink receives the light that a path finds. For images, this one adds up all light, from any source.
 class RadianceSum {
 public:
@@ -99,7 +84,7 @@ private:
     Rgb total_;
 };
 
-/// Replaces the medium stack in scenes without media in which no dielectric absorbs or has a priority. It is empty.
+/// Replaces the medium stack in scenes in which light meets nothing between surfaces. It is empty.
 struct NoMediumStack {
     explicit NoMediumStack(const RenderPlan&) {}
     static constexpr float relative_index() { return 0; }
@@ -107,12 +92,12 @@ struct NoMediumStack {
 
 /// Returns the random samples of the vertex at the end of a ray, if it uses any.
 inline VertexRandomSamples random_samples_at(const RenderPlan& plan, Sampler& sampler, const Hit& hit, int depth) {
-    const bool used = (hit.valid() && depth < plan.max_depth) || plan.scene.needs.media;
+    const bool used = (hit.valid() && depth < plan.max_depth) || plan.random_distances;
     return used ? vertex_random_samples(sampler, depth) : VertexRandomSamples{};
 }
 
-/// Traces one path. kHasMedia is true in scenes with media, and where dielectrics absorb or have priorities, so that it
-/// has a medium stack.
+/// Traces one path. kHasMedia is true in scenes in which light meets something between surfaces
+/// (RenderPlan::needs_medium_stack).
 template <typename Sink, bool kHasMedia> class Path {
 public:
     Path(const RenderPlan& plan, const Sampler& sampler, RayCounts& counts, Sink sink = {})
@@ -129,6 +114,7 @@ public:
     /// the one that continues. Returns false if the path ends.
     bool advance(Ray& ray, const Hit& nearest, int depth, const VertexRandomSamples& u) {
         if constexpr (kHasMedia) {
+            if (interior_) return pass_solid(ray, nearest, depth, u);
             const std::optional<MediumCollision> collision = pass_media(ray, nearest.t, depth, u);
             if (is_black(state_.throughput)) return log_end("media absorb it");
             if (collision) return scatter_in_medium(*collision, ray, depth, u) && goes_on(depth, u);
@@ -141,15 +127,8 @@ public:
             add_environment(ray.direction, depth);
             return false;
         }
-        const Vertex vertex(plan_, ray, hit, footprint_.at_hit(ray, hit.t), medium_stack_.relative_index());
-        if constexpr (Sink::kLogsEvents) sink_.log().vertex(vertex, hit, depth);
-        if (depth == 0) sink_.start(vertex.bsdf);
-        add_emission(vertex, ray.direction, depth);
-        if (depth == plan_.max_depth) return log_end("it is as long as it may be (--depth)");
-        const bool specular = is_specular(vertex.bsdf) && !plan_.specular_light_samples;
-        if (plan_.lights != nullptr && !specular) add_light_sample(vertex, u, depth);
-        if (depth + 1 == plan_.max_depth && !plan_.hits_find_light) return log_end("nothing is left to find");
-        return leave(vertex, u, ray) && goes_on(depth, u);
+        const Vertex vertex(plan_, ray, hit, footprint_.at_hit(ray, hit.t), {medium_stack_.relative_index()});
+        return scatter_at(vertex, hit, ray, depth, u);
     }
     auto result() const { return sink_.result(); }
 
@@ -167,6 +146,18 @@ public:
     }
 
 private:
+    // Adds the light at a surface that the ray has hit, and replaces the ray. Returns false if the path ends.
+    bool scatter_at(const Vertex& vertex, const Hit& hit, Ray& ray, int depth, const VertexRandomSamples& u) {
+        if constexpr (Sink::kLogsEvents) sink_.log().vertex(vertex, hit, depth);
+        if (depth == 0) sink_.start(vertex.bsdf);
+        add_emission(vertex, ray.direction, depth);
+        if (depth == plan_.max_depth) return log_end("it is as long as it may be (--depth)");
+        const bool specular = is_specular(vertex.bsdf) && !plan_.specular_light_samples;
+        if (plan_.lights != nullptr && !specular) add_light_sample(vertex, u, depth);
+        if (depth + 1 == plan_.max_depth && !plan_.hits_find_light) return log_end("nothing is left to find");
+        return leave(vertex, u, ray) && goes_on(depth, u);
+    }
+
     void add_environment(Vec3 w, int bounces) {
         if (plan_.environment == nullptr) return;
         const PreviousVertex& previous = state_.previous_vertex;
@@ -222,8 +213,7 @@ private:
         if (!next.scatters) return log_end("the surface absorbs it");
         if (!next.continues) return log_end("its direction lies between the horizons of both normals");
         if constexpr (kHasMedia)
-            if (next.sample->transmitted && has_interior(vertex))
-                medium_stack_.cross(vertex.point.material, vertex.wo.z > 0);
+            if (next.sample->transmitted) enter(vertex);
         footprint_.scatter(next.sample->pdf, next.sample->specular);
         // Each number is written to where it is read next. If a whole ray were copied right after its components
         // were written, that load would wait for their stores.
@@ -237,6 +227,25 @@ private:
         ray.t_min = 0;
         if constexpr (Sink::kLogsEvents) sink_.log().scattered(*next.sample, ray, state_);
         return true;
+    }
+
+    // Notes what is on the other side of a surface that the path passes.
+    void enter(const Vertex& vertex) {
+        if (const auto* solid = std::get_if<SubsurfaceBsdf>(&vertex.bsdf)) interior_ = solid->interior;
+        if (has_interior(vertex)) medium_stack_.cross(vertex.point.material, vertex.wo.z > 0);
+    }
+
+    // Carries the path through a solid, and scatters it where it leaves. Returns false if the path ends.
+    bool pass_solid(Ray& ray, const Hit& nearest, int depth, const VertexRandomSamples& u) {
+        Rgb emitted;
+        const auto exit = random_walk(plan_, *interior_, ray, nearest, u.distance, state_, emitted, counts_);
+        interior_.reset();
+        if (!is_black(emitted)) sink_.add(emitted, LightSource::kOther, depth);
+        if (!exit) return log_end("the solid absorbs it");
+        if constexpr (Sink::kLogsEvents) sink_.log().walk(*exit);
+        ray = exit->seen_from_outside(plan_);
+        const Vertex vertex(plan_, ray, exit->hit, footprint_.at_hit(ray, exit->hit.t), {0, true});
+        return scatter_at(vertex, exit->hit, ray, depth, u);
     }
 
     // Continues the ray to the first boundary that is not ignored, in scenes with a medium stack.
@@ -341,6 +350,7 @@ private:
     Sink sink_;
     PathState state_;
     std::conditional_t<kHasMedia, MediumStack, NoMediumStack> medium_stack_;
+    std::optional<SolidInterior> interior_; // of the solid that the path is inside of
     PathFootprint footprint_;
 };
 

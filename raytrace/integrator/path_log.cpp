@@ -52,6 +52,10 @@ void PathLog::medium_vertex(const MediumVertex& vertex, int depth) {
          << "  point        " << text_of(vertex.p) << "\n";
 }
 
+void PathLog::walk(const SolidExit& exit) {
+    out_ << "\nthe path is scattered inside of a solid, number of times: " << exit.collisions << "\n";
+}
+
 void PathLog::escape(const Ray& ray, int depth) {
     out_ << "\nvertex " << depth << ": none, the ray escapes towards " << text_of(ray.direction) << "\n";
 }

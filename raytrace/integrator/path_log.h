@@ -5,6 +5,7 @@
 #include "raytrace/integrator/light_components.h"
 #include "raytrace/integrator/medium_vertex.h"
 #include "raytrace/integrator/path_state.h"
+#include "raytrace/integrator/random_walk.h"
 
 #include <sstream>
 #include <string>
@@ -20,6 +21,8 @@ public:
     void vertex(const Vertex& vertex, const Hit& hit, int depth);
     /// Logs a point in a medium at which the path is scattered.
     void medium_vertex(const MediumVertex& vertex, int depth);
+    /// Logs the random walk of the path inside of a solid.
+    void walk(const SolidExit& exit);
     /// Logs a ray that meets nothing.
     void escape(const Ray& ray, int depth);
     /// Logs light that the ray itself has found. `weight` is its MIS weight against light samples, and `light` is

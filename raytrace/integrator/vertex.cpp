@@ -13,15 +13,6 @@ Material with_index(const Material& material, float eta) {
     return other;
 }
 
-const Bsdf& bsdf_of(const RenderPlan& plan, std::uint32_t material, const SurfacePoint& point, float relative_index,
-                    std::optional<Bsdf>& own_bsdf) {
-    if (relative_index != 0)
-        return own_bsdf.emplace(
-            bsdf_at(with_index(plan.scene.materials[material], relative_index), plan.scene.textures, point));
-    if (const std::optional<Bsdf>& constant = (*plan.bsdfs)[material]) return *constant;
-    return own_bsdf.emplace(bsdf_at(plan.scene.materials[material], plan.scene.textures, point));
-}
-
 } // namespace
 
 Vec3 origin_on_smooth_surface(const RenderPlan& plan, const SurfaceGeometryT<float>& point, Vec3 offset, float time) {
@@ -50,14 +41,25 @@ Vertex::Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, std::uint
     : Vertex(plan, ray, hit, pointer(camera_footprint(plan, ray, hit, sample))) {}
 
 Vertex::Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint,
-               float relative_index)
-    : Vertex(plan, ray, hit, footprint, relative_index, material_index(plan.scene, hit.object, hit.primitive)) {}
+               const Boundary& boundary)
+    : Vertex(plan, ray, hit, footprint, boundary, material_index(plan.scene, hit.object, hit.primitive)) {}
 
 Vertex::Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint,
-               float relative_index, std::uint32_t material_index)
+               const Boundary& boundary, std::uint32_t material_index)
     : point(surface_point(plan.scene, ray, hit, footprint, plan.details[material_index])),
       material(plan.scene.materials[material_index]), frame(frame_from_normal(point.ns)),
       wo(direction_to_viewer(frame, point.ng, ray.direction)),
-      bsdf(bsdf_of(plan, material_index, point, relative_index, own_bsdf_)) {}
+      bsdf(make_bsdf(plan, boundary)) {}
+
+const Bsdf& Vertex::make_bsdf(const RenderPlan& plan, const Boundary& boundary) {
+    const TextureSet& textures = plan.scene.textures;
+    if (boundary.leaves_solid) return own_bsdf_.emplace(subsurface_exit_at(material, textures, point));
+    if (boundary.relative_index != 0)
+        return own_bsdf_.emplace(bsdf_at(with_index(material, boundary.relative_index), textures, point));
+    if (plan.subsurface && wo.z > 0 && has_subsurface(material))
+        return own_bsdf_.emplace(subsurface_at(material, textures, point));
+    if (const std::optional<Bsdf>& constant = (*plan.bsdfs)[point.material]) return *constant;
+    return own_bsdf_.emplace(bsdf_at(material, textures, point));
+}
 
 } // namespace duet::raytrace

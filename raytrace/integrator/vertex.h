@@ -9,14 +9,19 @@
 
 namespace duet::raytrace {
 
+/// Says what a path knows of a surface by what it has passed before.
+struct Boundary {
+    float relative_index = 0;  ///< MediumStack::relative_index() for a dielectric inside another one, else 0
+    bool leaves_solid = false; ///< whether light leaves a solid there after subsurface scattering
+};
+
 /// Represents a vertex of a path on a surface.
 class Vertex {
 public:
     /// Makes the vertex at a valid hit of a ray. `footprint` is the ray's footprint there, or null if the plan needs
-    /// none. `relative_index` is MediumStack::relative_index() for a dielectric inside another one, else 0. The vertex
-    /// refers to the plan.
+    /// none. The vertex refers to the plan.
     Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint,
-           float relative_index = 0);
+           const Boundary& boundary = {});
     /// Makes the vertex at a valid hit of the camera ray of a pixel's `sample`.
     Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, std::uint32_t sample);
     Vertex(const Vertex&) = delete; // bsdf may point into the vertex
@@ -34,8 +39,9 @@ public:
     const Bsdf& bsdf;
 
 private:
-    Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint, float relative_index,
-           std::uint32_t material_index);
+    Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint,
+           const Boundary& boundary, std::uint32_t material_index);
+    const Bsdf& make_bsdf(const RenderPlan& plan, const Boundary& boundary);
 };
 
 /// Returns an origin off point.p + offset, or off point.p if another surface lies between. The offset must not be 0.

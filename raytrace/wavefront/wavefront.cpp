@@ -107,12 +107,12 @@ private:
     // Draws all random samples that a vertex may use.
     void draw_all(std::span<const std::uint32_t> indices, int depth) {
         const UsedDimensions all{true, plan_.lights != nullptr, true,
-                                 (plan_.russian_roulette && depth > 0) || plan_.scene.needs.media};
+                                 (plan_.russian_roulette && depth > 0) || plan_.random_distances};
         dimension_sampler_.draw(samplers_, indices, depth, all, random_samples_);
     }
     // Ends all paths, which have reached the greatest depth.
     void end(int depth) {
-        if (plan_.scene.needs.media) draw_all(active_, depth);
+        if (plan_.random_distances) draw_all(active_, depth);
         for (const std::uint32_t i : active_) paths_[i].advance(rays_[i], hits_[i], depth, random_samples_[i]);
         active_.clear();
     }
@@ -128,8 +128,8 @@ private:
                 return escape_to(*even, indices, depth);
             if (const auto* sky = std::get_if<SkyEnvironment>(environment)) return escape_to(*sky, indices, depth);
         }
-        // A ray that hits nothing uses random samples only where media may scatter the path on its way.
-        if (plan_.scene.needs.media) draw_all(indices, depth);
+        // A ray that hits nothing uses random samples only where the path may be scattered on its way.
+        if (plan_.random_distances) draw_all(indices, depth);
         for (const std::uint32_t i : indices) advance_alone(i, depth);
     }
     // Adds the light of an environment that is not sampled as a light, in a loop without calls.

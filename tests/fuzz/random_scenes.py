@@ -24,6 +24,7 @@ from scene_assets import ENVIRONMENTS, IMAGES, MESHES, SMOKE, SMOKE_POINTS, writ
 
 CONDUCTORS = ["aluminium", "chromium", "cobalt", "copper", "gold", "iron", "nickel", "palladium", "platinum", "silver",
               "titanium", "tungsten"]
+SOLIDS = ["apple", "chicken", "cream", "ketchup", "marble", "potato", "skimmed-milk", "skin", "skin-pale", "whole-milk"]
 LARGEST = 1e12  # No coordinate is larger than a few times this.
 REACH = 1e12  # No object reaches farther from the eye than a few times this many distances to what it looks at.
 
@@ -171,6 +172,15 @@ class Scene:
         return keys | self.some({"roughness": self.scalar(), "absorption": absorption, "thin": False,
                                  "priority": self.pick([0, 1, 2, self.random.randint(0, 100)])})
 
+    def subsurface(self):
+        keys = self.some({"roughness": self.scalar(), "ior": self.ior()})
+        if self.chance(0.3):
+            return keys | {"measured": self.pick(SOLIDS), **self.some({"scale": self.size()})}
+        return keys | {"mean_free_path": self.mean_free_path(), **self.some({"albedo": self.slot()})}
+
+    def mean_free_path(self):
+        return self.pick([0, self.size(), [self.size(), 0, self.size()], self.power(0.1 * self.unit)])
+
     def emissive(self):
         keys = {"radiance": self.power(5), **self.some({"two_sided": self.chance(0.5), "albedo": self.slot()})}
         if self.textures and self.chance(0.5):
@@ -178,9 +188,9 @@ class Scene:
         return keys
 
     def material(self):
-        kind = self.pick(["diffuse", "metal", "dielectric", "principled", "coated", "emissive"])
+        kind = self.pick(["diffuse", "metal", "dielectric", "principled", "coated", "subsurface", "emissive"])
         slot, scalar = self.slot(), self.scalar()
-        if kind in ("metal", "dielectric", "emissive"):
+        if kind in ("metal", "dielectric", "subsurface", "emissive"):
             keys = getattr(self, kind)()
         elif kind == "diffuse":
             keys = self.some({"albedo": slot, "roughness": scalar})
@@ -189,6 +199,8 @@ class Scene:
         else:
             keys = self.some({"base_color": slot, "roughness": scalar, "ior": self.ior(), "metallic": self.scalar(),
                               "clearcoat": self.scalar(), "clearcoat_roughness": self.scalar()})
+            if self.chance(0.2):
+                keys |= {"subsurface": self.scalar(), "mean_free_path": self.mean_free_path()}
         if self.textures:
             keys |= self.some({"normal": self.map(), "bump": self.map()}, 0.15)
         if kind != "emissive":

@@ -35,6 +35,11 @@ std::vector<Case> layered_cases() {
     const Shape sphere = Sphere{{0, 0, 0}, 1};
     Diffuse clay{{Rgb(1.0f)}};
     clay.roughness = 1;
+    Principled wax;
+    wax.metallic = 0;
+    wax.clearcoat = 0.5f;
+    wax.subsurface = 0.5f;
+    wax.mean_free_path = Rgb(0.1f);
     Dielectric thin;
     thin.thin = true;
     return {{"rough white metal", sphere, Metal{{Rgb(1.0f)}, 1}, true},
@@ -42,6 +47,8 @@ std::vector<Case> layered_cases() {
             {"white clay", sphere, clay, true},
             {"white plastic", sphere, Coated{{Rgb(1.0f)}, 0.3f}, true},
             {"rough white plastic", sphere, Coated{{Rgb(1.0f)}, 0.9f}, true},
+            {"white marble", sphere, Coated{{Rgb(1.0f)}, 0.3f, 1.5f, Rgb(0.03f, 0.3f, 3)}, true},
+            {"half white wax", sphere, wax, true},
             {"thin glass", sphere, thin, true}};
 }
 

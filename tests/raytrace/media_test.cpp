@@ -7,6 +7,7 @@
 #include "common/medium/density_grid.h"
 #include "common/sampling/hash.h"
 #include "tests/raytrace/estimates.h"
+#include "tests/raytrace/h_function.h"
 #include "tests/raytrace/scene_builder.h"
 
 #include <doctest/doctest.h>
@@ -93,27 +94,6 @@ double single_scattering(const Medium& medium, Vec3d light, double intensity, do
         sum += scattering * phase * std::exp(-extinction * (along + r)) * intensity / (r * r);
     }
     return sum * 2 * half / steps;
-}
-
-/// Returns Chandrasekhar's H(1) for isotropic scattering, by iteration of the form that converges for every albedo:
-/// 1/H(μ) = √(1 − ϖ) + ½ϖ ∫ μ' H(μ') / (μ + μ') dμ' ("Radiative Transfer", 1950, §38).
-double h_function_at_1(double albedo) {
-    const int n = 400;
-    std::vector<double> h(n, 1.0);
-    const auto value = [&](double mu) {
-        double integral = 0;
-        for (int i = 0; i < n; ++i) {
-            const double x = (i + 0.5) / n;
-            integral += x * h[static_cast<std::size_t>(i)] / (mu + x) / n;
-        }
-        return 1 / (std::sqrt(1 - albedo) + 0.5 * albedo * integral);
-    };
-    for (int iteration = 0; iteration < 60; ++iteration) {
-        std::vector<double> next(n);
-        for (int i = 0; i < n; ++i) next[static_cast<std::size_t>(i)] = value((i + 0.5) / n);
-        h = next;
-    }
-    return value(1);
 }
 
 } // namespace
@@ -513,7 +493,7 @@ TEST_SUITE("statistical") {
         SceneBuilder builder = looking_down_z();
         builder.scene.media = {fog({{-1000, -1000, -30}, {1000, 1000, 0}}, Rgb(albedo), Rgb(1 - albedo))};
         builder.scene.lights = {SunLight{{0, 0, -1}, Rgb(1.0f)}};
-        const double h = h_function_at_1(static_cast<double>(albedo));
+        const double h = HFunction(static_cast<double>(albedo))(1);
         const double truth = static_cast<double>(albedo) / (4 * kPiDouble) * 0.5 * h * h;
         check_close(estimate(builder.finish(), 8, path_settings(1024, 1000)), truth, 1e-3);
     }

@@ -157,15 +157,30 @@ float read_ior(const JsonValue& owner, float fallback) {
     return static_cast<float>(owner.number_or("ior", fallback, kIor));
 }
 
+/// Fails because none of the known names is `name`.
+[[noreturn]] void fail_unknown(const JsonValue& name, std::string_view what,
+                               const std::vector<std::string_view>& known) {
+    std::string hint = suggestion(name.string(), known);
+    if (hint.empty())
+        for (const std::string_view one : known) hint += message(hint.empty() ? "; known are " : ", ", one);
+    name.fail(message("unknown ", what, " ", quoted_text(name.string()), hint));
+}
+
 Conductor read_conductor(const JsonValue& owner) {
     const JsonValue name = owner.at("conductor");
     if (owner.has("reflectance")) name.fail("expected no reflectance beside it: a conductor has its own");
     if (const auto found = find_conductor(name.string())) return *found;
-    const std::vector<std::string_view> known(conductor_names().begin(), conductor_names().end());
-    std::string hint = suggestion(name.string(), known);
-    if (hint.empty())
-        for (const std::string_view one : known) hint += message(hint.empty() ? "; known are " : ", ", one);
-    name.fail(message("unknown conductor ", quoted_text(name.string()), hint));
+    fail_unknown(name, "conductor", {conductor_names().begin(), conductor_names().end()});
+}
+
+const MeasuredSolid& read_measured_solid(const JsonValue& owner) {
+    const JsonValue name = owner.at("measured");
+    for (const char* key : {"albedo", "mean_free_path"})
+        if (owner.has(key)) name.fail(message("expected no ", key, " beside it: what is measured has its own"));
+    if (const MeasuredSolid* found = find_measured_solid(name.string())) return *found;
+    std::vector<std::string_view> known;
+    for (const MeasuredSolid& solid : measured_solids()) known.push_back(solid.name);
+    fail_unknown(name, "solid", known);
 }
 
 /// Distances of a nanometer or more keep absorption coefficients finite.
@@ -197,6 +212,26 @@ Dielectric read_dielectric(const JsonValue& value, const NameIndex& textures) {
     return material;
 }
 
+Coated read_subsurface(const JsonValue& value, const NameIndex& textures) {
+    value.check_keys(scene_keys("subsurface"));
+    Coated material;
+    if (value.has("measured")) {
+        const MeasuredSolid& solid = read_measured_solid(value);
+        const auto scale = static_cast<float>(value.number_or("scale", 1, {0, 1e12, true}));
+        material.albedo = {solid.albedo()};
+        material.mean_free_path = solid.mean_free_path() * scale;
+        material.ior = solid.ior;
+    } else {
+        if (value.has("scale")) value.at("scale").fail("expected no scale without a measured solid");
+        material.albedo = read_slot(value, "albedo", {Rgb(0.8f)}, textures);
+        material.mean_free_path = value.at("mean_free_path").rgb(kLightRange);
+        material.ior = 1.4f;
+    }
+    material.ior = read_ior(value, material.ior);
+    material.roughness = read_scalar(value, "roughness", 0.3f, textures);
+    return material;
+}
+
 Principled read_principled(const JsonValue& value, const NameIndex& textures) {
     value.check_keys(scene_keys("principled"));
     Principled material;
@@ -206,11 +241,16 @@ Principled read_principled(const JsonValue& value, const NameIndex& textures) {
     material.ior = read_ior(value, material.ior);
     material.clearcoat = read_scalar(value, "clearcoat", material.clearcoat, textures);
     material.clearcoat_roughness = read_scalar(value, "clearcoat_roughness", material.clearcoat_roughness, textures);
+    material.subsurface = read_scalar(value, "subsurface", material.subsurface, textures);
+    if (value.has("mean_free_path")) material.mean_free_path = value.at("mean_free_path").rgb(kLightRange);
+    if (value.has("subsurface") != value.has("mean_free_path"))
+        value.fail("found only one of subsurface and mean_free_path, expected both or none");
     return material;
 }
 
 Material read_material(const JsonValue& value, const NameIndex& textures) {
-    switch (value.at("type").one_of({"diffuse", "metal", "dielectric", "principled", "coated", "emissive"})) {
+    switch (value.at("type").one_of(
+        {"diffuse", "metal", "dielectric", "principled", "coated", "subsurface", "emissive"})) {
     case 0: {
         value.check_keys(scene_keys("diffuse"));
         Diffuse material;
@@ -242,6 +282,8 @@ Material read_material(const JsonValue& value, const NameIndex& textures) {
         material.ior = read_ior(value, material.ior);
         return material;
     }
+    case 5:
+        return read_subsurface(value, textures);
     default: {
         value.check_keys(scene_keys("emissive"));
         Emissive material;

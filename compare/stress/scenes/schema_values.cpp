@@ -99,6 +99,15 @@ void repair_motion(Json& object) {
     object["transform_end"] = std::move(steps);
 }
 
+void repair_subsurface(Json& object) {
+    if (object.contains("measured")) {
+        for (const char* key : {"albedo", "mean_free_path"}) object.erase(key);
+    } else {
+        object.erase("scale");
+        if (!object.contains("mean_free_path")) object["mean_free_path"] = 0.1;
+    }
+}
+
 /// Changes what the schema allows and the format does not (models/README.md).
 void repair(Json& object, const std::string& definition) {
     const std::string type = object.value("type", "");
@@ -112,6 +121,9 @@ void repair(Json& object, const std::string& definition) {
     if (object.contains("conductor")) object.erase("reflectance");
     if (type == "dielectric" && object.value("thin", false))
         for (const char* key : {"roughness", "absorption", "priority"}) object.erase(key);
+    if (type == "subsurface") repair_subsurface(object);
+    if (type == "principled" && object.contains("subsurface") != object.contains("mean_free_path"))
+        for (const char* key : {"subsurface", "mean_free_path"}) object.erase(key);
     if (object.contains("outer_degrees"))
         object["inner_degrees"] = object["outer_degrees"].get<double>() * object.value("inner_degrees", 90.0) / 200;
     else

@@ -1,0 +1,79 @@
+// Subsurface scattering: light enters a solid such as skin or marble, is scattered inside many times, and leaves it
+// elsewhere. This file describes the inside of such a solid, and how light passes its surface. The path tracer follows
+// the light in between (raytrace/integrator/random_walk.h).
+//
+// Inside and outside are joined by diffuse light: what passes the layers on top enters with the distribution of
+// Lambert's law, and leaves with it (Chiang, Kutz and Burley 2016, "Practical and Controllable Subsurface Scattering
+// for Production Path Tracing"). Where the light is scattered within a short distance, the solid looks like the
+// layered material with a diffuse surface of the same albedo.
+#pragma once
+
+#include "common/material/layered.h"
+
+#include <optional>
+#include <span>
+#include <string_view>
+
+namespace duet {
+
+/// Describes what fills a solid. It scatters light evenly in all directions.
+struct SolidInterior {
+    Rgb scattering; ///< σs: the fraction of light that is scattered per meter, 1/m
+    Rgb absorption; ///< σa: the fraction of light that is absorbed per meter, 1/m
+};
+/// Returns the interior of which an infinitely thick layer reflects the fraction `albedo` of diffuse light, in [0, 1],
+/// and in which light comes as far as mean_free_path between two collisions on average, > 0, in meters.
+SolidInterior solid_interior(Rgb albedo, Rgb mean_free_path);
+/// Returns the fraction of diffuse light that an infinitely thick layer reflects, to 0.003. The argument is the
+/// probability in [0, 1] that a collision scatters the light and does not absorb it (van de Hulst 1980, "Multiple Light
+/// Scattering", vol. 2; the inverse: Kulla and Conty 2017, "Revisiting Physically Based Shading at Imageworks").
+float thick_layer_albedo(float single_scattering_albedo);
+
+/// Holds what has been measured of a real solid or liquid.
+struct MeasuredSolid {
+    std::string_view name;
+    Rgb scattering; ///< reduced coefficient σs' = σs·(1 − g), which replaces σs where scattering counts as even, 1/m
+    Rgb absorption; ///< σa, 1/m
+    float ior;      ///< index of refraction
+
+    /// Returns the albedo of an infinitely thick layer without a surface.
+    Rgb albedo() const;
+    /// Returns the mean distance between two collisions, in meters.
+    Rgb mean_free_path() const { return Rgb(1.0f) / (scattering + absorption); }
+};
+/// Returns all measured solids in alphabetical order.
+std::span<const MeasuredSolid> measured_solids();
+/// Returns the solid of that name, or null for an unknown name.
+const MeasuredSolid* find_measured_solid(std::string_view name);
+
+/// The surface of a solid, seen from outside (wo.z > 0). eval and pdf are those of the light that it reflects. Light
+/// also enters the solid, which only sample finds: its sample is marked as transmitted.
+struct SubsurfaceBsdf {
+    static constexpr bool kTransmissive = false;
+
+    LayeredBsdf surface; ///< what reflects light
+    float entering;      ///< fraction of what passes the layers that enters the solid, in [0, 1]
+    SolidInterior interior;
+
+    Rgb eval(Vec3 wo, Vec3 wi, TransportMode mode) const { return surface.eval(wo, wi, mode); }
+    std::optional<BsdfSample> sample(Vec3 wo, float lobe, Vec2 u, TransportMode mode) const;
+    float pdf(Vec3 wo, Vec3 wi, TransportMode mode) const;
+
+private:
+    float entering_probability(float cosine) const;
+};
+
+/// The surface of a solid at a point where light leaves it. It sends all light to the outside, where wo and wi are both
+/// taken to be: the light that comes from inside is diffuse, so that no direction there matters.
+struct SubsurfaceExitBsdf {
+    static constexpr bool kTransmissive = false;
+
+    LayeredBsdf surface; ///< what the light passes
+    float mean_passed;   ///< surface.mean_passed()
+
+    Rgb eval(Vec3 wo, Vec3 wi, TransportMode mode) const;
+    std::optional<BsdfSample> sample(Vec3 wo, float lobe, Vec2 u, TransportMode mode) const;
+    float pdf(Vec3 wo, Vec3 wi, TransportMode mode) const;
+};
+
+} // namespace duet

@@ -1,0 +1,92 @@
+#include "raytrace/integrator/random_walk.h"
+
+#include "common/sampling/warp.h"
+#include "raytrace/integrator/random_sequence.h"
+#include "raytrace/integrator/russian_roulette.h"
+#include "raytrace/integrator/vertex.h"
+
+#include <cmath>
+
+namespace duet::raytrace {
+
+namespace {
+
+constexpr int kMaxCollisions = 30000;
+
+SurfacePoint point_at(const RenderPlan& plan, const Ray& ray, const Hit& hit) {
+    const std::uint32_t material = material_index(plan.scene, hit.object, hit.primitive);
+    return surface_point(plan.scene, ray, hit, nullptr, plan.details[material]);
+}
+
+// Carries the path along the ray to the next collision or, if that comes first, to the hit. `hit_known` tells whether
+// `hit` is that of the ray; else it is found. Returns the distance of the collision, if there is one.
+std::optional<float> next_collision(const RenderPlan& plan, const SolidInterior& interior, Ray& ray, Hit& hit,
+                                    bool hit_known, RandomSequence& random, PathThroughputT<float>& path) {
+    const Rgb extinction = interior.scattering + interior.absorption;
+    const ChosenChannel channel(path.throughput, random());
+    const float drawn = -std::log1p(-random()) / extinction[channel.index];
+    // A collision so near to a surface that rounding could move it to the other side counts as a hit. What is farther
+    // away than that behind the collision need not be found.
+    const float end = drawn + 0x1p-20f * (max_component(abs(ray.origin)) + drawn);
+    if (!hit_known) {
+        ray.t_max = end;
+        hit = plan.prepared.accelerator.closest(ray);
+    }
+    const bool collides = hit.t > end;
+    const float t = collides ? drawn : hit.t;
+    const Rgb passed(std::exp(-extinction.r * t), std::exp(-extinction.g * t), std::exp(-extinction.b * t));
+    const float density = channel.mean(collides ? extinction * passed : passed);
+    path.throughput *= (collides ? interior.scattering * passed : passed) / density;
+    return collides ? std::optional(t) : std::nullopt;
+}
+
+// Reflects the path diffusely at the inner side of the hit surface, or at the outer side of another one.
+void reflect_inside(const SurfacePoint& point, Ray& ray, RandomSequence& random) {
+    const Vec3 n = dot(point.ng, ray.direction) > 0 ? -point.ng : point.ng;
+    const Vec2 u{random(), random()};
+    ray.direction = normalize(frame_from_normal(n).to_world(cosine_hemisphere(u)));
+    ray.origin = offset_origin(point.p, point.p_error, n);
+}
+
+} // namespace
+
+Ray SolidExit::seen_from_outside(const RenderPlan& plan) const {
+    const SurfacePoint point = point_at(plan, ray, hit);
+    Ray outside{point.p + point.ng * hit.t, -point.ng};
+    outside.time = ray.time;
+    return outside;
+}
+
+std::optional<SolidExit> random_walk(const RenderPlan& plan, const SolidInterior& interior, Ray ray, Hit hit, float u,
+                                     PathThroughputT<float>& path, Rgb& emitted_light, RayCounts& counts) {
+    RandomSequence random(u);
+    bool hit_known = true;
+    for (int collisions = 0; collisions < kMaxCollisions; ++counts.indirect, hit_known = false) {
+        if (is_black(path.throughput)) return std::nullopt;
+        if (const auto t = next_collision(plan, interior, ray, hit, hit_known, random, path)) {
+            ++collisions;
+            ray.origin = ray.at(*t);
+            const Vec2 direction{random(), random()};
+            ray.direction = uniform_sphere(direction);
+        } else if (!hit.valid()) {
+            return std::nullopt; // the solid has no end
+        } else {
+            const SurfacePoint point = point_at(plan, ray, hit);
+            const Material& material = plan.scene.materials[point.material];
+            if (dot(point.ng, ray.direction) > 0 && has_subsurface(material)) {
+                if (random() >= internal_reflectance(material)) return SolidExit{ray, hit, collisions};
+            } else {
+                emitted_light += path.throughput * emitted(material, plan.scene.textures, point, -ray.direction);
+                path.throughput *= base_color(material, plan.scene.textures, point);
+            }
+            reflect_inside(point, ray, random);
+        }
+        if (plan.russian_roulette && !russian_roulette(random(), path).survives) {
+            ++counts.ended;
+            return std::nullopt;
+        }
+    }
+    return std::nullopt;
+}
+
+} // namespace duet::raytrace

@@ -1,0 +1,33 @@
+// The random walk of a path inside of a solid with subsurface scattering (common/material/subsurface.h).
+#pragma once
+
+#include "raytrace/integrator/integrator.h"
+#include "raytrace/integrator/path_state.h"
+
+#include <optional>
+
+namespace duet::raytrace {
+
+/// The surface at which a path leaves a solid.
+struct SolidExit {
+    Ray ray; ///< the last segment of the walk, which arrives from inside
+    Hit hit;
+    int collisions = 0; ///< how often the walk was scattered
+
+    /// Returns a ray along which a viewer outside, in front of the surface, has the same hit.
+    Ray seen_from_outside(const RenderPlan& plan) const;
+};
+
+/// Follows a path that has entered a solid until it leaves it by a surface with subsurface scattering, which may be
+/// another one than it has entered. `ray` starts inside, and `hit` is what it hits. Returns nothing if the path ends
+/// inside. `path` is multiplied by the weight of the walk, and u in [0, 1) decides it.
+///
+/// The distances between collisions are drawn in proportion to the light that arrives there, for a channel that is
+/// chosen by the throughput. The surface reflects a part of the light back, diffusely. What else is inside, such as the
+/// eyes in a head, reflects light diffusely by its base color; `emitted` is increased by what it emits times the
+/// throughput. Paths of little throughput end by Russian roulette, and all end after kMaxCollisions. In a white solid
+/// deeper than that many mean free paths, less than 0.5 % of the light is lost.
+std::optional<SolidExit> random_walk(const RenderPlan& plan, const SolidInterior& interior, Ray ray, Hit hit, float u,
+                                     PathThroughputT<float>& path, Rgb& emitted, RayCounts& counts);
+
+} // namespace duet::raytrace
