@@ -46,8 +46,11 @@ LayeredBsdf Coated::at(const TextureSet& textures, const SurfacePoint& point) co
 
 SubsurfaceBsdf Coated::subsurface_at(const TextureSet& textures, const SurfacePoint& point) const {
     LayeredBsdf surface = at(textures, point);
+    const Rgb seen = surface.diffuse, base = evaluate_reflectance(textures, albedo, point);
     surface.diffuse = Rgb();
-    return {surface, 1, solid_interior(evaluate_reflectance(textures, albedo, point), mean_free_path)};
+    const float back = internal_reflectance();
+    const Rgb factor(free_path_factor(base.r, back), free_path_factor(base.g, back), free_path_factor(base.b, back));
+    return {surface, 1, solid_interior(seen, mean_free_path * factor)};
 }
 
 } // namespace duet

@@ -24,24 +24,15 @@ constexpr MeasuredSolid kMeasuredSolids[] = {
     {"whole-milk", {2550, 3210, 3770}, {1.1f, 2.4f, 14}, 1.3f},
 };
 
-// The constants of van de Hulst's formula A = (1 − s)(1 − a·s) / (1 + b·s) with s² = 1 − α.
-constexpr float kA = 0.139f, kB = 1.17f;
-
-// Returns s for an albedo: the root of a·s² − (1 + a + b·A)·s + (1 − A) = 0, computed without cancellation.
-float similarity(float albedo) {
-    const float b = 1 + kA + kB * albedo, c = 1 - albedo;
-    return 2 * c / (b + std::sqrt(b * b - 4 * kA * c));
-}
-
 } // namespace
 
 float thick_layer_albedo(float single_scattering_albedo) {
     const float s = std::sqrt(1 - single_scattering_albedo);
-    return (1 - s) * (1 - kA * s) / (1 + kB * s);
+    return (1 - s) * (1 - kHulstA * s) / (1 + kHulstB * s);
 }
 
 SolidInterior solid_interior(Rgb albedo, Rgb mean_free_path) {
-    const auto absorbed = [](float a) { return sqr(similarity(clamp(a, 0.0f, 1.0f))); };
+    const auto absorbed = [](float a) { return sqr(similarity_parameter(clamp(a, 0.0f, 1.0f))); };
     const Rgb fraction(absorbed(albedo.r), absorbed(albedo.g), absorbed(albedo.b));
     return {(Rgb(1.0f) - fraction) / mean_free_path, fraction / mean_free_path};
 }

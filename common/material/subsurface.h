@@ -10,20 +10,41 @@
 
 #include "common/material/layered.h"
 
+#include <cmath>
 #include <optional>
 #include <span>
 #include <string_view>
 
 namespace duet {
 
+/// The constants of van de Hulst's formula A = (1 − s)(1 − a·s) / (1 + b·s) with s² = 1 − α.
+inline constexpr float kHulstA = 0.139f, kHulstB = 1.17f;
+
 /// Describes what fills a solid. It scatters light evenly in all directions.
 struct SolidInterior {
     Rgb scattering; ///< σs: the fraction of light that is scattered per meter, 1/m
     Rgb absorption; ///< σa: the fraction of light that is absorbed per meter, 1/m
 };
+// Of light that arrives at the surface from inside, the layers on top reflect a part back. Its walks would be up to
+// five times as long. Walks without that reflection, in an interior of the albedo that is seen through the layers, come
+// as far if their mean free path is longer by free_path_factor() (tested).
+
 /// Returns the interior of which an infinitely thick layer reflects the fraction `albedo` of diffuse light, in [0, 1],
 /// and in which light comes as far as mean_free_path between two collisions on average, > 0, in meters.
 SolidInterior solid_interior(Rgb albedo, Rgb mean_free_path);
+/// Returns s = √(1 − α), where α is the probability that a collision scatters the light and does not absorb it, for the
+/// albedo in [0, 1] of an infinitely thick layer. This is the root of van de Hulst's formula (thick_layer_albedo),
+/// computed without cancellation. T is float or a batch of floats.
+template <typename T> T similarity_parameter(const T& albedo) {
+    using std::sqrt;
+    const T b = T(1 + kHulstA) + T(kHulstB) * albedo, c = T(1.0f) - albedo;
+    return T(2.0f) * c / (b + sqrt(b * b - T(4 * kHulstA) * c));
+}
+/// Returns the factor of the mean free path that stands for reflection at the inner side of the surface, which reflects
+/// the fraction internal_reflectance of the light. `albedo` is that of the interior without the surface.
+template <typename T> T free_path_factor(const T& albedo, const T& internal_reflectance) {
+    return T(1.0f) + albedo * internal_reflectance / (T(1.0f) - internal_reflectance);
+}
 /// Returns the fraction of diffuse light that an infinitely thick layer reflects, to 0.003. The argument is the
 /// probability in [0, 1] that a collision scatters the light and does not absorb it (van de Hulst 1980, "Multiple Light
 /// Scattering", vol. 2; the inverse: Kulla and Conty 2017, "Revisiting Physically Based Shading at Imageworks").

@@ -13,17 +13,13 @@ namespace duet::raster {
 /// leaves at the distance r. The parameter b, 1/m, determines its scale; the mean distance is 2.5 / b.
 namespace diffusion_profile {
 
-/// Returns b times the mean free path, for a solid of which a diffuse surface under the same coat would have this
-/// albedo in [0, 1], and whose coat reflects the fraction `internal_reflectance` of light from inside. It is fitted to
-/// random walks (raytrace/integrator/random_walk.h) in a half space, of whose mean distances it is within 10 %
-/// (tested).
-template <typename T> T scale(const T& albedo, const T& internal_reflectance) {
+/// Returns b times the mean free path in the interior of a solid, whose thick layers have this albedo in [0, 1]. It is
+/// fitted to random walks (raytrace/integrator/random_walk.h) in a half space, whose mean distances it has within 5 %
+/// (tested). T is float or a batch of floats.
+template <typename T> T scale(const T& albedo) {
     using std::sqrt;
-    const T b = T(1.139f) + T(1.17f) * albedo, c = T(1.0f) - albedo;
-    const T s =
-        T(2.0f) * c / (b + sqrt(b * b - T(0.556f) * c)); // similarity parameter (common/material/subsurface.cpp)
-    const T r = internal_reflectance;
-    return T(0.45f) * (T(1.0f) - r) + (T(1.0f) - T(0.3f) * r) * sqrt(s) + (T(2.7f) + T(0.6f) * r) * s;
+    const T s = similarity_parameter(albedo);
+    return T(0.45f) + sqrt(s) + T(2.7f) * s;
 }
 
 /// Distances along an axis are cut off here, in units of 1 / b; less than 2 % of the light comes farther.

@@ -87,9 +87,10 @@ private:
         const RgbT<Floats> albedo = gbuffer_.diffuse.color(x, y);
         const auto channel = [&](const Floats& a, std::size_t c) {
             const Floats path = look_up(materials_.mean_free_path[c], gbuffer_.material, x, y);
-            const Floats inside = a / (Floats(1.0f) - back + a * back); // the albedo without the coat
-            return diffusion_profile::scale(clamp(inside, Floats(0.0f), Floats(1.0f)), back) /
-                   xsimd::select(solid, path, Floats(1.0f));
+            const Floats seen = clamp(a, Floats(0.0f), Floats(1.0f));
+            const Floats inside = seen / (Floats(1.0f) - back + seen * back); // the albedo without the coat
+            return diffusion_profile::scale(seen) /
+                   (xsimd::select(solid, path, Floats(1.0f)) * free_path_factor(inside, back));
         };
         return {channel(albedo.r, 0), channel(albedo.g, 1), channel(albedo.b, 2)};
     }

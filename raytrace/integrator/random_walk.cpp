@@ -11,7 +11,7 @@ namespace duet::raytrace {
 
 namespace {
 
-constexpr int kMaxCollisions = 30000;
+constexpr int kMaxRays = 30000;
 
 SurfacePoint point_at(const RenderPlan& plan, const Ray& ray, const Hit& hit) {
     const std::uint32_t material = material_index(plan.scene, hit.object, hit.primitive);
@@ -40,8 +40,8 @@ std::optional<float> next_collision(const RenderPlan& plan, const SolidInterior&
     return collides ? std::optional(t) : std::nullopt;
 }
 
-// Reflects the path diffusely at the inner side of the hit surface, or at the outer side of another one.
-void reflect_inside(const SurfacePoint& point, Ray& ray, RandomSequence& random) {
+// Reflects the path diffusely.
+void reflect(const SurfacePoint& point, Ray& ray, RandomSequence& random) {
     const Vec3 n = dot(point.ng, ray.direction) > 0 ? -point.ng : point.ng;
     const Vec2 u{random(), random()};
     ray.direction = normalize(frame_from_normal(n).to_world(cosine_hemisphere(u)));
@@ -60,10 +60,10 @@ Ray SolidExit::seen_from_outside(const RenderPlan& plan) const {
 std::optional<SolidExit> random_walk(const RenderPlan& plan, const SolidInterior& interior, Ray ray, Hit hit, float u,
                                      PathThroughputT<float>& path, Rgb& emitted_light, RayCounts& counts) {
     RandomSequence random(u);
-    bool hit_known = true;
-    for (int collisions = 0; collisions < kMaxCollisions; ++counts.indirect, hit_known = false) {
+    int collisions = 0;
+    for (int rays = 0; rays < kMaxRays; ++rays, ++counts.indirect) {
         if (is_black(path.throughput)) return std::nullopt;
-        if (const auto t = next_collision(plan, interior, ray, hit, hit_known, random, path)) {
+        if (const auto t = next_collision(plan, interior, ray, hit, rays == 0, random, path)) {
             ++collisions;
             ray.origin = ray.at(*t);
             const Vec2 direction{random(), random()};
@@ -73,13 +73,10 @@ std::optional<SolidExit> random_walk(const RenderPlan& plan, const SolidInterior
         } else {
             const SurfacePoint point = point_at(plan, ray, hit);
             const Material& material = plan.scene.materials[point.material];
-            if (dot(point.ng, ray.direction) > 0 && has_subsurface(material)) {
-                if (random() >= internal_reflectance(material)) return SolidExit{ray, hit, collisions};
-            } else {
-                emitted_light += path.throughput * emitted(material, plan.scene.textures, point, -ray.direction);
-                path.throughput *= base_color(material, plan.scene.textures, point);
-            }
-            reflect_inside(point, ray, random);
+            if (dot(point.ng, ray.direction) > 0 && has_subsurface(material)) return SolidExit{ray, hit, collisions};
+            emitted_light += path.throughput * emitted(material, plan.scene.textures, point, -ray.direction);
+            path.throughput *= base_color(material, plan.scene.textures, point);
+            reflect(point, ray, random);
         }
         if (plan.russian_roulette && !russian_roulette(random(), path).survives) {
             ++counts.ended;

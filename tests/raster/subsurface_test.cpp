@@ -60,7 +60,8 @@ TEST_SUITE("unit") {
             for (std::size_t c = 0; c < 3; ++c) {
                 CAPTURE(c);
                 const float inside = albedo[c] / (1 - back + albedo[c] * back);
-                const double b = static_cast<double>(diffusion_profile::scale(inside, back) / paths[c]);
+                const double b = static_cast<double>(diffusion_profile::scale(albedo[c]) /
+                                                     (paths[c] * free_path_factor(inside, back)));
                 for (int k = -30; k < 30; ++k) {
                     CAPTURE(k);
                     const double x = (k + 0.5) * static_cast<double>(kPixel);
