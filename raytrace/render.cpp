@@ -1,6 +1,8 @@
 #include "raytrace/render.h"
 
 #include "common/system/stopwatch.h"
+#include "raytrace/denoise/denoise.h"
+#include "raytrace/denoise/features.h"
 #include "raytrace/render_state.h"
 #include "raytrace/sample_schedule.h"
 
@@ -24,6 +26,9 @@ double total_target(const Film& film) {
     for (const Film::Pixel& pixel : film.pixels()) sum += pixel.target;
     return sum;
 }
+
+constexpr const char* kDenoisedApproximation =
+    "The denoised image blurs what the samples do not tell from noise; less with more samples.";
 
 std::int64_t film_bytes(const Film& film) {
     return static_cast<std::int64_t>(sizeof(Film::Pixel)) * film.width() * film.height();
@@ -82,6 +87,13 @@ Rendering render(const PathTracerScene& prepared, const View& view, const PathTr
         statistics.skipped.push_back({"paths ended by roulette", "dim ones", state.rays.ended});
     statistics.approximations = approximations(state.plan, settings);
     statistics.seconds.emplace_back("resolve", watch.lap());
+    if (settings.denoise) {
+        const Planes features = trace_features(state.plan, view, settings);
+        statistics.seconds.emplace_back("features", watch.lap());
+        rendering.denoised = denoise(film, features, settings.threads);
+        statistics.approximations.push_back(kDenoisedApproximation);
+        statistics.seconds.emplace_back("denoise", watch.lap());
+    }
     return rendering;
 }
 

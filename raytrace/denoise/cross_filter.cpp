@@ -10,13 +10,22 @@ namespace {
 constexpr int kModelRows = 8 * DenoiseTile::kHeight;
 constexpr int kBandRows = kModelRows - 2 * kWindowRadius;
 
+// Computes the weights of all tiles of some rows, and calls visit(tile, weights).
 template <typename Visit>
-void for_tiles(int width, int first_row, int end_row, int threads, const Visit& visit) {
-    const int columns = (width + DenoiseTile::kWidth - 1) / DenoiseTile::kWidth;
+void for_tiles(const HalfBuffers& halves, std::size_t half, int first_row, int end_row, int threads,
+               const Visit& visit) {
+    constexpr int kTilesInTask = 4; // share the memory of the weights
+    const int columns = (halves.known.width() + DenoiseTile::kWidth - 1) / DenoiseTile::kWidth;
     const int rows = (end_row - first_row + DenoiseTile::kHeight - 1) / DenoiseTile::kHeight;
-    parallel_for(static_cast<std::size_t>(columns * rows), threads, [&](std::size_t i) {
-        const int tile = static_cast<int>(i);
-        visit(DenoiseTile{tile % columns * DenoiseTile::kWidth, first_row + tile / columns * DenoiseTile::kHeight});
+    const int tiles = columns * rows;
+    parallel_for(static_cast<std::size_t>((tiles + kTilesInTask - 1) / kTilesInTask), threads, [&](std::size_t task) {
+        PatchWeights weights;
+        const int first = static_cast<int>(task) * kTilesInTask;
+        for (int i = first; i < std::min(first + kTilesInTask, tiles); ++i) {
+            const DenoiseTile tile{i % columns * DenoiseTile::kWidth, first_row + i / columns * DenoiseTile::kHeight};
+            weights.compute(tile, halves, half);
+            visit(tile, weights);
+        }
     });
 }
 
@@ -32,15 +41,11 @@ Corrections cross_filter(const HalfBuffers& halves, const Planes& features, int 
             const Planes& color = halves.mean[half];
             models.first_row = first - kWindowRadius;
             const int end = std::min(first + kBandRows, height);
-            for_tiles(width, models.first_row, std::min(end, height) + kWindowRadius, threads,
-                      [&](const DenoiseTile& tile) {
-                          PatchWeights weights;
-                          weights.compute(tile, halves, half);
+            for_tiles(halves, half, models.first_row, end + kWindowRadius, threads,
+                      [&](const DenoiseTile& tile, const PatchWeights& weights) {
                           fit_models(tile, weights, color, features, models);
                       });
-            for_tiles(width, first, end, threads, [&](const DenoiseTile& tile) {
-                PatchWeights weights;
-                weights.compute(tile, halves, half);
+            for_tiles(halves, half, first, end, threads, [&](const DenoiseTile& tile, const PatchWeights& weights) {
                 evaluate_models(tile, end, weights, color, features, models, corrections[half]);
             });
         }

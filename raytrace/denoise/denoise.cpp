@@ -19,8 +19,9 @@ ImageRgb denoise(const Film& film, const Planes& features, int threads) {
             Rgb filtered = image(x, y);
             for (std::size_t c = 0; c < 3; ++c) {
                 for (std::size_t k = 0; k < kFilters; ++k)
-                    filtered[c] += *fractions.at(k, x, y) * (n0 * *corrections[0][k].at(c, x, y) +
-                                                             n1 * *corrections[1][k].at(c, x, y)) / (n0 + n1);
+                    filtered[c] += *fractions.at(k, x, y) *
+                                   (n0 * *corrections[0][k].at(c, x, y) + n1 * *corrections[1][k].at(c, x, y)) /
+                                   (n0 + n1);
                 filtered[c] = std::max(filtered[c], 0.0f);
             }
             if (is_valid_radiance(filtered)) image(x, y) = filtered;

@@ -22,8 +22,9 @@ Sampler feature_sampler(const PathTracerSettings& settings) {
 class RowTracer {
 public:
     RowTracer(const RenderPlan& plan, const View& view, const PathTracerSettings& settings)
-        : plan_(plan), camera_(view), forward_(camera_.pinhole().forward), samplers_(kSamples, feature_sampler(settings)),
-          random_samples_(kSamples), points_(kSamples), rays_(kSamples * kPixels), hits_(kSamples * kPixels) {}
+        : plan_(plan), camera_(view), forward_(camera_.pinhole().forward),
+          samplers_(kSamples, feature_sampler(settings)), random_samples_(kSamples), points_(kSamples),
+          rays_(kSamples * kPixels), hits_(kSamples * kPixels) {}
 
     // Traces a row of the image. The inverse of the depth is stored in 1/m.
     void trace(int y, Planes& features) {

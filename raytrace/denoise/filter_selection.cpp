@@ -41,6 +41,13 @@ void choose(const Planes& errors, int x, int y, Planes& choices) {
     choices.store(1, x, y, xsimd::select(narrow < wide && narrow < none, one, zero));
 }
 
+// Gives the narrow filter the fraction of the unfiltered image that a firefly must not keep.
+void filter_fireflies(const HalfBuffers& halves, int x, int y, Planes& fractions) {
+    const PixelBatch reliability = halves.reliability[0].load(0, x, y) * halves.reliability[1].load(0, x, y);
+    const PixelBatch wide = fractions.load(0, x, y), narrow = fractions.load(1, x, y), one(1.0f);
+    fractions.store(1, x, y, narrow + (one - wide - narrow) * (one - reliability));
+}
+
 } // namespace
 
 Planes select_filters(const HalfBuffers& halves, const Corrections& corrections, int threads) {
@@ -55,7 +62,9 @@ Planes select_filters(const HalfBuffers& halves, const Corrections& corrections,
     errors = box_filter(std::move(errors), kRadius, threads);
     Planes choices(width, height, kFilters);
     for_batches([&](int x, int y) { choose(errors, x, y, choices); });
-    return box_filter(std::move(choices), kRadius, threads);
+    Planes fractions = box_filter(std::move(choices), kRadius, threads);
+    for_batches([&](int x, int y) { filter_fireflies(halves, x, y, fractions); });
+    return fractions;
 }
 
 } // namespace duet::raytrace

@@ -12,7 +12,8 @@ namespace duet::raytrace {
 /// difference of both, less the variance of the other half (Bitterli et al. 2016, section 5.3). The mean of both
 /// filtered halves has an error that is lower by the square of half their difference. These estimates are noisy, and
 /// averaged over a square around the pixel, relative to its brightness. Then the candidate with the least error is
-/// chosen, and the choices are averaged, so that there are no seams.
+/// chosen, and the choices are averaged, so that there are no seams. A firefly keeps as much of itself as it is
+/// reliable.
 Planes select_filters(const HalfBuffers& halves, const Corrections& corrections, int threads);
 
 } // namespace duet::raytrace

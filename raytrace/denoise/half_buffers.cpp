@@ -12,7 +12,9 @@ constexpr float kFireflyRatio = 2;
 // A pixel that is brighter is left as it is, because its square would not be finite in single precision.
 constexpr double kMaxMean = 1e15;
 
-Rgbd mean(const Film::Pixel& pixel, std::size_t half) { return pixel.sum[half] / static_cast<double>(pixel.count[half]); }
+Rgbd mean(const Film::Pixel& pixel, std::size_t half) {
+    return pixel.sum[half] / static_cast<double>(pixel.count[half]);
+}
 
 bool is_known(const Film::Pixel& pixel) {
     for (std::size_t half = 0; half < 2; ++half)
@@ -72,8 +74,7 @@ HalfBuffers half_buffers(const Film& film, int threads) {
         if (*halves.known.at(0, x, y) == 0) return;
         for (std::size_t half = 0; half < 2; ++half) {
             const float samples = static_cast<float>(pixel.count[half]) * *known_fraction.at(0, x, y);
-            for (std::size_t c = 0; c < 3; ++c)
-                *halves.variance[half].at(c, x, y) = *variance.at(c, x, y) / samples;
+            for (std::size_t c = 0; c < 3; ++c) *halves.variance[half].at(c, x, y) = *variance.at(c, x, y) / samples;
             *halves.reliability[half].at(0, x, y) = reliability(halves.mean, half, x, y);
         }
     });

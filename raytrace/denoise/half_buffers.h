@@ -11,9 +11,9 @@ namespace duet::raytrace {
 /// Holds the means of a film's two replicates, and the variances of these means.
 struct HalfBuffers {
     HalfBuffers(int width, int height)
-        : mean{Planes(width, height, 3), Planes(width, height, 3)},
-          variance{Planes(width, height, 3), Planes(width, height, 3)}, known(width, height, 1),
-          reliability{Planes(width, height, 1), Planes(width, height, 1)} {}
+        : mean{Planes(width, height, 3), Planes(width, height, 3)}, variance{Planes(width, height, 3),
+                                                                             Planes(width, height, 3)},
+          known(width, height, 1), reliability{Planes(width, height, 1), Planes(width, height, 1)} {}
 
     std::array<Planes, 2> mean;        ///< red, green, blue
     std::array<Planes, 2> variance;    ///< of `mean`

@@ -12,8 +12,8 @@ constexpr int kAreaHeight = DenoiseTile::kHeight + 2 * kPatchRadius;
 // pixel that is noisier than the other one explains no more of the difference than that: otherwise a firefly would
 // resemble everything.
 PixelBatch squared_distance(const Planes& color, const Planes& variance, int x, int y, int dx, int dy) {
-    // The least variance tells equal colors from others where there is no noise. The largest distance is finite, so that
-    // the mean of a patch is.
+    // The least variance tells equal colors from others where there is no noise. The largest distance is finite, so
+    // that the mean of a patch is.
     const PixelBatch least_variance(1e-30f), largest(1e6f);
     PixelBatch sum(0.0f);
     for (std::size_t c = 0; c < 3; ++c) {

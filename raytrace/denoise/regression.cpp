@@ -22,8 +22,7 @@ template <typename Visit> void for_window(const Visit& visit) {
 }
 
 // Calls visit(x, y) for the batches of a tile from row `begin` up to row `end` of the image.
-template <typename Visit>
-void for_batches(const DenoiseTile& tile, int width, int begin, int end, const Visit& visit) {
+template <typename Visit> void for_batches(const DenoiseTile& tile, int width, int begin, int end, const Visit& visit) {
     for (int y = std::max(tile.y0, begin); y < std::min(tile.y0 + DenoiseTile::kHeight, end); ++y)
         for (int x = tile.x0; x < std::min(tile.x0 + DenoiseTile::kWidth, width); x += kBatchWidth) visit(x, y);
 }
