@@ -15,7 +15,8 @@ void add_bench(CommandLine& program) {
     bench
         .add("--techniques", options.choice.techniques,
              "Of raster, path, adaptive (path with more samples where the error is), denoised (path, then the "
-             "denoiser, its time included), no-roulette (path, no path ended early), naive (no light sampling), direct, unshadowed (default raster,path,naive)")
+             "denoiser, its time included), no-roulette (path, no path ended early), naive (no light sampling), "
+             "direct, unshadowed (default raster,path,naive)")
         .comma_separated();
     bench
         .add("--samplers", options.choice.samplers,

@@ -157,8 +157,8 @@ def denoise(run):
         for spp in (4, 16, 64, 256):
             plain, denoised = of["path", spp], of["denoised", spp]
             rows.append([f"`{name}`", spp, number(plain["relmse"]["value"]), number(denoised["relmse"]["value"]),
-                         number(denoised["bias_share"]), ms(plain["seconds"]["value"]), ms(denoised["seconds"]["value"]),
-                         number(denoised["dominates"]["ratio"]["value"])])
+                         number(denoised["bias_share"]), ms(plain["seconds"]["value"]),
+                         ms(denoised["seconds"]["value"]), number(denoised["dominates"]["ratio"]["value"])])
     return table(["scene", "spp", "relMSE", "denoised", "bias / error", "ms", "denoised, ms", "dominates"], rows)
 
 

@@ -5,7 +5,7 @@
 
 namespace duet::raytrace {
 
-/// corrections[half][filter] is what a filter adds to a half.
+/// Holds what each filter adds to each half: [half][filter].
 using Corrections = std::array<std::array<Planes, kFilters>, 2>;
 
 /// Filters both halves. Bands of rows are filtered one after the other, because their models would take 200 bytes per

@@ -53,9 +53,8 @@ Film noisy_film(int width, int height, int samples, float deviation, const Color
 
 // Returns the mean squared error over the pixels that `counts` accepts.
 double mse(
-    const ImageRgb& image, const Colors& truth, const std::function<bool(int x, int y)>& counts = [](int, int) {
-        return true;
-    }) {
+    const ImageRgb& image, const Colors& truth,
+    const std::function<bool(int x, int y)>& counts = [](int, int) { return true; }) {
     double sum = 0, count = 0;
     for (int y = 0; y < image.height(); ++y)
         for (int x = 0; x < image.width(); ++x) {
@@ -99,11 +98,13 @@ TEST_SUITE("unit") {
         std::uniform_real_distribution<float> exponent(-20, 20);
         Image<Rgb> random(61, 45);
         for (Rgb& color : random.pixels()) color = Rgb(std::exp2(exponent(engine)), 0.3f, std::exp2(exponent(engine)));
-        for (const Colors& color : {kGray, Colors([&](int x, int y) { return random(x, y); }),
-                                    Colors([](int x, int y) { return Rgb(0.1f + 1e-4f * static_cast<float>(x + y)); })}) {
+        for (const Colors& color : {kGray, Colors([&](int x, int y) { return random(x, y); }), Colors([](int x, int y) {
+                                        return Rgb(0.1f + 1e-4f * static_cast<float>(x + y));
+                                    })}) {
             const Film film = noisy_film(61, 45, 4, 0, color, 1);
             // The features lead astray: they change where the color does not.
-            const Planes features = features_of(61, 45, [](int x, int y) { return Rgb(x / 7 % 2 == y / 5 % 2 ? 0.9f : 0); });
+            const Planes features =
+                features_of(61, 45, [](int x, int y) { return Rgb(x / 7 % 2 == y / 5 % 2 ? 0.9f : 0); });
             CHECK(bitwise_equal(denoise(film, features, 0), film.image()));
         }
     }
@@ -166,7 +167,8 @@ TEST_SUITE("unit") {
                     for (std::size_t i = 0; i < 4; ++i) {
                         Rgb sample;
                         for (std::size_t c = 0; c < 3; ++c)
-                            sample[c] = black(engine) ? 0 : std::exp2(round < 2 ? exponent(engine) / 8 : exponent(engine));
+                            sample[c] =
+                                black(engine) ? 0 : std::exp2(round < 2 ? exponent(engine) / 8 : exponent(engine));
                         film.add(x, y, i % 2, sample);
                     }
             const Planes features = features_of(50, 40, [&](int, int) {
@@ -262,7 +264,9 @@ TEST_SUITE("statistical") {
     }
 
     TEST_CASE("edges that the albedo shows stay sharp") {
-        const Colors color = [](int x, int y) { return x / 3 % 2 == y / 8 % 2 ? Rgb(0.8f, 0.2f, 0.1f) : Rgb(0.1f, 0.3f, 0.9f); };
+        const Colors color = [](int x, int y) {
+            return x / 3 % 2 == y / 8 % 2 ? Rgb(0.8f, 0.2f, 0.1f) : Rgb(0.1f, 0.3f, 0.9f);
+        };
         const Film film = noisy_film(64, 64, 8, 0.5f, color, 11);
         const ImageRgb denoised = denoise(film, features_of(64, 64, color), 0);
         CHECK(mse(denoised, color) < mse(film.image(), color) / 8);
@@ -271,7 +275,9 @@ TEST_SUITE("statistical") {
     }
 
     TEST_CASE("detail that no feature shows is not blurred beyond the noise, with many samples") {
-        const Colors color = [](int x, int y) { return Rgb(0.5f + 0.4f * std::sin(1.3f * static_cast<float>(x * y % 23))); };
+        const Colors color = [](int x, int y) {
+            return Rgb(0.5f + 0.4f * std::sin(1.3f * static_cast<float>(x * y % 23)));
+        };
         const Film film = noisy_film(64, 64, 1024, 0.5f, color, 12);
         const ImageRgb denoised = denoise(film, features_of(64, 64, kGray), 0);
         CHECK(mse(denoised, color) < 1.1 * mse(film.image(), color));
