@@ -254,16 +254,17 @@ TEST_SUITE("unit") {
 
 TEST_SUITE("statistical") {
 
-    // The figures of these tests are from one seed. Over 200 other seeds, the ratios have the means and standard
-    // deviations that each test states. All bounds are at least eight standard deviations off.
+    // Each test has one seed, so that it fails only after a change. The comments give the mean and the standard
+    // deviation of its ratio over 60 other seeds. Bounds are more than four standard deviations off, which a change
+    // that keeps the quality exceeds with odds below 1 in 10,000.
 
-    TEST_CASE("noise on an even surface is reduced") {
+    TEST_CASE("noise on an even surface is reduced") { // by 221 ± 35
         const Film film = noisy_film(64, 64, 8, 0.5f, kGray, 10);
         const ImageRgb denoised = denoise(film, features_of(64, 64, kGray), 0);
-        CHECK(mse(denoised, kGray) < mse(film.image(), kGray) / 15);
+        CHECK(mse(denoised, kGray) < mse(film.image(), kGray) / 60);
     }
 
-    TEST_CASE("edges that the albedo shows stay sharp") {
+    TEST_CASE("edges that the albedo shows stay sharp") { // 18.0 ± 1.8, and 9.7 ± 1.0
         const Colors color = [](int x, int y) {
             return x / 3 % 2 == y / 8 % 2 ? Rgb(0.8f, 0.2f, 0.1f) : Rgb(0.1f, 0.3f, 0.9f);
         };
@@ -274,13 +275,13 @@ TEST_SUITE("statistical") {
         CHECK(mse(astray, color) > 2 * mse(denoised, color)); // without features, less noise can be removed
     }
 
-    TEST_CASE("detail that no feature shows is not blurred beyond the noise, with many samples") {
+    TEST_CASE("detail that no feature shows is not blurred more than noise is reduced") { // 0.984 ± 0.001
         const Colors color = [](int x, int y) {
             return Rgb(0.5f + 0.4f * std::sin(1.3f * static_cast<float>(x * y % 23)));
         };
-        const Film film = noisy_film(64, 64, 1024, 0.5f, color, 12);
+        const Film film = noisy_film(64, 64, 64, 0.5f, color, 12);
         const ImageRgb denoised = denoise(film, features_of(64, 64, kGray), 0);
-        CHECK(mse(denoised, color) < 1.1 * mse(film.image(), color));
+        CHECK(mse(denoised, color) < mse(film.image(), color));
     }
 
     TEST_CASE("a rendering's error falls") {
