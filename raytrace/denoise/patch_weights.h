@@ -30,9 +30,10 @@ public:
     PatchWeights() : weights_(kOffsets * DenoiseTile::kWidth * DenoiseTile::kHeight) {}
 
     /// Computes the weights with which one half of the image is filtered, from the colors of the other half. So the
-    /// weights are independent of the noise that they weigh. The weight of q for p is exp(−d²) times the reliability of
-    /// q. Here d² is the mean squared difference of the patches, less what noise explains, over the sum of their
-    /// variances (Rousselle et al. 2012, "Adaptive Rendering with Non-Local Means Filtering", equation 3).
+    /// weights are independent of the noise that they weigh: weights from the same half would darken the image. The
+    /// weight of q for p is exp(−d²) times the reliability of q. Here d² is the mean squared difference of the patches,
+    /// less what noise explains, over the sum of their variances (Rousselle et al. 2012, "Adaptive Rendering with
+    /// Non-Local Means Filtering", equation 3).
     void compute(const DenoiseTile& tile, const HalfBuffers& halves, std::size_t filtered_half);
 
     /// Returns the weights of the pixels at an offset from the batch of pixels at (x, y) of the tile. Offsets are
