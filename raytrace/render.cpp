@@ -27,9 +27,6 @@ double total_target(const Film& film) {
     return sum;
 }
 
-constexpr const char* kDenoisedApproximation =
-    "The denoised image blurs what the samples do not tell from noise; less with more samples.";
-
 std::int64_t film_bytes(const Film& film) {
     return static_cast<std::int64_t>(sizeof(Film::Pixel)) * film.width() * film.height();
 }
@@ -91,7 +88,6 @@ Rendering render(const PathTracerScene& prepared, const View& view, const PathTr
         const Planes features = trace_features(state.plan, view, settings);
         statistics.seconds.emplace_back("features", watch.lap());
         rendering.denoised = denoise(film, features, settings.threads);
-        statistics.approximations.push_back(kDenoisedApproximation);
         statistics.seconds.emplace_back("denoise", watch.lap());
     }
     return rendering;
