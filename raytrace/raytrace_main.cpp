@@ -1,4 +1,5 @@
 // The program `raytrace SCENE -o OUT` renders a scene with the path tracer.
+#include "common/image/image_file.h"
 #include "common/program/render_program.h"
 #include "common/system/error.h"
 #include "common/system/file.h"
@@ -27,6 +28,15 @@ void set_samples(const std::string& text, raytrace::PathTracerSettings& settings
     settings.samples_per_pixel = static_cast<int>(last - first);
 }
 
+// Throws Error unless the undenoised image can be written beside the denoised one.
+void check_undenoised(const OutputOptions& output, const std::string& film) {
+    if (output.path.empty() || lower_case_extension(output.path) == ".mp4") return; // of a video, frames are kept
+    const std::filesystem::path path = undenoised_path(output.path);
+    check_writable_image(path);
+    if (path == film)
+        throw Error(message("--film: ", film, " is where --denoise keeps the undenoised image, expected another file"));
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -38,6 +48,7 @@ int main(int argc, char** argv) {
     RenderProgram program;
     program.check = [&](const OutputOptions& output) {
         if (!pixel.empty()) raytrace::parse_sample_id(pixel);
+        if (settings.denoise) check_undenoised(output, film);
         if (film.empty()) return;
         if (output.frames > 0) throw Error("--film: keeps one image, cannot go with --orbit");
         if (lower_case_extension(film) != ".exr") throw Error(message("--film: found ", film, ", expected an .exr"));
@@ -77,12 +88,16 @@ int main(int argc, char** argv) {
         command_line.add_flag("--adaptive,!--no-adaptive", adaptive,
                               "More samples where the error is, --spp in the mean (default with --time or --error, "
                               "but for --samples and samplers that need to know the number)");
+        command_line.add_flag(
+            "--denoise", settings.denoise,
+            "Blur the noise, but not what albedo, normals, depth or both halves of the samples show, "
+            "and keep the undenoised image as NAME.noisy.EXT. Needs 2 samples a pixel (default: not)");
         command_line.add(
             "--film", film,
             "Keep all samples in this .exr: written at intervals, at the end and when interrupted; a later run goes on "
-            "from there, to the same bits as one run. What was begun with --adaptive, --error or --aov variance knows "
-            "its "
-            "error, and goes on with these alone. `raytrace merge` joins films");
+            "from there, to the same bits as one run. What was begun with --adaptive, --error, --denoise or --aov "
+            "variance "
+            "knows its error, and goes on with these alone. `raytrace merge` joins films");
         command_line.add("--film-interval", settings.film_interval, "Seconds between two writings of it (default 60)")
             .nonnegative()
             .needs("--film");

@@ -1,6 +1,8 @@
 #include "raytrace/render.h"
 
 #include "common/system/stopwatch.h"
+#include "raytrace/denoise/denoise.h"
+#include "raytrace/denoise/features.h"
 #include "raytrace/render_state.h"
 #include "raytrace/sample_schedule.h"
 
@@ -82,6 +84,12 @@ Rendering render(const PathTracerScene& prepared, const View& view, const PathTr
         statistics.skipped.push_back({"paths ended by roulette", "dim ones", state.rays.ended});
     statistics.approximations = approximations(state.plan, settings);
     statistics.seconds.emplace_back("resolve", watch.lap());
+    if (settings.denoise) {
+        const Planes features = trace_features(state.plan, view, settings);
+        statistics.seconds.emplace_back("features", watch.lap());
+        rendering.denoised = denoise(film, features, settings.threads);
+        statistics.seconds.emplace_back("denoise", watch.lap());
+    }
     return rendering;
 }
 

@@ -26,7 +26,8 @@ private:
 PathTracerScene prepare(const Scene& scene, const PathTracerSettings& settings);
 /// Renders one image. If `control` stops it, it returns the mean of the samples taken so far. With
 /// PathTracerSettings::film it continues that film, bit-equal to a single run. Throws Error for invalid settings, for a
-/// film of another image, and for a film that cannot be written.
+/// film of another image, and for a film that cannot be written. With PathTracerSettings::denoise it also returns
+/// Rendering::denoised, even if `control` stops it.
 Rendering render(const PathTracerScene& prepared, const View& view, const PathTracerSettings& settings,
                  Control& control);
 

@@ -148,6 +148,7 @@ std::vector<std::string> approximations(const RenderPlan& plan, const PathTracer
         list.emplace_back("only what the environment sends to diffuse surfaces");
     if (settings.integrator == Integrator::kReflection)
         list.emplace_back("only what is seen by way of metal and glass");
+    if (settings.denoise) list.emplace_back("the denoised image blurs what the samples do not tell from noise");
     const bool whole_paths = settings.integrator == Integrator::kPath || settings.integrator == Integrator::kNaive ||
                              traces_light_paths(settings.integrator) || settings.integrator == Integrator::kReflection;
     if (whole_paths && plan.max_depth < kUnlimitedDepth)

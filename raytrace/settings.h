@@ -66,11 +66,12 @@ struct PathTracerSettings : RenderSettings {
     double film_interval = 60;  ///< seconds between two writes of that file
     double time_limit = 0;      ///< seconds; stops between passes; 0: none
     double error_limit = 0;     ///< estimated relMSE; stops between passes; 0: none
+    bool denoise = false;       ///< Rendering::denoised; needs at least two samples per pixel
 
     /// Returns whether the film must estimate its error. Samples then fall into two replicates
     /// (raytrace/sampling/sampler.h). Otherwise all samples of a pixel are stratified together, which reduces the
     /// error.
-    bool estimates_error() const { return adaptive || error_limit > 0 || aovs.variance; }
+    bool estimates_error() const { return adaptive || error_limit > 0 || aovs.variance || denoise; }
     std::uint32_t replicates() const { return estimates_error() ? 2 : 1; }
     /// Returns the sampler of a render with these settings.
     Sampler make_sampler() const { return {sampler, seed, samples_per_pixel, replicates()}; }

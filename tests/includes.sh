@@ -6,7 +6,7 @@ set -eu
 cd "$1"
 common="vec image sampling geometry camera texture material light medium scene program"
 raster="geometry visibility shader gbuffer screen_space shadows lighting fog probes shading output overlay"
-raytrace="sampling film acceleration integrator bidirectional wavefront"
+raytrace="sampling film acceleration integrator bidirectional wavefront denoise"
 grep -rnoE '#include "[^"]+"' common raster raytrace compare models tests --include='*.h' --include='*.cpp' |
     awk -F: -v common="$common" -v raster="$raster" -v raytrace="$raytrace" '
     function floors_of(room, list) { n = split(list, names, " "); for (i = 1; i <= n; ++i) floor[room, names[i]] = i }

@@ -84,6 +84,8 @@ void print_summary(const RenderContext& context, const Rendering& rendering, con
     std::cerr << output << ": " << context.width << " x " << context.height << ", " << s.samples_per_pixel
               << (s.samples_per_pixel == 1 ? " sample" : " samples") << " a pixel in "
               << format_duration(context.render_seconds) << (s.interrupted ? " (interrupted)" : "") << '\n';
+    if (!rendering.denoised.empty())
+        std::cerr << undenoised_path(output).string() << ": the same, not denoised\n";
     if (s.invalid_samples > 0)
         std::cerr << "warning: " << s.invalid_samples << " samples were NaN, infinite or negative, and left out"
                   << invalid_sample_hint(s) << '\n';

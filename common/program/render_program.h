@@ -53,8 +53,12 @@ int run_render_program(const RenderProgram& program, int argc, char** argv);
 /// Parses a list of AOVs, a subset of "depth,normal,albedo,hit,variance,samples". Throws Error for another name.
 AovSet parse_aovs(std::string_view list);
 
+/// Returns the path of the undenoised image beside a denoised one: `STEM.noisy.EXTENSION`.
+std::filesystem::path undenoised_path(const std::filesystem::path& path);
+
 /// Writes the image to `path`, and its auxiliary images (AOVs). In an EXR file they are further channels. For other
-/// formats each AOV is written to an EXR file beside the image, `STEM.NAME.exr`.
+/// formats each AOV is written to an EXR file beside the image, `STEM.NAME.exr`. Of a denoised rendering, first the
+/// undenoised image is written to undenoised_path, and then the denoised one to `path`.
 void write_rendering(const std::filesystem::path& path, const Rendering& rendering, const WriteOptions& options = {});
 
 } // namespace duet

@@ -52,16 +52,24 @@ std::vector<Layer> auxiliary_layers(const Rendering& r) {
 
 } // namespace
 
+std::filesystem::path undenoised_path(const std::filesystem::path& path) {
+    std::filesystem::path result = path;
+    return result.replace_extension(".noisy" + path.extension().string());
+}
+
 void write_rendering(const std::filesystem::path& path, const Rendering& rendering, const WriteOptions& options) {
+    const bool denoised = !rendering.denoised.empty();
+    const ImageRgb& image = denoised ? rendering.denoised : rendering.radiance;
+    if (denoised) write_image(undenoised_path(path), rendering.radiance, options);
     const int width = rendering.radiance.width(), height = rendering.radiance.height();
     std::vector<Layer> layers = auxiliary_layers(rendering);
     if (lower_case_extension(path) == ".exr" && !layers.empty()) {
-        Channels all = rgb_channels("", rendering.radiance);
+        Channels all = rgb_channels("", image);
         for (Layer& layer : layers) std::move(layer.channels.begin(), layer.channels.end(), std::back_inserter(all));
         write_exr(path, width, height, all);
         return;
     }
-    write_image(path, rendering.radiance, options);
+    write_image(path, image, options);
     for (const Layer& layer : layers) {
         std::filesystem::path aov_path = path;
         write_exr(aov_path.replace_extension("." + layer.name + ".exr"), width, height, layer.channels);

@@ -14,8 +14,9 @@ void add_bench(CommandLine& program) {
               "The folder for index.html, report.json, bench.csv and a plot of each scene, SCENE.svg");
     bench
         .add("--techniques", options.choice.techniques,
-             "Of raster, path, adaptive (path with more samples where the error is), no-roulette (path, no "
-             "path ended early), naive (no light sampling), direct, unshadowed (default raster,path,naive)")
+             "Of raster, path, adaptive (path with more samples where the error is), denoised (path, then the "
+             "denoiser, its time included), no-roulette (path, no path ended early), naive (no light sampling), "
+             "direct, unshadowed (default raster,path,naive)")
         .comma_separated();
     bench
         .add("--samplers", options.choice.samplers,

@@ -16,6 +16,8 @@ namespace {
 
 /// This is the path tracer with adaptive sampling.
 constexpr std::string_view kAdaptive = "adaptive";
+/// This is the path tracer whose image is denoised.
+constexpr std::string_view kDenoised = "denoised";
 /// This is the path tracer without Russian roulette.
 constexpr std::string_view kNoRoulette = "no-roulette";
 
@@ -58,20 +60,30 @@ BenchRenderer path_tracer_bench_renderer(const raytrace::PathTracerScene& prepar
     settings.threads = choice.threads;
     settings.max_depth = choice.depth;
     settings.adaptive = technique == kAdaptive;
+    settings.denoise = technique == kDenoised;
     settings.russian_roulette = technique != kNoRoulette;
-    settings.integrator = raytrace::integrator(technique == kAdaptive || technique == kNoRoulette ? "path" : technique);
+    const bool variant = technique == kAdaptive || technique == kDenoised || technique == kNoRoulette;
+    settings.integrator = raytrace::integrator(variant ? "path" : technique);
     settings.sampler = sampler_kind(sampler);
-    return {technique, sampler, note_of(settings.integrator, scene), choice.spps,
-            [prepared, view, settings](int spp, std::uint64_t seed, Control& control) {
+    const int least_spp = settings.denoise ? 2 : 1;
+    std::vector<int> spps = choice.spps;
+    std::erase_if(spps, [&](int spp) { return spp < least_spp; });
+    return {technique, sampler, note_of(settings.integrator, scene), std::move(spps),
+            [prepared, view, settings, least_spp](int spp, std::uint64_t seed, Control& control) {
                 raytrace::PathTracerSettings s = settings;
-                s.samples_per_pixel = spp;
+                s.samples_per_pixel = std::max(spp, least_spp); // the bench's first, unmeasured render has one
                 s.seed = seed;
-                return time_render([&] { return raytrace::render(prepared, view, s, control).radiance; }, control);
+                const auto render = [&] {
+                    Rendering rendering = raytrace::render(prepared, view, s, control);
+                    return std::move(s.denoise ? rendering.denoised : rendering.radiance);
+                };
+                return time_render(render, control);
             }};
 }
 
 /// The techniques that estimate light, in the order of --help.
-constexpr std::string_view kTechniques[] = {"raster", "path", kAdaptive, kNoRoulette, "naive", "direct", "unshadowed"};
+constexpr std::string_view kTechniques[] = {"raster",    "path",  kAdaptive, kDenoised,
+                                            kNoRoulette, "naive", "direct",  "unshadowed"};
 constexpr std::string_view kSamplers[] = {"sobol", "stratified", "independent"};
 
 template <typename Names>

@@ -25,7 +25,8 @@ struct TimedImage {
 
 /// This is a renderer with settings, prepared for one scene and view.
 struct BenchRenderer {
-    std::string technique; ///< "raster", an integrator, "adaptive" or "no-roulette" (path), or a peer's name
+    std::string technique; ///< "raster", an integrator, "adaptive", "denoised" or "no-roulette" (path), or a
+                           ///< peer's name
     std::string sampler;   ///< empty if the technique has no choice of samplers
     std::string note;      ///< what it omits, in sentences; empty: it converges to the reference
     std::vector<int> spps;
