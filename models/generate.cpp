@@ -32,6 +32,7 @@ std::span<const Model> all_models() {
         {"test-ball", kCommitted, ball_files(), write_test_ball},
         {"hall", kBuilt, {kHallFile}, write_hall},
         {"octopus", kBuilt, {kOctopusFile}, write_octopus},
+        {"water", kBuilt, {kWaterFile}, write_water},
         {"octopus-hundred-thousand", kOnRequest, {kOctopusSmallFile}, write_octopus_hundred_thousand},
         {"octopus-million", kOnRequest, {kOctopusMillionFile}, write_octopus_million},
         {"octopus-fine", kOnRequest, {kOctopusFineFile}, write_octopus_fine},

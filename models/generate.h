@@ -45,8 +45,10 @@ void write_ring(const std::filesystem::path& folder);
 void write_sky(const std::filesystem::path& folder);
 void write_smoke(const std::filesystem::path& folder);
 void write_spheres(const std::filesystem::path& folder);
+void write_water(const std::filesystem::path& folder);
 ///@}
 inline constexpr const char* kHallFile = "generated/hall.obj";
+inline constexpr const char* kWaterFile = "generated/water.obj";
 inline constexpr const char* kGyroidFile = "generated/gyroid.obj";
 inline constexpr const char* kMengerFile = "generated/menger.obj";
 

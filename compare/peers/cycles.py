@@ -169,7 +169,15 @@ def principled(nodes, m):
         inputs |= {"Specular": normal / 0.08, "Clearcoat": coat, "Clearcoat_Roughness": m["clearcoat_roughness"]}
     else:
         inputs |= {"IOR": m["ior"], "Coat_Weight": m["clearcoat"], "Coat_Roughness": m["clearcoat_roughness"]}
-    return nodes.add("ShaderNodeBsdfPrincipled", 0, {"distribution": "MULTI_GGX"}, **inputs)
+    properties = {"distribution": "MULTI_GGX"}
+    if "subsurface" in m:
+        weight, radius = m["subsurface"]["weight"], m["subsurface"]["radius"]
+        properties["subsurface_method"] = "RANDOM_WALK"
+        if bpy.app.version < (4, 0, 0):
+            inputs |= {"Subsurface": weight, "Subsurface_Color": slot(nodes, m["slot"]), "Subsurface_Radius": radius}
+        else:
+            inputs |= {"Subsurface_Weight": weight, "Subsurface_Radius": radius, "Subsurface_Scale": 1.0}
+    return nodes.add("ShaderNodeBsdfPrincipled", 0, properties, **inputs)
 
 
 def emissive(nodes, m):

@@ -106,8 +106,18 @@ private:
                               "microfacets");
     }
 
+    /// Exports subsurface scattering with the color that is seen through the layers. Cycles scales its walks by radii of
+    /// its own kind: the mean free path is the radius times a factor of the color.
+    void export_subsurface(const SubsurfaceBsdf& surface, Rgb color, json& result) {
+        const auto radius = [&](std::size_t c) {
+            const float factor = 1.9f - color[c] + 3.5f * sqr(color[c] - 0.8f); // Chiang, Kutz and Burley 2016, eq. 3
+            return 1 / (factor * (surface.interior.scattering[c] + surface.interior.absorption[c]));
+        };
+        result["subsurface"] = {{"weight", surface.entering}, {"radius", {radius(0), radius(1), radius(2)}}};
+        notes_.insert("solids are Blender's random walks, whose albedo follows from a fit of its own");
+    }
+
     json material(const Material& m) {
-        if (has_subsurface(m)) fail_unsupported("subsurface scattering is not exported");
         const RgbSlot& slot = texture_slot(m);
         json result = {
             {"slot",
@@ -127,6 +137,7 @@ private:
             result["ior"] = principled->ior;
             result["clearcoat"] = constant(principled->clearcoat, "clear coats");
             result["clearcoat_roughness"] = constant(principled->clearcoat_roughness, "roughness");
+            if (has_subsurface(m)) fail_unsupported("subsurface scattering of principled materials is not exported");
             notes_.insert("principled materials are Blender's, whose layers are not quite ours");
         } else if (const auto* coated = std::get_if<Coated>(&m)) {
             if (coated->albedo.texture >= 0) fail_unsupported("textures under a coat are not exported");
@@ -136,6 +147,9 @@ private:
             result["metallic"] = result["clearcoat"] = result["clearcoat_roughness"] = 0;
             result["roughness"] = constant(coated->roughness, "roughness");
             result["ior"] = coated->ior;
+            if (has_subsurface(m))
+                export_subsurface(coated->subsurface_at(scene_.textures, SurfacePoint{}),
+                                  coated->at(scene_.textures, SurfacePoint{}).diffuse, result);
             notes_.insert("coated materials are Blender's principled ones, whose layers are not quite ours");
         } else if (const auto* emissive = std::get_if<Emissive>(&m)) {
             result["type"] = "emissive";

@@ -73,10 +73,14 @@ std::optional<SolidExit> random_walk(const RenderPlan& plan, const SolidInterior
         } else {
             const SurfacePoint point = point_at(plan, ray, hit);
             const Material& material = plan.scene.materials[point.material];
-            if (dot(point.ng, ray.direction) > 0 && has_subsurface(material)) return SolidExit{ray, hit, collisions};
-            emitted_light += path.throughput * emitted(material, plan.scene.textures, point, -ray.direction);
-            path.throughput *= base_color(material, plan.scene.textures, point);
-            reflect(point, ray, random);
+            if (has_subsurface(material)) {
+                if (dot(point.ng, ray.direction) > 0) return SolidExit{ray, hit, collisions};
+                ray.origin = offset_origin(point.p, point.p_error, -point.ng);
+            } else {
+                emitted_light += path.throughput * emitted(material, plan.scene.textures, point, -ray.direction);
+                path.throughput *= base_color(material, plan.scene.textures, point);
+                reflect(point, ray, random);
+            }
         }
         if (plan.russian_roulette && !russian_roulette(random(), path).survives) {
             ++counts.ended;

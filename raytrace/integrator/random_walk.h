@@ -23,9 +23,11 @@ struct SolidExit {
 /// inside. `path` is multiplied by the weight of the walk, and u in [0, 1) decides it.
 ///
 /// The distances between collisions are drawn in proportion to the light that arrives there, for a channel that is
-/// chosen by the throughput. What else is inside, such as the eyes in a head, reflects light diffusely by its base color;
-/// `emitted` is increased by what it emits times the throughput. Paths of little throughput end by Russian roulette, and
-/// all end after 30,000 rays: in a white solid that is hundreds of mean free paths deep, 1 % of the light is lost.
+/// chosen by the throughput. Paths pass surfaces of solids that they meet from outside: those of another solid that
+/// begins inside, or an edge at which a ray just touches the solid's own. What else is inside, such as the eyes in a
+/// head, reflects light diffusely by its base color; `emitted` is increased by what it emits times the throughput. Paths
+/// of little throughput end by Russian roulette, and all end after 30,000 rays: in a white solid that is hundreds of mean
+/// free paths deep, 1 % of the light is lost.
 std::optional<SolidExit> random_walk(const RenderPlan& plan, const SolidInterior& interior, Ray ray, Hit hit, float u,
                                      PathThroughputT<float>& path, Rgb& emitted, RayCounts& counts);
 

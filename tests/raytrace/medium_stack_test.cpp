@@ -46,7 +46,7 @@ public:
         hit_ = trace(prepared_, ray_);
     }
     /// Returns whether the current interface is specular.
-    bool smooth() const { return is_specular(Vertex(plan_, ray_, hit_, nullptr, relative).bsdf); }
+    bool smooth() const { return is_specular(Vertex(plan_, ray_, hit_, nullptr, {relative}).bsdf); }
     /// Returns the z coordinate of the next interface that is not skipped, and stores its relative index of
     /// refraction in `relative`.
     float arrive() {

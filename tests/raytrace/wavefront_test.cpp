@@ -145,6 +145,25 @@ TEST_SUITE("unit") {
         }
     }
 
+    TEST_CASE("and in solids with subsurface scattering") {
+        for (const int depth : {1, 2, 64}) {
+            CAPTURE(depth);
+            SceneBuilder builder;
+            builder.add(icosphere(2, 1, {}, true), builder.material(Coated{{Rgb(0.8f)}, 0.3f, 1.5f, Rgb(0.3f, 0.1f, 0)}));
+            builder.add(Sphere{{0, 0, 0.3f}, 0.2f}, builder.material(Emissive{Rgb(2.0f, 1, 3)}));
+            builder.add(Sphere{{0, 1.4f, 0}, 0.2f}, builder.material(Emissive{Rgb(20.0f)}));
+            builder.scene.environment = SkyEnvironment{Rgb(0.3f), Rgb(0.4f, 0.6f, 1.0f)};
+            builder.scene.camera.eye = {0, 0.5, 4};
+            PathTracerSettings settings;
+            settings.max_depth = depth;
+            const Differences found = wavefront_and_single(builder.finish(), settings);
+            CHECK(found.differ == 0);
+            CHECK(found.not_numbers == 0);
+            CHECK(found.same_rays);
+            CHECK(found.plain == 0);
+        }
+    }
+
     TEST_CASE("many spheres: rays stream through their tree") {
         for (const bool light : {false, true}) {
             SceneBuilder builder;
