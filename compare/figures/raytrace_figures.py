@@ -145,6 +145,23 @@ def integrators(run):
     return table(["relMSE after 5 seconds"] + [f"`{name}`" for name in names], rows)
 
 
+@figure("denoise", 6)
+def denoise(run):
+    """error and time with and without the denoiser, and its bias"""
+    rows = []
+    for name in ("cornell", "spheres", "glass", "demo", "hall"):
+        data = run("compare", "bench", scene(name), "--techniques", "path,denoised", "--samplers", "sobol",
+                   "--spp", "4,16,64,256", "--reference-spp", 4096, "--check-spp", 2, "--size", "160x90",
+                   "--repeats", 4, "--quiet").data
+        of = {(row["technique"], row["spp"]): row for row in data["scenes"][0]["rows"]}
+        for spp in (4, 16, 64, 256):
+            plain, denoised = of["path", spp], of["denoised", spp]
+            rows.append([f"`{name}`", spp, number(plain["relmse"]["value"]), number(denoised["relmse"]["value"]),
+                         number(denoised["bias_share"]), ms(plain["seconds"]["value"]),
+                         ms(denoised["seconds"]["value"]), number(denoised["dominates"]["ratio"]["value"])])
+    return table(["scene", "spp", "relMSE", "denoised", "bias / error", "ms", "denoised, ms", "dominates"], rows)
+
+
 @figure("stop", 3)
 def stop(run):
     """whether --error ends where it should, and what adaptive sampling gains"""
