@@ -32,7 +32,7 @@ float thick_layer_albedo(float single_scattering_albedo) {
 }
 
 SolidInterior solid_interior(Rgb albedo, Rgb mean_free_path) {
-    const auto absorbed = [](float a) { return sqr(similarity_parameter(clamp(a, 0.0f, 1.0f))); };
+    const auto absorbed = [](float a) { return min(sqr(similarity_parameter(clamp(a, 0.0f, 1.0f))), 1.0f); };
     const Rgb fraction(absorbed(albedo.r), absorbed(albedo.g), absorbed(albedo.b));
     return {(Rgb(1.0f) - fraction) / mean_free_path, fraction / mean_free_path};
 }

@@ -106,11 +106,11 @@ private:
                               "microfacets");
     }
 
-    /// Exports subsurface scattering with the color that is seen through the layers. Cycles scales its walks by radii of
-    /// its own kind: the mean free path is the radius times a factor of the color.
+    /// Exports subsurface scattering with the color that is seen through the layers. Cycles scales walks by radii: the
+    /// mean free path is the radius times a factor of the color.
     void export_subsurface(const SubsurfaceBsdf& surface, Rgb color, json& result) {
         const auto radius = [&](std::size_t c) {
-            const float factor = 1.9f - color[c] + 3.5f * sqr(color[c] - 0.8f); // Chiang, Kutz and Burley 2016, eq. 3
+            const float factor = 1.9f - color[c] + 3.5f * sqr(color[c] - 0.8f); // Chiang, Kutz and Burley 2016
             return 1 / (factor * (surface.interior.scattering[c] + surface.interior.absorption[c]));
         };
         result["subsurface"] = {{"weight", surface.entering}, {"radius", {radius(0), radius(1), radius(2)}}};

@@ -25,9 +25,9 @@ struct SolidExit {
 /// The distances between collisions are drawn in proportion to the light that arrives there, for a channel that is
 /// chosen by the throughput. Paths pass surfaces of solids that they meet from outside: those of another solid that
 /// begins inside, or an edge at which a ray just touches the solid's own. What else is inside, such as the eyes in a
-/// head, reflects light diffusely by its base color; `emitted` is increased by what it emits times the throughput. Paths
-/// of little throughput end by Russian roulette, and all end after 30,000 rays: in a white solid that is hundreds of mean
-/// free paths deep, 1 % of the light is lost.
+/// head, reflects light diffusely by its base color; `emitted` is increased by what it emits times the throughput.
+/// Paths of little throughput end by Russian roulette, and all end after 30,000 rays: in a white solid that is hundreds
+/// of mean free paths deep, 1 % of the light is lost.
 std::optional<SolidExit> random_walk(const RenderPlan& plan, const SolidInterior& interior, Ray ray, Hit hit, float u,
                                      PathThroughputT<float>& path, Rgb& emitted, RayCounts& counts);
 

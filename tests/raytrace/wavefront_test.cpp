@@ -149,7 +149,8 @@ TEST_SUITE("unit") {
         for (const int depth : {1, 2, 64}) {
             CAPTURE(depth);
             SceneBuilder builder;
-            builder.add(icosphere(2, 1, {}, true), builder.material(Coated{{Rgb(0.8f)}, 0.3f, 1.5f, Rgb(0.3f, 0.1f, 0)}));
+            const Coated wax{{Rgb(0.8f)}, 0.3f, 1.5f, Rgb(0.3f, 0.1f, 0)};
+            builder.add(icosphere(2, 1, {}, true), builder.material(wax));
             builder.add(Sphere{{0, 0, 0.3f}, 0.2f}, builder.material(Emissive{Rgb(2.0f, 1, 3)}));
             builder.add(Sphere{{0, 1.4f, 0}, 0.2f}, builder.material(Emissive{Rgb(20.0f)}));
             builder.scene.environment = SkyEnvironment{Rgb(0.3f), Rgb(0.4f, 0.6f, 1.0f)};

@@ -99,6 +99,21 @@ void repair_motion(Json& object) {
     object["transform_end"] = std::move(steps);
 }
 
+/// Returns whether an object moves in itself: it or one of its members, also by way of an instance of a moving group.
+bool moves(const Json& object, const std::set<std::string>& moving_groups) {
+    if (object.contains("transform_end") || moving_groups.contains(object.value("of", ""))) return true;
+    const Json members = object.value("objects", Json::array());
+    return std::ranges::any_of(members, [&](const Json& member) { return moves(member, moving_groups); });
+}
+
+/// Leaves out a motion of an object around others, because both together may be singular at a moment between.
+void repair_nested_motion(Json& object, const std::set<std::string>& moving_groups) {
+    if (!object.contains("transform_end")) return;
+    Json rest = object;
+    rest.erase("transform_end");
+    if (moves(rest, moving_groups)) object.erase("transform_end");
+}
+
 void repair_subsurface(Json& object) {
     if (object.contains("measured")) {
         for (const char* key : {"albedo", "mean_free_path"}) object.erase(key);
@@ -192,9 +207,11 @@ std::optional<Json> SchemaValues::object(const Json& schema, const Place& place)
             }
         }
     repair(result, place.definition);
+    repair_nested_motion(result, moving_groups_);
     if (result.value("type", "") == "group") {
         if (!result.contains("name")) result["name"] = message("group ", names_["groups"].size());
         names_["groups"].push_back(result["name"]);
+        if (moves(result, moving_groups_)) moving_groups_.insert(result["name"]);
     }
     return result;
 }

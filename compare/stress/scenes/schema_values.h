@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -63,6 +64,7 @@ private:
     SceneSizes sizes_;
     TrialRandom& random_;
     std::map<std::string, std::vector<std::string>> names_; ///< drawn so far: "textures", "materials", "groups"
+    std::set<std::string> moving_groups_; ///< names of those drawn so far that move, or some of whose members do
     std::vector<Json> points_;                              ///< where objects and lights are
     int objects_ = 0;
 };

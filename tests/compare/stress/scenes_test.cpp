@@ -80,7 +80,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("random scenes: a seed gives the same scene; sizes move and scale it") {
         const std::map<std::string, std::vector<std::string>> files = {
-            {"mesh", {"a.obj"}}, {"image_texture", {"a.png"}}, {"image_environment", {"a.hdr"}}};
+            {"mesh", {"a.obj"}}, {"image_texture", {"a.png"}}, {"image_environment", {"a.hdr"}}, {"smoke", {"a.raw"}}};
         const auto scene = [&](std::uint64_t seed, const SceneSizes& sizes) {
             TrialRandom random(seed);
             return SchemaValues(scene_schema(), files, sizes, random).scene();
