@@ -146,10 +146,12 @@ float LayeredBsdf::passed(float cosine) const {
 }
 
 float LayeredBsdf::mean_passed() const {
-    const float stopped = mean_layer_albedo(ggx_average_albedo(glossy.alpha), dielectric, dielectric_multiple);
-    const float stopped_by_coat =
-        coat > 0 ? coat * mean_layer_albedo(ggx_average_albedo(coat_alpha), kCoat, coat_multiple) : 0;
-    return max((1 - stopped) * (1 - stopped_by_coat), 1e-4f);
+    if (coat == 0)
+        return max(1 - mean_layer_albedo(ggx_average_albedo(glossy.alpha), dielectric, dielectric_multiple), 1e-4f);
+    constexpr int kSteps = 16; // of the squared cosine, over which the mean is even
+    float sum = 0;
+    for (int i = 0; i < kSteps; ++i) sum += passed(std::sqrt((static_cast<float>(i) + 0.5f) / kSteps));
+    return max(sum / kSteps, 1e-4f);
 }
 
 } // namespace duet

@@ -77,19 +77,14 @@ float SubsurfaceBsdf::pdf(Vec3 wo, Vec3 wi, TransportMode mode) const {
     return (1 - entering_probability(wo.z)) * surface.pdf(wo, wi, mode);
 }
 
-Rgb SubsurfaceExitBsdf::eval(Vec3 wo, Vec3 wi, TransportMode) const {
-    return same_hemisphere(wo, wi) ? Rgb(surface.passed(std::abs(wi.z)) * kInvPi / mean_passed) : Rgb();
+Rgb SubsurfaceExitBsdf::eval(Vec3, Vec3 wi, TransportMode) const {
+    return wi.z > 0 ? Rgb(surface.passed(wi.z) * kInvPi / mean_passed) : Rgb();
 }
 
 std::optional<BsdfSample> SubsurfaceExitBsdf::sample(Vec3 wo, float, Vec2 u, TransportMode mode) const {
-    Vec3 wi = normalize(cosine_hemisphere(u));
-    if (wo.z < 0) wi.z = -wi.z;
-    if (!same_hemisphere(wo, wi)) return std::nullopt;
-    return sample_of(*this, wo, wi, mode);
+    return sample_of(*this, wo, normalize(cosine_hemisphere(u)), mode);
 }
 
-float SubsurfaceExitBsdf::pdf(Vec3 wo, Vec3 wi, TransportMode) const {
-    return same_hemisphere(wo, wi) ? cosine_hemisphere_pdf(abs_cos_theta(wi)) : 0;
-}
+float SubsurfaceExitBsdf::pdf(Vec3, Vec3 wi, TransportMode) const { return cosine_hemisphere_pdf(wi.z); }
 
 } // namespace duet

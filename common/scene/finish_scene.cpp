@@ -64,8 +64,8 @@ std::optional<float> constant_red(const TextureSet& set, const Texture& texture)
     return constant ? std::optional(pixels.front().r) : std::nullopt;
 }
 
-/// Raises the mean free paths of solids to the least that rays can follow, at which no light comes far enough to be
-/// seen elsewhere than where it entered. A path below it in all channels becomes 0, which is a diffuse surface.
+/// Raises the mean free paths of solids to the least that positions in float can resolve. A path below it in all
+/// channels becomes 0, which is a diffuse surface.
 void limit_mean_free_paths(Scene& scene) {
     constexpr float kLeast = 1.0f / 65536; // of the largest coordinate; rays start up to a hundredth of that off it
     std::vector<float> extents(scene.materials.size());
@@ -77,6 +77,11 @@ void limit_mean_free_paths(Scene& scene) {
     for (std::size_t i = 0; i < extents.size(); ++i) {
         Rgb* path = mean_free_path(scene.materials[i]);
         if (path == nullptr || is_black(*path)) continue;
+        const auto* principled = std::get_if<Principled>(&scene.materials[i]);
+        if (principled != nullptr && principled->subsurface.value == 0) {
+            *path = Rgb();
+            continue;
+        }
         const float least = kLeast * extents[i];
         const Rgb raised(max(path->r, least), max(path->g, least), max(path->b, least));
         *path = max_component(*path) < least ? Rgb() : raised;

@@ -1,5 +1,5 @@
 """The figures of raytrace/measurements.md."""
-from catalog import figure, number, scene, stem, table
+from catalog import figure, ms, number, scene, stem, table
 
 
 def cover_seconds(run, threads):
@@ -151,7 +151,7 @@ def denoise(run):
     rows = []
     for name in ("cornell", "spheres", "glass", "demo", "hall"):
         data = run("compare", "bench", scene(name), "--techniques", "path,denoised", "--samplers", "sobol",
-                   "--spp", "4,16,64,256", "--reference-spp", 4096, "--check-spp", 2, "--size", "160x90",
+                   "--spp", "4,16,64,256", "--reference-spp", 4096, "--check-spp", 64, "--size", "160x90",
                    "--repeats", 4, "--quiet").data
         of = {(row["technique"], row["spp"]): row for row in data["scenes"][0]["rows"]}
         for spp in (4, 16, 64, 256):

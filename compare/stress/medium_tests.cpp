@@ -243,7 +243,8 @@ void walks(Trial& trial) {
         raytrace::RayCounts counts;
         Rgb emitted;
         const SolidInterior interior = solid_interior(Rgb(1.0f), *duet::mean_free_path(scene.materials[0]));
-        const auto exit = raytrace::random_walk(plan, interior, ray, hit, random.uniform(), path, emitted, counts);
+        const auto exit = raytrace::random_walk(plan, {interior, hit.object}, ray, hit, random.uniform(), path, emitted,
+                                                counts);
         trial.note("size ", size, ", center ", exact(center), ", mean free path ", mean_free_path, ", from ",
                    exact(ray.origin), " towards ", exact(direction), ": ", exit ? exit->collisions : -1,
                    " collisions, throughput ", exact(path.throughput.g));

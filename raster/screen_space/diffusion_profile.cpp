@@ -39,13 +39,15 @@ Floats diffusion_profile::fraction_within(const Floats& x) {
 
 SolidMaterials::SolidMaterials(const Scene& scene) {
     const std::size_t size = scene.materials.size() + 1;
-    fraction.resize(size), internal_reflectance.resize(size);
+    fraction.resize(size), solid_part.resize(size, 1), internal_reflectance.resize(size);
     for (std::vector<float>& channel : mean_free_path) channel.resize(size);
     for (std::size_t i = 1; i < size; ++i) {
         const Material& material = scene.materials[i - 1];
         if (!has_subsurface(material)) continue;
         const auto* principled = std::get_if<Principled>(&material);
         fraction[i] = principled != nullptr ? principled->subsurface.value : 1;
+        if (principled != nullptr)
+            solid_part[i] = max(fraction[i] * (1 - clamp(principled->metallic.value, 0.0f, 1.0f)), 1e-3f);
         internal_reflectance[i] = duet::internal_reflectance(material);
         for (std::size_t c = 0; c < 3; ++c) mean_free_path[c][i] = (*duet::mean_free_path(material))[c];
     }

@@ -35,7 +35,8 @@ Floats fraction_within(const Floats& x);
 struct SolidMaterials {
     explicit SolidMaterials(const Scene& scene);
 
-    std::vector<float> fraction; ///< of the diffuse lobe that is subsurface scattering; 0: the material is no solid
+    std::vector<float> fraction;   ///< of the diffuse lobe that is subsurface scattering, texture left out; 0: no solid
+    std::vector<float> solid_part; ///< of the surface that is a solid: the rest of it is metal, or diffuse
     std::vector<float> internal_reflectance;
     std::vector<float> mean_free_path[3]; ///< by channel, in meters
 };

@@ -84,7 +84,8 @@ private:
 
     RgbT<Floats> scales(int x, int y, const Mask& solid) const {
         const Floats back = look_up(materials_.internal_reflectance, gbuffer_.material, x, y);
-        const RgbT<Floats> albedo = gbuffer_.diffuse.color(x, y);
+        const Floats part = look_up(materials_.solid_part, gbuffer_.material, x, y);
+        const RgbT<Floats> albedo = gbuffer_.diffuse.color(x, y) * (Floats(1.0f) / part);
         const auto channel = [&](const Floats& a, std::size_t c) {
             const Floats path = look_up(materials_.mean_free_path[c], gbuffer_.material, x, y);
             const Floats seen = clamp(a, Floats(0.0f), Floats(1.0f));

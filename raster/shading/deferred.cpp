@@ -33,8 +33,9 @@ public:
         : radiance_(radiance), threads_(threads), components_(components) {
         if (components_ != nullptr) before_ = Planes3(radiance.x.width(), radiance.x.height());
     }
+    bool records() const { return components_ != nullptr; }
     void record(Planes3 LightComponentImages::*component) {
-        if (components_ == nullptr) return;
+        if (!records()) return;
         Planes3& image = components_->*component;
         const bool first = image.empty();
         if (first) image = Planes3(radiance_.x.width(), radiance_.x.height());
@@ -93,7 +94,7 @@ public:
         done("direct light and shadows");
         add_direct_light(gbuffer, frame_.direct, threads, radiance);
         recorder.record(&LightComponentImages::direct);
-        if (options_.components != nullptr) {
+        if (recorder.records()) {
             compute_direct_light(data_, settings_, gbuffer, nullptr, frame_.direct);
             recorder.record_shadowed(frame_.direct);
         }
@@ -158,7 +159,8 @@ void shade_gbuffer(const RasterSceneData& data, const RasterSettings& settings, 
     stages.done("background");
     {
         std::optional<SolidMaterials> solids;
-        std::optional<SolidLobes> lobes; // it takes them out of the G-buffer for the time being
+        std::optional<SolidLobes> lobes; // it takes the diffuse lobes of solids out of the G-buffer until its end
+        // Neighbors in an image of hits along other rays are no neighbors on the surface, so that nothing is blurred.
         if (settings.subsurface && data.scene.needs.subsurface && gbuffer.position.empty()) {
             solids.emplace(data.scene);
             lobes.emplace(*solids, *frame.gbuffer, threads);

@@ -114,7 +114,7 @@ public:
     /// the one that continues. Returns false if the path ends.
     bool advance(Ray& ray, const Hit& nearest, int depth, const VertexRandomSamples& u) {
         if constexpr (kHasMedia) {
-            if (interior_) return pass_solid(ray, nearest, depth, u);
+            if (solid_) return pass_solid(ray, nearest, depth, u);
             const std::optional<MediumCollision> collision = pass_media(ray, nearest.t, depth, u);
             if (is_black(state_.throughput)) return log_end("media absorb it");
             if (collision) return scatter_in_medium(*collision, ray, depth, u) && goes_on(depth, u);
@@ -231,17 +231,18 @@ private:
 
     // Notes what is on the other side of a surface that the path passes.
     void enter(const Vertex& vertex) {
-        if (const auto* solid = std::get_if<SubsurfaceBsdf>(&vertex.bsdf)) interior_ = solid->interior;
+        if (const auto* bsdf = std::get_if<SubsurfaceBsdf>(&vertex.bsdf))
+            solid_ = {bsdf->interior, vertex.point.object};
         if (has_interior(vertex)) medium_stack_.cross(vertex.point.material, vertex.wo.z > 0);
     }
 
     // Carries the path through a solid, and scatters it where it leaves. Returns false if the path ends.
     bool pass_solid(Ray& ray, const Hit& nearest, int depth, const VertexRandomSamples& u) {
         Rgb emitted;
-        const auto exit = random_walk(plan_, *interior_, ray, nearest, u.distance, state_, emitted, counts_);
-        interior_.reset();
+        const auto exit = random_walk(plan_, *solid_, ray, nearest, u.distance, state_, emitted, counts_);
+        solid_.reset();
         if (!is_black(emitted)) sink_.add(emitted, LightSource::kOther, depth);
-        if (!exit) return log_end("the solid absorbs it");
+        if (!exit) return log_end("it does not leave the solid: absorbed, or ended by roulette");
         if constexpr (Sink::kLogsEvents) sink_.log().walk(*exit);
         ray = exit->seen_from_outside(plan_);
         const Vertex vertex(plan_, ray, exit->hit, footprint_.at_hit(ray, exit->hit.t), {0, true});
@@ -350,7 +351,7 @@ private:
     Sink sink_;
     PathState state_;
     std::conditional_t<kHasMedia, MediumStack, NoMediumStack> medium_stack_;
-    std::optional<SolidInterior> interior_; // of the solid that the path is inside of
+    std::optional<EnteredSolid> solid_; // that the path is inside of
     PathFootprint footprint_;
 };
 

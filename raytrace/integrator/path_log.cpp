@@ -53,7 +53,8 @@ void PathLog::medium_vertex(const MediumVertex& vertex, int depth) {
 }
 
 void PathLog::walk(const SolidExit& exit) {
-    out_ << "\nthe path is scattered inside of a solid, number of times: " << exit.collisions << "\n";
+    out_ << "\nthe path leaves the solid after " << exit.collisions
+         << (exit.collisions == 1 ? " collision\n" : " collisions\n");
 }
 
 void PathLog::escape(const Ray& ray, int depth) {

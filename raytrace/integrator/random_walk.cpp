@@ -5,7 +5,9 @@
 #include "raytrace/integrator/russian_roulette.h"
 #include "raytrace/integrator/vertex.h"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace duet::raytrace {
 
@@ -40,6 +42,24 @@ std::optional<float> next_collision(const RenderPlan& plan, const SolidInterior&
     return collides ? std::optional(t) : std::nullopt;
 }
 
+// The solids that a path is inside of. At an edge that a ray just touches, it may meet a surface from the other side
+// than it does in truth: so entering a solid twice counts once, and so does leaving it.
+class EnteredSolids {
+public:
+    explicit EnteredSolids(std::uint32_t object) { enter(object); }
+    void enter(std::uint32_t object) {
+        if (std::ranges::find(objects_, object) == objects_.end()) objects_.push_back(object);
+    }
+    // Returns whether the path is outside of all now.
+    bool leave(std::uint32_t object) {
+        std::erase(objects_, object);
+        return objects_.empty();
+    }
+
+private:
+    std::vector<std::uint32_t> objects_;
+};
+
 // Reflects the path diffusely.
 void reflect(const SurfacePoint& point, Ray& ray, RandomSequence& random) {
     const Vec3 n = dot(point.ng, ray.direction) > 0 ? -point.ng : point.ng;
@@ -57,25 +77,26 @@ Ray SolidExit::seen_from_outside(const RenderPlan& plan) const {
     return outside;
 }
 
-std::optional<SolidExit> random_walk(const RenderPlan& plan, const SolidInterior& interior, Ray ray, Hit hit, float u,
+std::optional<SolidExit> random_walk(const RenderPlan& plan, const EnteredSolid& solid, Ray ray, Hit hit, float u,
                                      PathThroughputT<float>& path, Rgb& emitted_light, RayCounts& counts) {
     RandomSequence random(u);
+    EnteredSolids entered(solid.object);
     int collisions = 0;
     for (int rays = 0; rays < kMaxRays; ++rays, ++counts.indirect) {
         if (is_black(path.throughput)) return std::nullopt;
-        if (const auto t = next_collision(plan, interior, ray, hit, rays == 0, random, path)) {
+        if (const auto t = next_collision(plan, solid.interior, ray, hit, rays == 0, random, path)) {
             ++collisions;
             ray.origin = ray.at(*t);
             const Vec2 direction{random(), random()};
             ray.direction = uniform_sphere(direction);
-        } else if (!hit.valid()) {
-            return std::nullopt; // the solid has no end
         } else {
             const SurfacePoint point = point_at(plan, ray, hit);
             const Material& material = plan.scene.materials[point.material];
             if (has_subsurface(material)) {
-                if (dot(point.ng, ray.direction) > 0) return SolidExit{ray, hit, collisions};
-                ray.origin = offset_origin(point.p, point.p_error, -point.ng);
+                const bool leaves = dot(point.ng, ray.direction) > 0;
+                if (!leaves) entered.enter(hit.object);
+                if (leaves && entered.leave(hit.object)) return SolidExit{ray, hit, collisions};
+                ray.origin = offset_origin(point.p, point.p_error, leaves ? point.ng : -point.ng);
             } else {
                 emitted_light += path.throughput * emitted(material, plan.scene.textures, point, -ray.direction);
                 path.throughput *= base_color(material, plan.scene.textures, point);

@@ -18,17 +18,23 @@ struct SolidExit {
     Ray seen_from_outside(const RenderPlan& plan) const;
 };
 
+/// The solid that a path has entered.
+struct EnteredSolid {
+    SolidInterior interior;   ///< where the path has entered
+    std::uint32_t object = 0; ///< index into Scene::objects
+};
+
 /// Follows a path that has entered a solid until it leaves it by a surface with subsurface scattering, which may be
 /// another one than it has entered. `ray` starts inside, and `hit` is what it hits. Returns nothing if the path ends
 /// inside. `path` is multiplied by the weight of the walk, and u in [0, 1) decides it.
 ///
 /// The distances between collisions are drawn in proportion to the light that arrives there, for a channel that is
-/// chosen by the throughput. Paths pass surfaces of solids that they meet from outside: those of another solid that
-/// begins inside, or an edge at which a ray just touches the solid's own. What else is inside, such as the eyes in a
-/// head, reflects light diffusely by its base color; `emitted` is increased by what it emits times the throughput.
-/// Paths of little throughput end by Russian roulette, and all end after 30,000 rays: in a white solid that is hundreds
-/// of mean free paths deep, 1 % of the light is lost.
-std::optional<SolidExit> random_walk(const RenderPlan& plan, const SolidInterior& interior, Ray ray, Hit hit, float u,
+/// chosen by the throughput. Solids that overlap, or lie inside of each other, count as one, with the interior of the
+/// one that the path has entered first. What else is inside, such as the eyes in a head, reflects light diffusely by
+/// its base color; `emitted` is increased by what it emits times the throughput. Paths of little throughput end by
+/// Russian roulette, and all end after 30,000 rays: in a white solid that is hundreds of mean free paths deep, 1 % of
+/// the light is lost.
+std::optional<SolidExit> random_walk(const RenderPlan& plan, const EnteredSolid& solid, Ray ray, Hit hit, float u,
                                      PathThroughputT<float>& path, Rgb& emitted, RayCounts& counts);
 
 } // namespace duet::raytrace

@@ -40,6 +40,9 @@ std::vector<Case> layered_cases() {
     wax.clearcoat = 0.5f;
     wax.subsurface = 0.5f;
     wax.mean_free_path = Rgb(0.1f);
+    Principled coated_wax = wax;
+    coated_wax.subsurface = coated_wax.clearcoat = 1;
+    coated_wax.roughness = 0.1f;
     Dielectric thin;
     thin.thin = true;
     return {{"rough white metal", sphere, Metal{{Rgb(1.0f)}, 1}, true},
@@ -49,6 +52,7 @@ std::vector<Case> layered_cases() {
             {"rough white plastic", sphere, Coated{{Rgb(1.0f)}, 0.9f}, true},
             {"white marble", sphere, Coated{{Rgb(1.0f)}, 0.3f, 1.5f, Rgb(0.03f, 0.3f, 3)}, true},
             {"half white wax", sphere, wax, true},
+            {"white wax under a clear coat", sphere, coated_wax, true},
             {"thin glass", sphere, thin, true}};
 }
 

@@ -119,7 +119,7 @@ struct HalfSpace {
         PathThroughputT<float> path;
         Rgb emitted;
         RayCounts counts;
-        const auto exit = random_walk(plan, interior, ray, hit, u.distance, path, emitted, counts);
+        const auto exit = random_walk(plan, {interior, hit.object}, ray, hit, u.distance, path, emitted, counts);
         weight = exit ? path.throughput : Rgb();
         CHECK(is_black(emitted));
         return exit;
@@ -256,6 +256,24 @@ TEST_SUITE("statistical") {
                 CHECK(walks.median == doctest::Approx(truth.median).epsilon(0.06));
                 CHECK(walks.last_tenth == doctest::Approx(truth.last_tenth).epsilon(0.05));
             }
+    }
+
+    // The standard errors are below 0.001. If a path left a solid inside of another, or at the surface of one that
+    // overlaps another, its light would be lost.
+    TEST_CASE("white solids inside of each other, and overlapping, return all light") {
+        for (const Vec3 shift : {Vec3(0, 0, 0), Vec3(0.7f, 0.2f, 0)}) {
+            CAPTURE(shift.x);
+            SceneBuilder builder;
+            const std::uint32_t white = builder.material(Coated{{Rgb(1.0f)}, 0.3f, 1.5f, Rgb(0.3f)});
+            builder.add(Sphere{{0, 0, 0}, 1}, white);
+            builder.add(icosphere(2, 0.5f, shift), white);
+            builder.scene.environment = ConstantEnvironment{Rgb(1.0f)};
+            builder.scene.camera.eye = {0, 0, 4};
+            PathTracerSettings settings;
+            settings.samples_per_pixel = 64;
+            settings.max_depth = 100000;
+            CHECK(estimate(builder.finish(), 24, settings).mean == doctest::Approx(1).epsilon(0.004));
+        }
     }
 
     // The standard errors are below 0.001.
