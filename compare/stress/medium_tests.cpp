@@ -224,7 +224,9 @@ void walks(Trial& trial) {
     const Vec3 center = random.vector() * (size * (random.coin() ? 1 : random.log_uniform(1, 100)));
     ClosedShape solid = random_closed_shape(random, size, center);
     const float mean_free_path = size * random.log_uniform(0.03f, 1e3f);
-    Scene scene = make_scene({solid.shape});
+    std::vector<Shape> shapes{solid.shape};
+    if (random.coin()) shapes.push_back(Sphere{center + random.direction() * (size * random.uniform()), 0.4f * size});
+    Scene scene = make_scene(std::move(shapes));
     scene.materials[0] = Coated{{Rgb(1.0f)}, 0.3f, 1.5f, Rgb(mean_free_path)};
     finish_scene(scene);
     raytrace::PathTracerSettings settings;
@@ -243,7 +245,7 @@ void walks(Trial& trial) {
         raytrace::RayCounts counts;
         Rgb emitted;
         const SolidInterior interior = solid_interior(Rgb(1.0f), *duet::mean_free_path(scene.materials[0]));
-        const auto exit = raytrace::random_walk(plan, {interior, hit.object}, ray, hit, random.uniform(), path, emitted,
+        const auto exit = raytrace::random_walk(plan, {interior, 0}, ray, hit, random.uniform(), path, emitted,
                                                 counts);
         trial.note("size ", size, ", center ", exact(center), ", mean free path ", mean_free_path, ", from ",
                    exact(ray.origin), " towards ", exact(direction), ": ", exit ? exit->collisions : -1,
@@ -268,7 +270,7 @@ constexpr StressTest kTests[] = {
      trials_of<collisions>},
     {"medium/walks",
      "no path is lost in a closed solid that absorbs nothing, and each keeps its throughput: spheres, boxes, meshes, "
-     "at scales 1e-6 to 1e6, up to 100 sizes from the origin",
+     "with and without another inside or across, at scales 1e-6 to 1e6, up to 100 sizes from the origin",
      4, "2^-24 per ray", "4 roundings for each ray of the walk", "", 2'000, trials_of<walks>},
 };
 

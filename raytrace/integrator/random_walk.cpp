@@ -27,14 +27,13 @@ std::optional<float> next_collision(const RenderPlan& plan, const SolidInterior&
     const Rgb extinction = interior.scattering + interior.absorption;
     const ChosenChannel channel(path.throughput, random());
     const float drawn = -std::log1p(-random()) / extinction[channel.index];
-    // A collision so near to a surface that rounding could move it to the other side counts as a hit. What is farther
-    // away than that behind the collision need not be found.
-    const float end = drawn + 0x1p-20f * (max_component(abs(ray.origin)) + drawn);
     if (!hit_known) {
-        ray.t_max = end;
+        ray.t_max = drawn; // what is behind the collision need not be found
         hit = plan.prepared.accelerator.closest(ray);
     }
-    const bool collides = hit.t > end;
+    // Rounding may move a collision close to the surface to its other side. The walk then goes on as if the solid
+    // reached there, and soon meets the surface from outside, which it passes.
+    const bool collides = hit.t > drawn;
     const float t = collides ? drawn : hit.t;
     const Rgb passed(std::exp(-extinction.r * t), std::exp(-extinction.g * t), std::exp(-extinction.b * t));
     const float density = channel.mean(collides ? extinction * passed : passed);
