@@ -64,8 +64,7 @@ struct LayeredBsdf {
     Albedos albedos(float cosine) const;
     /// Returns the fraction of the light from this cosine, in [0, 1], that passes the dielectric and the coat.
     float passed(float cosine) const;
-    /// Returns the fraction of diffuse light that passes both: the cosine-weighted mean of passed(), if few directions
-    /// are stopped by both.
+    /// Returns the fraction of diffuse light that passes both: the cosine-weighted mean of passed(), at least 0.0001.
     float mean_passed() const;
 };
 

@@ -24,8 +24,8 @@ using Bsdf = std::variant<DiffuseBsdf, RoughDiffuseBsdf, MetalBsdf, LayeredBsdf,
 /// has diffuse reflection, which scatters as much light.
 Bsdf bsdf_at(const Material& material, const TextureSet& textures, const SurfacePoint& point);
 
-/// Returns the mean free path of the light inside of the material, in meters, or null if the material has no subsurface
-/// scattering. The result may be black: then it has none, either.
+/// Returns the mean free path of the light inside of the material, in meters, or null if this kind of material cannot
+/// have subsurface scattering. It is black if the material has none.
 const Rgb* mean_free_path(const Material& material);
 Rgb* mean_free_path(Material& material);
 /// Returns whether light is scattered below the material's surface.

@@ -84,8 +84,8 @@ private:
     float entering_probability(float cosine) const;
 };
 
-/// The surface of a solid at a point where light leaves it. It sends all light to the outside, where wo and wi are both
-/// taken to be: the light that comes from inside is diffuse, so that no direction there matters.
+/// The surface of a solid at a point where light leaves it. The light that comes from inside is diffuse, so that its
+/// direction does not matter: wo is any direction outside, where all light is sent.
 struct SubsurfaceExitBsdf {
     static constexpr bool kTransmissive = false;
 
