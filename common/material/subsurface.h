@@ -76,8 +76,11 @@ struct SubsurfaceBsdf {
     float entering;      ///< fraction of what passes the layers that enters the solid, in [0, 1]
     SolidInterior interior;
 
+    /// Returns the BSDF of the reflected light, without the cosine.
     Rgb eval(Vec3 wo, Vec3 wi, TransportMode mode) const { return surface.eval(wo, wi, mode); }
+    /// Draws a direction of reflected light, or of light that enters. `lobe` in [0, 1) chooses.
     std::optional<BsdfSample> sample(Vec3 wo, float lobe, Vec2 u, TransportMode mode) const;
+    /// Returns the density, by solid angle, with which sample draws a reflected wi.
     float pdf(Vec3 wo, Vec3 wi, TransportMode mode) const;
 
 private:
@@ -92,8 +95,11 @@ struct SubsurfaceExitBsdf {
     LayeredBsdf surface; ///< what the light passes
     float mean_passed;   ///< surface.mean_passed()
 
+    /// Returns the fraction of the light from inside per solid angle that leaves towards wi, over the cosine.
     Rgb eval(Vec3 wo, Vec3 wi, TransportMode mode) const;
+    /// Draws a direction outside, with the density of Lambert's law.
     std::optional<BsdfSample> sample(Vec3 wo, float lobe, Vec2 u, TransportMode mode) const;
+    /// Returns the density, by solid angle, with which sample draws wi.
     float pdf(Vec3 wo, Vec3 wi, TransportMode mode) const;
 };
 
