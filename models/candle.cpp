@@ -15,10 +15,8 @@ MeshBuilder wax() {
     constexpr std::array kProfile = {Vec2d(0, 0),         Vec2d(0.033, 0),     Vec2d(0.035, 0.002), Vec2d(0.035, 0.06),
                                      Vec2d(0.035, 0.11),  Vec2d(0.0335, 0.12), Vec2d(0.030, 0.12),  Vec2d(0.026, 0.115),
                                      Vec2d(0.016, 0.111), Vec2d(0.006, 0.111), Vec2d(0, 0.112)};
-    constexpr int kRows = 48;
     MeshBuilder mesh;
-    add_revolution(mesh, sample_profile(kProfile, kRows), 72,
-                   [](std::size_t row) { return static_cast<double>(row) / kRows; });
+    add_revolution(mesh, sample_profile(kProfile, 48), 72);
     for (Vec3d& p : mesh.positions) {
         const double angle = std::atan2(p.z, p.x), radius = std::hypot(p.x, p.z);
         const double rim = smooth_step(0.085, 0.12, p.y) * smooth_step(0.012, 0.03, radius);
@@ -33,10 +31,8 @@ MeshBuilder wax() {
 MeshBuilder flame() {
     constexpr std::array kProfile = {Vec2d(0, 0),           Vec2d(0.0032, 0.002), Vec2d(0.0052, 0.008),
                                      Vec2d(0.0045, 0.0165), Vec2d(0.002, 0.026),  Vec2d(0, 0.032)};
-    constexpr int kRows = 10;
     MeshBuilder mesh;
-    add_revolution(mesh, sample_profile(kProfile, kRows), 12,
-                   [](std::size_t row) { return static_cast<double>(row) / kRows; });
+    add_revolution(mesh, sample_profile(kProfile, 10), 12);
     compute_normals(mesh, 90);
     return mesh;
 }

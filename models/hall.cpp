@@ -111,10 +111,10 @@ void add_column(MeshBuilder& mesh, double x, double z) {
                                      Vec2d(0.44, 3.55), Vec2d(0.5, 3.9),
                                      // Below all of the arches' springing points, whose corners are at 0.65.
                                      Vec2d(0.66, 4.0), Vec2d(0.66, kSpringingHeight)};
-    constexpr int kRows = 32, kFlutes = 16;
-    const std::vector<Vec2d> profile = sample_profile(kProfile, kRows);
+    constexpr int kFlutes = 16;
+    const std::vector<Vec2d> profile = sample_profile(kProfile, 32);
     const std::size_t first = mesh.positions.size();
-    add_revolution(mesh, profile, 4 * kFlutes, [](std::size_t row) { return static_cast<double>(row) / kRows; });
+    add_revolution(mesh, profile, 4 * kFlutes);
     for (std::size_t i = first; i < mesh.positions.size(); ++i) {
         Vec3d& p = mesh.positions[i];
         const double shaft = smooth_step(0.5, 0.7, p.y) * (1 - smooth_step(3.2, 3.4, p.y));

@@ -116,7 +116,9 @@ void add_revolution(MeshBuilder& mesh, std::span<const Vec2d> profile, int colum
         const Vec2d p = profile[row(t)];
         return Vec3d(p.x * std::sin(angle), p.y, p.x * std::cos(angle));
     };
-    surface.uv = [&](double s, double t) { return Vec2d(s, v_of(row(t))); };
+    surface.uv = [&](double s, double t) {
+        return Vec2d(s, v_of ? v_of(row(t)) : static_cast<double>(row(t)) / surface.rows);
+    };
     add_parametric_surface(mesh, surface);
 }
 

@@ -51,9 +51,9 @@ void add_parametric_surface(MeshBuilder& mesh, const ParametricSurface& surface)
 
 /// Adds the surface of revolution about the y axis of a profile of (radius, height), given upward along the outside.
 /// The surface is closed if the profile's ends are on the axis (radius 0), or are the same point. u runs once around,
-/// to the right seen from outside; v is v_of(row).
+/// to the right seen from outside. v is v_of(row), or rises evenly from 0 to 1 without it.
 void add_revolution(MeshBuilder& mesh, std::span<const Vec2d> profile, int columns,
-                    const std::function<double(std::size_t row)>& v_of);
+                    const std::function<double(std::size_t row)>& v_of = nullptr);
 
 /// A tube follows a curve and has domes at its ends, for handles, rims and branches. `center` and `radii` (along the
 /// two axes of the cross-section's frame) are functions of t in [0, 1]. The frame's first axis is perpendicular to

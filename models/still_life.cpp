@@ -20,7 +20,7 @@ void add_pear_body(MeshBuilder& mesh) {
     const std::vector<Vec2d> profile = sample_profile(kProfile, 24);
     const std::size_t first = mesh.positions.size();
     mesh.use_material("skin");
-    add_revolution(mesh, profile, 32, [](std::size_t row) { return static_cast<double>(row) / 24; });
+    add_revolution(mesh, profile, 32);
     for (std::size_t i = first; i < mesh.positions.size(); ++i) { // makes the pear slightly irregular
         Vec3d& p = mesh.positions[i];
         const double swell = 1 + 0.05 * gradient_noise(p * 22.0);
@@ -96,10 +96,8 @@ void write_bowl(const std::filesystem::path& folder) {
                                      Vec2d(0.058, 0.014), Vec2d(0.1, 0.03),    Vec2d(0.15, 0.065),  Vec2d(0.178, 0.112),
                                      Vec2d(0.182, 0.118), Vec2d(0.179, 0.121), Vec2d(0.173, 0.114), Vec2d(0.145, 0.07),
                                      Vec2d(0.098, 0.038), Vec2d(0.04, 0.024),  Vec2d(0, 0.022)};
-    constexpr int kRows = 30;
     MeshBuilder mesh;
-    add_revolution(mesh, sample_profile(kProfile, kRows), 64,
-                   [](std::size_t row) { return static_cast<double>(row) / kRows; });
+    add_revolution(mesh, sample_profile(kProfile, 30), 64);
     compute_normals(mesh, 70);
     write_obj(folder / "meshes/bowl.obj", mesh, "A bowl, made by models/still_life.cpp.");
 }
@@ -113,8 +111,7 @@ void write_plinth(const std::filesystem::path& folder) {
     }
     profile.push_back({0, 1});
     MeshBuilder mesh;
-    add_revolution(mesh, profile, 96,
-                   [&](std::size_t row) { return static_cast<double>(row) / static_cast<double>(profile.size() - 1); });
+    add_revolution(mesh, profile, 96);
     compute_normals(mesh, 40);
     write_obj(folder / "meshes/plinth.obj", mesh,
               "A round plinth of radius and height 1, made by models/still_life.cpp.");
@@ -123,7 +120,7 @@ void write_plinth(const std::filesystem::path& folder) {
 void write_ring(const std::filesystem::path& folder) {
     constexpr std::array kProfile = {Vec2d(0.95, 0), Vec2d(1, 0), Vec2d(1, 0.35), Vec2d(0.95, 0.35), Vec2d(0.95, 0)};
     MeshBuilder mesh;
-    add_revolution(mesh, kProfile, 192, [](std::size_t row) { return static_cast<double>(row) / 4; });
+    add_revolution(mesh, kProfile, 192);
     compute_normals(mesh, 40);
     write_obj(folder / "meshes/ring.obj", mesh, "A ring of radius 1, made by models/still_life.cpp.");
 }

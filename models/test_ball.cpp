@@ -76,8 +76,7 @@ void write_test_ball(const std::filesystem::path& folder) {
     add_bend(profile, 86, 0.05, false);
     profile.push_back({0, kHeight + kRadius + 0.012});
     MeshBuilder mesh;
-    const double last = static_cast<double>(profile.size() - 1);
-    add_revolution(mesh, profile, 64, [&](std::size_t row) { return static_cast<double>(row) / last; });
+    add_revolution(mesh, profile, 64);
     compute_normals(mesh, 50);
     write_obj(folder / "meshes/test-ball.obj", mesh, "A ball to see materials on, made by models/test_ball.cpp.");
 
