@@ -96,8 +96,7 @@ int main(int argc, char** argv) {
             "--film", film,
             "Keep all samples in this .exr: written at intervals, at the end and when interrupted; a later run goes on "
             "from there, to the same bits as one run. What was begun with --adaptive, --error, --denoise or --aov "
-            "variance "
-            "knows its error, and goes on with these alone. `raytrace merge` joins films");
+            "variance knows its error, and goes on with these alone. `raytrace merge` joins films");
         command_line.add("--film-interval", settings.film_interval, "Seconds between two writings of it (default 60)")
             .nonnegative()
             .needs("--film");

@@ -143,13 +143,13 @@ private:
             if (coated->albedo.texture >= 0) fail_unsupported("textures under a coat are not exported");
             result["type"] = "principled";
             // This albedo includes inter-reflection within the coat.
-            result["slot"]["value"] = rgb_json(coated->at(scene_.textures, SurfacePoint{}).diffuse);
+            const Rgb seen = coated->at(scene_.textures, SurfacePoint{}).diffuse;
+            result["slot"]["value"] = rgb_json(seen);
             result["metallic"] = result["clearcoat"] = result["clearcoat_roughness"] = 0;
             result["roughness"] = constant(coated->roughness, "roughness");
             result["ior"] = coated->ior;
             if (has_subsurface(m))
-                export_subsurface(coated->subsurface_at(scene_.textures, SurfacePoint{}),
-                                  coated->at(scene_.textures, SurfacePoint{}).diffuse, result);
+                export_subsurface(coated->subsurface_at(scene_.textures, SurfacePoint{}), seen, result);
             notes_.insert("coated materials are Blender's principled ones, whose layers are not quite ours");
         } else if (const auto* emissive = std::get_if<Emissive>(&m)) {
             result["type"] = "emissive";

@@ -244,7 +244,7 @@ private:
         if (!is_black(emitted)) sink_.add(emitted, LightSource::kOther, depth);
         if (!exit) return log_end("it does not leave the solid: absorbed, or ended by roulette");
         if constexpr (Sink::kLogsEvents) sink_.log().walk(*exit);
-        ray = exit->seen_from_outside(plan_);
+        ray = exit->outside;
         const Vertex vertex(plan_, ray, exit->hit, footprint_.at_hit(ray, exit->hit.t), {0, true});
         return scatter_at(vertex, exit->hit, ray, depth, u);
     }

@@ -1,5 +1,6 @@
 #include "raytrace/integrator/random_walk.h"
 
+#include "common/medium/medium.h"
 #include "common/sampling/warp.h"
 #include "raytrace/integrator/random_sequence.h"
 #include "raytrace/integrator/russian_roulette.h"
@@ -14,11 +15,6 @@ namespace duet::raytrace {
 namespace {
 
 constexpr int kMaxRays = 30000;
-
-SurfacePoint point_at(const RenderPlan& plan, const Ray& ray, const Hit& hit) {
-    const std::uint32_t material = material_index(plan.scene, hit.object, hit.primitive);
-    return surface_point(plan.scene, ray, hit, nullptr, plan.details[material]);
-}
 
 // Carries the path along the ray to the next collision or, if that comes first, to the hit. `hit_known` tells whether
 // `hit` is that of the ray; else it is found. Returns the distance of the collision, if there is one.
@@ -35,7 +31,7 @@ std::optional<float> next_collision(const RenderPlan& plan, const SolidInterior&
     // reached there, and soon meets the surface from outside, which it passes.
     const bool collides = hit.t > drawn;
     const float t = collides ? drawn : hit.t;
-    const Rgb passed(std::exp(-extinction.r * t), std::exp(-extinction.g * t), std::exp(-extinction.b * t));
+    const Rgb passed = transmittance(extinction * t);
     const float density = channel.mean(collides ? extinction * passed : passed);
     path.throughput *= (collides ? interior.scattering * passed : passed) / density;
     return collides ? std::optional(t) : std::nullopt;
@@ -67,14 +63,14 @@ void reflect(const SurfacePoint& point, Ray& ray, RandomSequence& random) {
     ray.origin = offset_origin(point.p, point.p_error, n);
 }
 
-} // namespace
-
-Ray SolidExit::seen_from_outside(const RenderPlan& plan) const {
-    const SurfacePoint point = point_at(plan, ray, hit);
+// Returns the ray of a viewer in front of the surface, to whom the hit is as far away as to the ray.
+Ray seen_from_outside(const SurfacePoint& point, const Ray& ray, const Hit& hit) {
     Ray outside{point.p + point.ng * hit.t, -point.ng};
     outside.time = ray.time;
     return outside;
 }
+
+} // namespace
 
 std::optional<SolidExit> random_walk(const RenderPlan& plan, const EnteredSolid& solid, Ray ray, Hit hit, float u,
                                      PathThroughputT<float>& path, Rgb& emitted_light, RayCounts& counts) {
@@ -89,12 +85,14 @@ std::optional<SolidExit> random_walk(const RenderPlan& plan, const EnteredSolid&
             const Vec2 direction{random(), random()};
             ray.direction = uniform_sphere(direction);
         } else {
-            const SurfacePoint point = point_at(plan, ray, hit);
-            const Material& material = plan.scene.materials[point.material];
+            const std::uint32_t index = material_index(plan.scene, hit.object, hit.primitive);
+            const SurfacePoint point = surface_point(plan.scene, ray, hit, nullptr, plan.details[index]);
+            const Material& material = plan.scene.materials[index];
             if (has_subsurface(material)) {
                 const bool leaves = dot(point.ng, ray.direction) > 0;
                 if (!leaves) entered.enter(hit.object);
-                if (leaves && entered.leave(hit.object)) return SolidExit{ray, hit, collisions};
+                if (leaves && entered.leave(hit.object))
+                    return SolidExit{ray, seen_from_outside(point, ray, hit), hit, collisions};
                 ray.origin = offset_origin(point.p, point.p_error, leaves ? point.ng : -point.ng);
             } else {
                 emitted_light += path.throughput * emitted(material, plan.scene.textures, point, -ray.direction);

@@ -10,12 +10,10 @@ namespace duet::raytrace {
 
 /// The surface at which a path leaves a solid.
 struct SolidExit {
-    Ray ray; ///< the last segment of the walk, which arrives from inside
+    Ray ray;     ///< the last segment of the walk, which arrives from inside
+    Ray outside; ///< along which a viewer outside, in front of the surface, has the same hit
     Hit hit;
     int collisions = 0; ///< how often the walk was scattered
-
-    /// Returns a ray along which a viewer outside, in front of the surface, has the same hit.
-    Ray seen_from_outside(const RenderPlan& plan) const;
 };
 
 /// The solid that a path has entered.
