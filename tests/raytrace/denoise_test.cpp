@@ -146,7 +146,8 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("any size") {
-        for (const auto& [width, height] : {std::pair{1, 1}, {1, 7}, {9, 1}, {33, 17}, {3, 130}}) {
+        for (const auto& size : {std::pair{1, 1}, {1, 7}, {9, 1}, {33, 17}, {3, 130}}) {
+            const int width = size.first, height = size.second;
             CAPTURE(width);
             CAPTURE(height);
             const Film film = noisy_film(width, height, 4, 0.5f, kGray, 4);
