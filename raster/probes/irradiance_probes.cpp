@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 namespace duet::raster {
 namespace {
@@ -19,9 +20,10 @@ using Mask = Floats::batch_bool_type;
 using Vec3s = Vec3T<Floats>;
 
 constexpr int kDistanceSide = 16; ///< texels of an octahedral map of distances
-/// Points are lifted off their surface by this fraction of the distance between probes before their visibility is
-/// judged, as the maps of distances are coarse (Majercik et al., §5.2).
-constexpr float kBias = 0.4f;
+/// Before their visibility is judged, points are moved off their surface and towards the viewer by these fractions of
+/// the distance between probes, as the maps of distances are coarse (Majercik et al. 2021, "Scaling Probe-Based
+/// Real-Time Dynamic Global Illumination for Production", §4.1). Below a roof, the normal alone leads along it.
+constexpr float kNormalBias = 0.2f, kViewBias = 0.3f;
 /// Points beyond the outermost probes are interpolated where they would be this fraction of a cell further in, since
 /// the outermost probes may be hidden.
 constexpr float kInset = 0.02f;
@@ -186,7 +188,8 @@ struct IrradianceProbes::Corner {
 private:
     /// Weights of probes inside objects, and of those that a point does not see. Where they are the nearest, light
     /// changes over this fraction of a cell.
-    static constexpr float kInside = 1e-2f, kHidden = 1e-4f;
+    static constexpr float kInside = 1e-2f, kHidden = 3e-3f;
+    static constexpr float kBehind = 0.05f; ///< added to the weight of a probe, so that none behind the surface has 0
 
     static Floats visibility(const Probe& probe, const Vec3s& to_probe, const Vec3s& n) {
         const Floats squared = max(dot(to_probe, to_probe), Floats(1e-20f)), over = inverse_sqrt(squared);
@@ -197,7 +200,7 @@ private:
         const Floats variance = max(mean_square - mean * mean, Floats(1e-4f) * mean_square);
         const Floats behind = max(distance - mean, Floats(0.0f));
         const Floats seen = variance / (variance + behind * behind); // Chebyshev's inequality
-        return max((front * front + Floats(0.2f)) * seen * seen * seen, Floats(kHidden));
+        return (front * front + Floats(kBehind)) * (seen * seen * seen + Floats(kHidden));
     }
 };
 
@@ -261,10 +264,17 @@ RgbT<Floats> IrradianceProbes::mean_radiance(const Vec3d& eye, const Vec3s& p, c
     return result + (far - result) * share;
 }
 
+/// Returns by how much a point is moved for the test of what it sees: at most half of the way to the viewer.
+Vec3s IrradianceProbes::bias(const Vec3s& p, const Vec3s& n) const {
+    const auto step = static_cast<float>(std::min({step_.x, step_.y, step_.z}));
+    const Floats over = inverse_sqrt(max(dot(p, p), Floats(std::numeric_limits<float>::min())));
+    return n * Floats(kNormalBias * step) - p * min(Floats(kViewBias * step) * over, Floats(0.5f));
+}
+
 RgbT<Floats> IrradianceProbes::irradiance(const Vec3d& eye, const Vec3s& p, const Vec3s& n, const Mask& mask) const {
-    const Vec3 step(step_);
     const Place place = place_of(eye, p);
     const std::array<Floats, 9> basis = harmonics(n);
+    const Vec3s at = p + bias(p, n);
     RgbT<Floats> result(Floats(0.0f));
     for_each_cell(place.cells, lane_bits(mask), [&](std::int32_t base, const Mask& own) {
         Floats sum(0.0f);
@@ -273,10 +283,7 @@ RgbT<Floats> IrradianceProbes::irradiance(const Vec3d& eye, const Vec3s& p, cons
             const int dx = corner & 1, dy = corner >> 1 & 1, dz = corner >> 2;
             const auto probe = static_cast<std::size_t>(base + dx + size_[0] * (dy + size_[1] * dz));
             const Vec3 q(probes_[probe].position - eye);
-            const float bias = kBias * std::min({step.x, step.y, step.z});
-            const Corner c(probes_[probe],
-                           Vec3s{Floats(q.x) - p.x, Floats(q.y) - p.y, Floats(q.z) - p.z} - n * Floats(bias), n, basis,
-                           place.weight(dx, dy, dz));
+            const Corner c(probes_[probe], broadcast<Floats>(q) - at, n, basis, place.weight(dx, dy, dz));
             sum += c.weight;
             light += c.irradiance * c.weight;
         }

@@ -53,6 +53,7 @@ private:
                               const Floats& cells) const;
     struct Place;
     Place place_of(const Vec3d& eye, const Vec3T<Floats>& p) const;
+    Vec3T<Floats> bias(const Vec3T<Floats>& p, const Vec3T<Floats>& n) const;
     template <typename Visit> void for_each_neighbor(std::size_t probe, const Visit& visit) const;
     struct Corner;
 
