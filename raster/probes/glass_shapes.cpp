@@ -2,6 +2,7 @@
 
 #include "raster/prepare_limits.h"
 #include "raster/probes/probe_capture.h"
+#include "raster/probes/solid_test.h"
 
 #include "common/scene/bake.h"
 #include "common/system/parallel.h"
@@ -54,32 +55,38 @@ GlassShapes::GlassShapes(const RasterSceneData& data, const RasterSettings& sett
     shapes_.resize(objects.size());
     of_object_.assign(data.scene.objects.size(), shapes_.size());
     parallel_for(objects.size(), settings.threads, [&](std::size_t i) {
-        const Vec3d center(data.objects[objects[i]].bounds.center());
-        shapes_[i].center = center;
-        if (i >= spheres) shapes_[i].map = shape_of(data, settings, objects[i], center);
+        const Box3& bounds = data.objects[objects[i]].bounds;
+        Shape& shape = shapes_[i];
+        shape.center = Vec3d(bounds.center());
+        if (i < spheres) return;
+        const Vec3 extent = bounds.diagonal();
+        if (is_inside(data, objects[i], shape.center))
+            shape.map = shape_of(data, settings, objects[i], shape.center);
+        else
+            shape.local_radius = std::min({extent.x, extent.y, extent.z}) / 2;
     });
     for (std::size_t i = 0; i < objects.size(); ++i) of_object_[objects[i]] = i;
 }
 
 std::optional<GlassShapes::Exit> GlassShapes::exit(std::int32_t object, const Vec3d& eye, const Vec3s& p,
-                                                   const Vec3s& w) const {
+                                                   const Vec3s& n, const Vec3s& w) const {
     const std::size_t index = of_object_[static_cast<std::size_t>(object)];
     if (index == shapes_.size()) return std::nullopt;
     const Shape& shape = shapes_[index];
     const Vec3 offset(eye - shape.center);
-    const Vec3s start = p + broadcast<Floats>(offset);
+    const Vec3s start = shape.local_radius ? n * Floats(*shape.local_radius) : p + broadcast<Floats>(offset);
     const Floats none(0.0f), across = dot(start, w);
     Floats t = max(-across, none) * Floats(2.0f); // of a sphere about the center
     for (int i = 0; shape.map && i < kSteps; ++i) {
         const Floats radius = shape.map->at<4>(start + w * t)[3];
         t = max(xsimd::sqrt(max(radius * radius - dot(start, start) + across * across, none)) - across, none);
     }
-    Vec3s n = start + w * t; // of a sphere
+    Vec3s outward = start + w * t; // of a sphere
     if (shape.map) {
-        const auto [x, y, z, distance] = shape.map->at<4>(n);
-        n = {x, y, z};
+        const auto [x, y, z, distance] = shape.map->at<4>(outward);
+        outward = {x, y, z};
     }
-    return Exit{p + w * t, n * inverse_sqrt(max(dot(n, n), Floats(1e-20f))), t};
+    return Exit{p + w * t, outward * inverse_sqrt(max(dot(outward, outward), Floats(1e-20f))), t};
 }
 
 std::size_t GlassShapes::memory_bytes() const {

@@ -10,7 +10,8 @@
 namespace duet::raster {
 
 /// Holds the shapes of a scene's glass objects. Spheres at rest are exact. Other shapes are exact up to the resolution
-/// of a map, if each ray from the center leaves them once.
+/// of a map, if each ray from the center leaves them once. A ring, or another object whose center lies outside of it,
+/// is taken for a ball that touches it wherever a ray enters.
 class GlassShapes {
 public:
     GlassShapes(const RasterSceneData& data, const RasterSettings& settings);
@@ -20,9 +21,9 @@ public:
         Vec3T<Floats> n;  ///< unit outward normal there
         Floats length;    ///< of the ray inside, in meters
     };
-    /// Returns where a ray from the surface point p, relative to the eye at `eye`, in the unit direction w leaves an
-    /// object; nothing for objects without a shape.
-    std::optional<Exit> exit(std::int32_t object, const Vec3d& eye, const Vec3T<Floats>& p,
+    /// Returns where a ray from the surface point p, relative to the eye at `eye`, with the unit outward normal n, in
+    /// the unit direction w leaves an object; nothing for objects without a shape.
+    std::optional<Exit> exit(std::int32_t object, const Vec3d& eye, const Vec3T<Floats>& p, const Vec3T<Floats>& n,
                              const Vec3T<Floats>& w) const;
     std::size_t memory_bytes() const;
 
@@ -33,6 +34,7 @@ private:
     struct Shape {
         Vec3d center;
         std::optional<OctahedralMap> map; ///< outward normal and distance; a sphere needs none
+        std::optional<float> local_radius; ///< of balls that touch the object from within, in meters; has no center
     };
     std::vector<Shape> shapes_;
     std::vector<std::size_t> of_object_; ///< shapes_.size() if it has none

@@ -51,7 +51,7 @@ public:
         const Floats cosine = viewer_cosine(n_, -w_);
         const Floats entering =
             Floats(1.0f) - specular_albedo(LobeLookup()(alpha_, cosine, lanes), f0_, alpha_, cosine).g;
-        const auto exit = data_.glass_shapes->exit(object, gbuffer_.projection.eye(), p_, in.w);
+        const auto exit = data_.glass_shapes->exit(object, gbuffer_.projection.eye(), p_, n_, in.w);
         if (!exit) // light leaves in the direction it came from
             return lookup_(p_, n_, w_, alpha_, lanes) * entering * (tint * tint);
         // All light that does not leave at once leaves later; most of it in about the same direction.

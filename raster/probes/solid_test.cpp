@@ -83,11 +83,15 @@ Vec3d to_object_space(const RasterSceneData& data, std::uint32_t i, Vec3d p) {
     return object.identity ? p : transform_point(Mat4d(object_transform(object, time).to_object), p);
 }
 
-bool contains(const RasterSceneData& data, std::uint32_t i, Vec3d p) {
-    if (!data.objects[i].bounds.contains(Vec3(p))) return false;
-    return std::visit([&](const auto& shape) { return contains(shape, to_object_space(data, i, p)); },
-                      data.scene.shapes[data.scene.objects[i].shape]);
+} // namespace
+
+bool is_inside(const RasterSceneData& data, std::uint32_t object, Vec3d p) {
+    if (!data.objects[object].bounds.contains(Vec3(p))) return false;
+    return std::visit([&](const auto& shape) { return contains(shape, to_object_space(data, object, p)); },
+                      data.scene.shapes[data.scene.objects[object].shape]);
 }
+
+namespace {
 
 /// Returns whether the segment from p to q crosses a triangle: both ends lie on different sides of its plane, and its
 /// edges go around the segment in one direction.
@@ -107,8 +111,8 @@ template <typename Triangles> bool crosses(const Triangles& shape, Vec3d p, Vec3
 /// Returns whether the camera looks at a point inside an object, from within or through an opening.
 bool is_room(const RasterSceneData& data, std::uint32_t i) {
     const Camera& camera = data.scene.camera;
-    if (contains(data, i, camera.eye)) return true;
-    if (data.objects[i].closed || !contains(data, i, camera.look_at)) return false;
+    if (is_inside(data, i, camera.eye)) return true;
+    if (data.objects[i].closed || !is_inside(data, i, camera.look_at)) return false;
     return !std::visit(
         [&](const auto& shape) {
             return crosses(shape, to_object_space(data, i, camera.eye), to_object_space(data, i, camera.look_at));
@@ -124,7 +128,7 @@ SolidTest::SolidTest(const RasterSceneData& data) : data_(data) {
 }
 
 bool SolidTest::inside(Vec3d p) const {
-    return std::ranges::any_of(solids_, [&](std::uint32_t i) { return contains(data_, i, p); });
+    return std::ranges::any_of(solids_, [&](std::uint32_t i) { return is_inside(data_, i, p); });
 }
 
 } // namespace duet::raster

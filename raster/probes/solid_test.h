@@ -5,6 +5,10 @@
 
 namespace duet::raster {
 
+/// Returns whether a world-space point lies inside an object, an index into Scene::objects. Meshes must be oriented
+/// outwards; they may have holes (SolidTest).
+bool is_inside(const RasterSceneData& data, std::uint32_t object, Vec3d p);
+
 /// Tests whether points lie inside objects: spheres, boxes of quads, and meshes that are oriented outwards. Meshes may
 /// have holes: a point is inside if its generalized winding number is above 3/4 (Jacobson et al. 2013, "Robust
 /// Inside-Outside Segmentation using Generalized Winding Numbers"). An object is no solid but a room if the camera

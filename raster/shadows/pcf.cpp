@@ -11,8 +11,7 @@ using Mask = Floats::batch_bool_type;
 /// above the surface, and do not shade each other.
 constexpr float kSteepest = 0.5f, kOfElevation = 0.9f;
 /// A texel on the light's side whose surface falls from the receiver's plane by a greater fraction of the elevation
-/// lies
-/// beyond the end of the receiver's surface, and says nothing about its light.
+/// lies beyond the end of the receiver's surface, and says nothing about its light.
 constexpr float kFalling = 0.23f;
 constexpr float kLeastKnown = 0.25f; ///< filter weight of the texels that count, at least
 constexpr float kRounding = 0x1p-20f; ///< relative error of a depth, and of a point relative to the light

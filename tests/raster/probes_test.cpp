@@ -1,5 +1,6 @@
 // These tests check the maps over directions that probes hold, and where probes stand.
 #include "tests/raster/scenes.h"
+#include "tests/raster/varied_scene.h"
 
 #include "raster/probes/irradiance_probes.h"
 #include "raster/probes/octahedral_map.h"
@@ -228,6 +229,22 @@ TEST_SUITE("unit") {
                 CHECK(shown(-0.2).g > 0.8f);
                 CHECK(shown(0.2).g < 0.2f);
             }
+    }
+
+    TEST_CASE("a glass ring, whose center lies outside of it, shows the world upside down in all columns") {
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-50, 0, 50), Vec3(100, 0, 0), Vec3(0, 0, -100)}}}, Mat4(), Diffuse{{Rgb(0.02f)}});
+        add(scene, smooth_torus(120, 60), Mat4(translation(Vec3(0, 3, 0))), Dielectric{1.5f});
+        scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        scene.camera = look({0, 3, 12}, {0, 3, 0}, 20);
+        finish_scene(scene);
+        const ImageRgb image = render(scene, {scene.camera, 240, 240}, {}).radiance;
+        const double scale = 120 / (11 * std::tan(radians(10))); // pixels per meter in the front of the ring
+        for (int column = 120 - 30; column < 120 + 30; ++column) {
+            const auto shown = [&](double above) { return image(column, static_cast<int>(120 - above * scale)); };
+            CHECK(shown(-0.25).g > 0.7f);
+            CHECK(shown(0.25).g < 0.2f);
+        }
     }
 
     TEST_CASE("a mirror shows a small ball before it as large as the path tracer does") {
