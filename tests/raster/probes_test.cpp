@@ -231,20 +231,24 @@ TEST_SUITE("unit") {
             }
     }
 
-    TEST_CASE("a glass ring, whose center lies outside of it, shows the world upside down in all columns") {
+    TEST_CASE("a glass ring, whose center lies outside of it, shows a third of the sky that it should") {
         Scene scene;
         add(scene, QuadList{{{Vec3(-50, 0, 50), Vec3(100, 0, 0), Vec3(0, 0, -100)}}}, Mat4(), Diffuse{{Rgb(0.02f)}});
-        add(scene, smooth_torus(120, 60), Mat4(translation(Vec3(0, 3, 0))), Dielectric{1.5f});
+        add(scene, smooth_torus(60, 30), Mat4(translation(Vec3(0, 2, 0))), Dielectric{1.5f});
         scene.environment = ConstantEnvironment{Rgb(1.0f)};
-        scene.camera = look({0, 3, 12}, {0, 3, 0}, 20);
+        scene.camera = look({0, 6, 6}, {0, 2, 0}, 20);
         finish_scene(scene);
-        const ImageRgb image = render(scene, {scene.camera, 240, 240}, {}).radiance;
-        const double scale = 120 / (11 * std::tan(radians(10))); // pixels per meter in the front of the ring
-        for (int column = 120 - 30; column < 120 + 30; ++column) {
-            const auto shown = [&](double above) { return image(column, static_cast<int>(120 - above * scale)); };
-            CHECK(shown(-0.25).g > 0.7f);
-            CHECK(shown(0.25).g < 0.2f);
-        }
+        const View view{scene.camera, 120, 120};
+        raytrace::PathTracerSettings settings;
+        settings.samples_per_pixel = 16;
+        Control control;
+        const auto sky = [](const ImageRgb& image) {
+            return std::ranges::count_if(image.pixels(), [](Rgb c) { return c.g > 0.5f; });
+        };
+        const auto truth = sky(raytrace::render(raytrace::prepare(scene, settings), view, settings, control).radiance);
+        const auto shown = sky(render(scene, view, {}).radiance);
+        CHECK(shown > truth / 3); // measured: 0.46 of it; a map seen from the center gave 0.05
+        CHECK(shown < truth);
     }
 
     TEST_CASE("a mirror shows a small ball before it as large as the path tracer does") {
