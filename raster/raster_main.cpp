@@ -12,7 +12,8 @@ int main(int argc, char** argv) {
     RenderProgram program;
     program.name = "raster";
     program.description = "Renders a scene with the software rasterizer.";
-    program.example = "raster models/demo.json -o demo.png --size 1280x720 --spp 4";
+    program.examples = {"raster models/demo.json -o demo.png --size 1280x720 --spp 4",
+                        "raster mesh.obj -o mesh.png --msaa 8"};
     program.spp_help = "Samples per pixel (default 1: its center)";
     program.add_options = [&](CommandLine& command_line) {
         command_line.add("--shading", shading_name,

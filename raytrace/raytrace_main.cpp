@@ -58,7 +58,9 @@ int main(int argc, char** argv) {
     };
     program.name = "raytrace";
     program.description = "Renders a scene with the path tracer.";
-    program.example = "raytrace models/cornell.json -o cornell.png --spp 256";
+    program.examples = {"raytrace models/cornell.json -o cornell.png --spp 256",
+                        "raytrace mesh.obj -o mesh.png --time 60 --denoise",
+                        "raytrace merge a.exr b.exr -o joined.png    (films of --film; see raytrace merge --help)"};
     program.spp_help = "Samples a pixel (default 64; none where --time or --error ends the render)";
     program.add_options = [&](CommandLine& command_line) {
         command_line

@@ -81,7 +81,8 @@ Rendering render(const PathTracerScene& prepared, const View& view, const PathTr
     statistics.estimated_relmse = film.estimated_relmse();
     statistics.skipped = skipped(state.plan, settings);
     if (state.plan.russian_roulette)
-        statistics.skipped.push_back({"paths ended by roulette", "dim ones", state.rays.ended});
+        statistics.skipped.push_back(
+            {"paths ended by Russian roulette", "each carried little light", state.rays.ended});
     statistics.approximations = approximations(state.plan, settings);
     statistics.seconds.emplace_back("resolve", watch.lap());
     if (settings.denoise) {

@@ -88,9 +88,11 @@ std::vector<SkippedWork> skipped(const RenderPlan& plan, const PathTracerSetting
         skip("textures", "no material has one: each BSDF is made once, not at each hit");
     else if (constant > 0)
         list.push_back({"textures", "materials without one, whose BSDF is made once", constant});
-    if (!plan.scene.needs.alpha) skip("opacity tests", "no material has holes");
+    if (!plan.scene.needs.alpha) skip("opacity tests", "no material has an opacity below 1");
     if (!plan.scene.needs.normal_maps) skip("normal maps", "no material has one");
-    if (!plan.needs_medium_stack) skip("insides", "there are no media, and no glass absorbs or stands in other glass");
+    if (!plan.needs_medium_stack)
+        skip("medium stack", "what a ray is inside of does not matter: there are no media, and no glass absorbs or "
+                             "stands in other glass");
     if (!plan.pixel_footprint) skip("texture footprints", "no material has an image that is filtered");
     if (!plan.lens) skip("lens samples", "the camera has no aperture");
     if (!plan.motion) skip("time samples", "nothing moves");
@@ -117,7 +119,8 @@ std::vector<SkippedWork> skipped(const RenderPlan& plan, const PathTracerSetting
     if (!plan.hits_find_light && settings.integrator != Integrator::kUnshadowed)
         skip("last bounce", "rays cannot find the lights: point, spot and sun");
     if (plan.russian_roulette)
-        skip("dim paths", message("roulette ends some whose throughput is below ", 1 / kSurvivalFactor));
+        skip("dim paths", message("Russian roulette ends some paths that carry less than ", 1 / kSurvivalFactor,
+                                  " of their light, and weights the others up, so that the mean stays"));
     if (settings.integrator == Integrator::kUnshadowed) skip("shadow rays", "the integrator leaves visibility out");
     return list;
 }

@@ -166,8 +166,10 @@ void add_scene_options(CommandLine& program, SceneOptions& options) {
 int run_render_program(const RenderProgram& program, int argc, char** argv) {
     return run_program(program.name, [&] {
         CommandLine command_line(program.name, program.description);
-        command_line.set_footer("Example:\n  " + program.example +
-                                "\n\nExit codes: 0 done, 1 failed, 2 unusable arguments or input, 130 interrupted "
+        std::string footer = "Examples:\n";
+        for (const std::string& example : program.examples) footer += "  " + example + "\n";
+        command_line.set_footer(footer +
+                                "\nExit codes: 0 done, 1 failed, 2 unusable arguments or input, 130 interrupted "
                                 "(what is done is written).");
         Options options;
         add_common_options(command_line, options, program.spp_help);

@@ -15,6 +15,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace duet {
 
@@ -32,8 +33,9 @@ struct OutputOptions {
 
 /// A RenderProgram holds what a pipeline adds to the common program.
 struct RenderProgram {
-    std::string name, description, example;
-    std::string spp_help; ///< what --spp means here, and its default
+    std::string name, description;
+    std::vector<std::string> examples; ///< command lines, for --help
+    std::string spp_help;              ///< what --spp means here, and its default
     /// Adds the pipeline's own options.
     std::function<void(CommandLine&)> add_options;
     /// Where wants_text_output returns true, the program prints text_output() of the view instead of rendering it. Both

@@ -37,14 +37,14 @@ def headline(run):
                        next(line for line in plot(run)[0].split("\n") if line.startswith("![")) for plot in
                        (llvmpipe, cornell, equal_error))
     return table(["what", "figure", "page"], [
-        ["a frame of a mesh: llvmpipe's time over the rasterizer's", span(frames),
+        ["a frame of a mesh: llvmpipe's time divided by the rasterizer's; above 1 ours is faster", span(frames),
          "[raster](raster/measurements.md#frames-beside-llvmpipe)"],
-        ["Cornell box after 1 s and 4 s: the path tracer's squared error over Cycles'",
+        ["Cornell box after 1 s and 4 s: the path tracer's squared error divided by Cycles'; lower is better",
          ", ".join(number(to_peer(box, "path", at)) for at in (1, 4)), f"[raytrace]({path}#the-cornell-box)"],
         ["cover of *Ray Tracing in One Weekend*: seconds on two threads; the book's program on one, quoted",
          f"{number(cover, 3)}; {BOOK_SECONDS}", f"[raytrace]({path}#the-cover-scene)"],
-        ["the path tracer's time to the error of one rasterized sample, over the rasterizer's", span(equal.values()),
-         "[raster](raster/measurements.md#error-against-time)"],
-        [f"wrong samples of {coverage['trials']:,} random triangles, by 128-bit integers", coverage["failures"],
-         "[tests](tests/README.md#what-the-tests-show)"],
+        ["how many times as long the path tracer takes to have as small an error as the rasterizer at one sample per "
+         "pixel", span(equal.values()), "[raster](raster/measurements.md#error-against-time)"],
+        [f"{coverage['trials']:,} random triangles: samples covered wrongly, by exact 128-bit arithmetic",
+         coverage["failures"], "[tests](tests/README.md#what-the-tests-show)"],
     ]) + f"\n\n| the rasterizer | the path tracer | both |\n|---|---|---|\n| {plots} |"

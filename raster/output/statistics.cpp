@@ -25,7 +25,7 @@ std::vector<SkippedWork> list_skipped(const RasterSceneData& data, const RasterS
     add_if(!needs.motion, "motion", "nothing moves: all samples share one moment");
     add_if(!needs.footprints, "texture footprints", "no material has an image that is filtered");
     add_if(!needs.normal_maps, "normal maps", "no material has one");
-    add_if(!needs.alpha, "transparent layers", "no material has holes or lets light through");
+    add_if(!needs.alpha, "transparent layers", "no material has an opacity below 1");
     add_if(!needs.spheres, "spheres", "the scene has none");
     add_if(!needs.instances, "instances", "every object stands in world space");
     if (settings.shading == Shading::kLit) {
@@ -102,7 +102,8 @@ std::vector<std::string> approximations(const RasterSceneData& data, const Raste
     list_shadow_approximations(data, settings, result);
     if (parts.environment && data.irradiance_probes && settings.indirect_light) {
         add_if(true, "Diffuse light between surfaces is interpolated from irradiance probes; caustics are left out.");
-        add_if(settings.ambient_occlusion, "What is nearer than the probes resolve hides light by the image's depths.");
+        add_if(settings.ambient_occlusion,
+               "Creases finer than the probes' grid are darkened by ambient occlusion from the depth buffer.");
     } else if (parts.environment) {
         add_if(!is_dark(data, settings), "Light that surfaces reflect onto each other is left out.");
         add_if(environment && settings.ambient_occlusion,

@@ -36,7 +36,7 @@ TEST_SUITE("unit") {
             Control control;
             const Rendering r = render(prepare(scene, settings), View{scene.camera, 16, 16}, settings, control);
             for (const SkippedWork& s : r.statistics.skipped)
-                if (s.what == "paths ended by roulette") return s.count;
+                if (s.what == "paths ended by Russian roulette") return s.count;
             return std::int64_t{-1};
         };
         CHECK(ended() == 4 * 16 * 16); // nothing else ends paths

@@ -44,7 +44,7 @@ function pointText(row, e) {
 
 function checkText(scene, check) {
   const where = check.block[2] ? `the block of ${check.block[2]} pixels from (${check.block[0]}, ${check.block[1]})` :
-                                 "the whole picture";
+                                 "the whole image";
   return [
     `Bias check, ${scene.reference.estimator} against ${check.other.estimator}: `,
     put("span", {class: check.consistent ? "good" : "bad"}, check.consistent ? "✓ consistent" : "✗ not consistent"),
@@ -127,7 +127,7 @@ function drawBaseline() {
 
 function drawMethod() {
   document.getElementById("lede").textContent =
-      "How far a picture still is from the truth, for the time or the samples it took. Lower and farther left is " +
+      "How far an image still is from the truth, for the time or the samples it took. Lower and farther left is " +
       "better.";
   document.getElementById("method").append(
       put("h2", {}, "How it was measured"),

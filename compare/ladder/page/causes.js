@@ -62,7 +62,7 @@ class CauseView {
     this.at = { x: clamp(Math.floor(x), 0, width - 1), y: clamp(Math.floor(y), 0, height - 1) };
     const i = this.at.y * width + this.at.x, steps = this.steps[i];
     fill("readout", `(${this.at.x}, ${this.at.y})  `, swatch(this.cause[i]), make("b", {}, causeNames[this.cause[i]]),
-      `: the pictures differ by ${steps} of 255 steps` + (steps < data.visible_steps ? ", nothing to be seen" : ""));
+      `: the images differ by ${steps} of 255 steps` + (steps < data.visible_steps ? ", nothing to be seen" : ""));
   }
 }
 

@@ -12,11 +12,11 @@ const countOf = (n, word) => `${countText(n)} ${word}${n === 1 ? "" : "s"}`;
 
 function lede() {
   const spp = report.samples_per_pixel;
-  const setting = `${report.width} × ${report.height} pixels, ${countOf(spp.raster, "sample")} a pixel rasterized, ${
+  const setting = `${report.width} × ${report.height} pixels, ${countOf(spp.raster, "sample")} per pixel rasterized, ${
       spp.raytrace} path-traced.`;
   if (report.nothing_to_explain)
     return [
-      "The two pictures are ", make("strong", {}, "equal but for rounding"), ": there is nothing to explain. ", setting
+      "The two images are ", make("strong", {}, "equal but for rounding"), ": there is nothing to explain. ", setting
     ];
   const [first, second] = report.shares.slice(0, -1).sort((a, b) => b.share - a.share),
                 noise = report.shares.at(-1).share;
@@ -24,7 +24,7 @@ function lede() {
       `Noise of the path tracer makes up ${shareText(noise)}: more samples (--spp) would tell more. ` :
       "";
   return [
-    "The pictures differ by a relative mean squared error of ", make("strong", {}, radianceText(report.metrics.relmse)),
+    "The images differ by a relative mean squared error of ", make("strong", {}, radianceText(report.metrics.relmse)),
     ". The largest cause is ", make("strong", {}, first.title),
     ` (${shareText(first.share)} of the squared difference), then ` +
         `${second.title} (${shareText(second.share)}). ${noisy}${setting}`
@@ -68,15 +68,15 @@ function sharesTable() {
 // Shows the image at step k and what that step changed.
 function showStep(k, buttons) {
   buttons.forEach((b, i) => b.setAttribute("aria-pressed", String(i === k)));
-  const caption = k === 0       ? "the rasterizer's picture" :
-      k === report.rungs.length ? "all replaced: the path tracer's picture" :
+  const caption = k === 0       ? "the rasterizer's image" :
+      k === report.rungs.length ? "all replaced: the path tracer's image" :
                                   `replaced so far: ${report.shares.slice(0, k).map(s => s.title).join("; ")}`;
   const figure = (url, name, text) =>
       make("figure", {}, make("img", {src: url, alt: text}), make("figcaption", {}, make("b", {}, name), " ", text));
   const share = report.shares[k - 1];
-  fill("step", figure(data.pictures[k], `Picture ${k}:`, caption), ...(k === 0 ? [] : [
+  fill("step", figure(data.pictures[k], `Image ${k}:`, caption), ...(k === 0 ? [] : [
          figure(
-             data.changes[k - 1], `Picture ${k - 1} − picture ${k}:`, `${share.title}, share ${shareText(share.share)}`)
+             data.changes[k - 1], `Image ${k - 1} − image ${k}:`, `${share.title}, share ${shareText(share.share)}`)
        ]));
 }
 
@@ -110,7 +110,7 @@ function figures(q) {
   const time = (side, how) => make(
       "span", {class: side},
       `${side === "raster" ? "▲" : "●"} ${secondsText(q.seconds[side])} ${how} (${
-          countOf(q.samples_per_pixel[side], "sample")} a pixel)`);
+          countOf(q.samples_per_pixel[side], "sample")} per pixel)`);
   return make("p", {class: "figures"}, `${error} · `, time("raster", "rasterized"), " · ", time("raytrace", "traced"));
 }
 
@@ -150,9 +150,9 @@ fill("lede", ...lede());
 fill(
     "cause-text",
     `Something is to be seen in ${
-        shareText(report.visible_pixels)} of the pixels: there the 8-bit pictures differ by ` +
+        shareText(report.visible_pixels)} of the pixels: there the 8-bit images differ by ` +
         `${data.visible_steps} steps or more; the other pixels are dark. The cause is that of a pixel and its ` +
-        `neighbours together; grey: noise is larger than any.`);
+        `neighbors together; gray: noise is larger than any.`);
 sharesTable();
 ladderSection();
 element("rungs").append(...report.rungs.map(rung));

@@ -23,7 +23,7 @@ function showInspector(announce = false) {
         "inspector",
         make(
             "p", {class: "caption"},
-            "Point at a pixel, tap one, or focus the picture and use the arrow keys: both its values appear here",
+            "Point at a pixel, tap one, or focus the image and use the arrow keys: both its values appear here",
             data.hits ? ", and what each pipeline saw there." : "."));
     return;
   }

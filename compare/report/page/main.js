@@ -27,10 +27,10 @@ function showChips() {
 const captions = {
   split: () =>
       `Drag the line. Left of it ${sides[0].symbol} ${sides[0].name}, right of it ${sides[1].symbol} ${sides[1].name}.`,
-  flicker: () => "One picture after the other: what moves or changes shade differs.",
-  side: () => "Both pictures move and zoom together.",
+  flicker: () => "One image after the other: what moves or changes shade differs.",
+  side: () => "Both images move and zoom together.",
   difference: () => "",
-  flip: () => `How visible the difference is to someone who alternates between the pictures (Andersson et al. ${
+  flip: () => `How visible the difference is to someone who alternates between the images (Andersson et al. ${
       data.eight_bit ? "2020" : "2021"}).`,
   hits: () => disagreeing.length ? "Marked: pixels where the two see different primitives." :
                                    "Both pipelines see the same primitive in every pixel.",
@@ -265,7 +265,7 @@ async function start() {
     decoded = await decodeAll();
   } catch (error) {
     element("loading").textContent =
-        `The pictures could not be unpacked: ${error.message}. A browser from 2023 or later is needed.`;
+        `The images could not be unpacked: ${error.message}. A browser from 2023 or later is needed.`;
     return;
   }
   if (decoded.hits) {

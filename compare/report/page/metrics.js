@@ -12,11 +12,16 @@ const metricTexts = {
   smape: ["SMAPE", "mean of |difference| / (|A| + |B| + 0.01): 0 equal, 1 the most"],
   ssim: ["SSIM", "structural similarity: 1 equal, 0 unrelated"],
   flip: [
-    data.flip.name, "how visible the difference is to who alternates between the pictures: 0 not at all, 1 the most"
+    data.flip.name,
+    "mean over the pixels of how visible the difference is to someone who alternates between the images: 0 not at " +
+        "all, 1 the most. Half of the sum is of pixels below the weighted median, a quarter below the first quartile" +
+        (data.eight_bit ? "" :
+                          "; a pixel has the largest value of all exposures, which go from start to stop in even " +
+                          "steps of EV")
   ],
   mean_signed_error: ["Mean signed error", `red, green, blue; positive: ${data.sides[0].name} is brighter`],
   worst: ["Worst pixel", "largest difference of a channel"],
-  z_test: ["z-test", "p: how likely the pictures' noise alone would differ so; below 0.01 there is more than noise"],
+  z_test: ["z-test", "p: how likely the images' noise alone would differ so; below 0.01 there is more than noise"],
   non_finite: ["Not finite", "pixels that are NaN or infinite and count nowhere"],
   nan: ["NaN", "pixels with a channel that is no number"],
   infinite: ["Infinite", "pixels with an infinite channel"],

@@ -4,6 +4,10 @@ const rendered = sides.every(side => side.rendering); // so times and skips are 
 const tag = side => make("span", { class: side.style }, `${side.symbol} ${side.name}`);
 const secondsOf = side => side.rendering.statistics.seconds;
 const workSeconds = side => secondsOf(side).prepare + secondsOf(side).render;
+function samplesText(side) {
+  const samples = side.rendering.statistics.samples_per_pixel;
+  return `${countText(samples)} ${samples === 1 ? "sample" : "samples"} per pixel`;
+}
 
 // Shows only the sections that have content.
 function showSections() {
@@ -17,12 +21,15 @@ function showSummary() {
   const strong = (text, style = "") => make("strong", { class: style }, text), parts = [];
   if (rendered) {
     const [a, b] = sides.map(workSeconds), ratio = Math.max(a, b) / Math.min(a, b);
+    const [prepareA, prepareB] = sides.map(side => secondsText(secondsOf(side).prepare));
     parts.push(
-        strong(`${sides[0].symbol} ${sides[0].name}`, "side-a"), ": ", strong(secondsText(a)), ". ",
-        strong(`${sides[1].symbol} ${sides[1].name}`, "side-b"), ": ", strong(secondsText(b)),
+        strong(`${sides[0].symbol} ${sides[0].name}`, "side-a"), ": ", strong(secondsText(a)),
+        ` for ${samplesText(sides[0])}. `, strong(`${sides[1].symbol} ${sides[1].name}`, "side-b"), ": ",
+        strong(secondsText(b)), ` for ${samplesText(sides[1])}`,
         Number.isFinite(ratio) && ratio >= 1.05 ?
             (b > a ? `, ${ratioText(ratio)} times as long. ` : `, ${ratioText(ratio)} times as fast. `) :
-            ". ");
+            ". ",
+        `Preparing the scene, once for all samples, took ${prepareA} and ${prepareB} of that. `);
   } else parts.push(`${width} × ${height} pixels. `);
   if (data.hits) {
     const hits = data.hits.figures;
@@ -45,7 +52,7 @@ function showHits() {
   const h = data.hits.figures, share = n => percentText(n / h.pixels);
   fill(
       "hits-text",
-      "One ray through the centre of each pixel, both ways. Where the answers differ, a double-precision ray judges.");
+      "One ray through the center of each pixel, both ways. Where the answers differ, a double-precision ray judges.");
   const line = (kind, name, text) => row(name, text, countText(h[verdicts[kind].key]), {
     below: share(h[verdicts[kind].key]), symbol: kind ? symbolOf(kind) : null, bad: kind === 3 && h.unexplained > 0 });
   fill(
@@ -55,7 +62,9 @@ function showHits() {
           line(1, "Edge", "a ray moved by at most 1/128 pixel sees the other one"),
           line(2, "Depth tie", "both surfaces lie at the same distance"),
           line(3, "Unexplained", "none of these: a fault in one of the pipelines"),
-          row("Distance", `largest |Δt|·|cos θ| / t where both see the same; bound ${figure(h.distance.bound)}`,
+          row("Distance",
+              "how far apart, along the surface normal, both place the hit of the same primitive, relative to its " +
+                  `distance t from the eye: largest |Δt|·|cos θ| / t; bound ${figure(h.distance.bound)}`,
               figure(h.distance.worst), {
                 below: h.distance.violations ? `${countText(h.distance.violations)} pixels over the bound` :
                                                "none over the bound",
@@ -149,7 +158,7 @@ function showSkipped() {
 function showFacts() {
   const facts = [
     ["Scene", r => r.scene], ["Size", r => `${r.width} × ${r.height}`],
-    ["Samples a pixel", r => countText(r.samples_per_pixel)], ["Threads", r => r.threads],
+    ["Samples per pixel", r => countText(r.samples_per_pixel)], ["Threads", r => r.threads],
     ["Primitives", r => countText(r.triangles)], ["Memory", r => `${(r.memory_bytes / 2 ** 20).toFixed(1)} MiB`],
     ["Rays", r => countText(r.rays.camera + r.rays.indirect + r.rays.shadow)], ["Seed", r => r.seed],
     ["Estimated relMSE", r => r.estimated_relmse === null ? "–" : figure(r.estimated_relmse)],
