@@ -44,7 +44,7 @@ rasterize nave gallery/nave --shadow-map 8192
 picture nave --tone filmic --exposure -0.55
 trace glass-sphere gallery/glass-sphere --integrator vcm --spp 500
 picture glass-sphere
-trace caustics caustics --integrator vcm --spp 300
+trace caustics caustics --integrator vcm --spp 1600
 picture caustics --tone filmic --exposure 0.5
 trace smoke smoke --spp 1024 --adaptive
 picture smoke
