@@ -66,7 +66,7 @@ int main(int argc, char** argv) {
         command_line
             .add("--depth", settings.max_depth,
                  "Scattering events at most: 0 = emission only, 1 = direct light (default 64)")
-            .range(0, 100000);
+            .range(0, raytrace::PathTracerSettings::kMostDepth);
         command_line.add("--integrator", integrator_name,
                          "path (default), naive (no light sampling), bidirectional (paths from the camera and from the"
                          " lights, connected), vcm (the same, also merged where they nearly meet), photons "

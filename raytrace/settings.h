@@ -56,7 +56,9 @@ struct PathTracerSettings : RenderSettings {
     Integrator integrator = Integrator::kPath;
     SamplerKind sampler = SamplerKind::kSobol;
     FilterKind filter = FilterKind::kBox;
-    int max_depth = 64; ///< maximum number of scattering events: 0 = emission only, 1 = direct light
+    /// Maximum number of scattering events, in [0, kMostDepth]: 0 = emission only, 1 = direct light.
+    int max_depth = 64;
+    static constexpr int kMostDepth = 100000;
     bool russian_roulette = true;
     bool environment = true; ///< see raster::RasterSettings::environment
     bool adaptive =

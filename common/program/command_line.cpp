@@ -3,6 +3,8 @@
 #include "common/image/stored_image.h"
 #include "common/rendering.h"
 #include "common/system/error.h"
+#include "common/system/escape.h"
+#include "common/system/suggestion.h"
 
 #include <CLI/CLI.hpp>
 
@@ -132,6 +134,30 @@ CommandLine& CommandLine::add_subcommand(const std::string& name, const std::str
 
 void CommandLine::set_footer(const std::string& text) { app_->footer(text); }
 
+// Returns a message on the first argument that is neither an option nor a subcommand, or an empty text. CLI11 says only
+// that a subcommand is missing, or lists all arguments that are left over.
+std::string CommandLine::unknown_argument(std::string_view first) const {
+    const auto given = std::ranges::find_if(subcommands_, [](const auto& one) { return one->app_->parsed(); });
+    if (given != subcommands_.end()) return (*given)->unknown_argument({});
+    std::vector<std::string> names;
+    const auto explain = [&](const char* what, std::string_view found) {
+        return what + quoted_text(found) + suggestion(found, {names.begin(), names.end()});
+    };
+    if (!subcommands_.empty() && !first.empty() && !first.starts_with('-')) {
+        std::string list;
+        for (const auto& one : subcommands_) {
+            names.push_back(one->app_->get_name());
+            list += (list.empty() ? "; expected one of " : ", ") + names.back();
+        }
+        return explain("unknown subcommand ", first) + list;
+    }
+    for (const CLI::Option* option : app_->get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& argument : app_->remaining())
+        if (argument.starts_with("-")) return explain("unknown option ", argument.substr(0, argument.find('=')));
+    return {};
+}
+
 std::optional<int> CommandLine::parse(int argc, char** argv) {
     try {
         app_->parse(argc, argv);
@@ -139,7 +165,8 @@ std::optional<int> CommandLine::parse(int argc, char** argv) {
     } catch (const CLI::Success& help) { // --help and --version throw this exception
         return app_->exit(help);
     } catch (const CLI::ParseError& error) {
-        throw Error(message(error.what(), " (", app_->get_name(), " --help explains)"));
+        const std::string unknown = unknown_argument(argc > 1 ? argv[1] : "");
+        throw Error(message(unknown.empty() ? error.what() : unknown, " (", app_->get_name(), " --help explains)"));
     }
 }
 

@@ -86,6 +86,7 @@ public:
 
 private:
     explicit CommandLine(CLI::App& subcommand);
+    std::string unknown_argument(std::string_view first) const;
 
     std::unique_ptr<CLI::App> program_; ///< empty for a subcommand, which belongs to its program
     CLI::App* app_;

@@ -83,7 +83,10 @@ void print_summary(const RenderContext& context, const Rendering& rendering, con
     const RenderStatistics& s = rendering.statistics;
     std::cerr << output << ": " << context.width << " x " << context.height << ", " << s.samples_per_pixel
               << (s.samples_per_pixel == 1 ? " sample" : " samples") << " a pixel in "
-              << format_duration(context.render_seconds) << (s.interrupted ? " (interrupted)" : "") << '\n';
+              << format_duration(context.render_seconds) << (s.interrupted ? " (interrupted)" : "");
+    if (const double before = context.load_seconds + context.prepare_seconds; before >= 0.1)
+        std::cerr << ", after " << format_duration(before) << " of preparation";
+    std::cerr << '\n';
     if (!rendering.denoised.empty())
         std::cerr << undenoised_path(output).string() << ": the same, not denoised\n";
     if (s.invalid_samples > 0)

@@ -2,10 +2,10 @@
 #include "common/medium/density_grid.h"
 #include "common/scene/bake.h"
 #include "common/scene/emitter_texture.h"
-#include "common/scene/json/json_reader.h"
 #include "common/scene/motion_bounds.h"
 #include "common/scene/scene.h"
 #include "common/system/error.h"
+#include "common/system/escape.h"
 
 #include <algorithm>
 

@@ -45,6 +45,10 @@ std::string escaped(std::string_view text) {
     return out;
 }
 
+std::string quoted_text(std::string_view text) {
+    return '"' + escaped(text.substr(0, 60)) + (text.size() > 60 ? "…\"" : "\"");
+}
+
 std::string markup_escaped(std::string_view text) {
     std::string out;
     for (const char c : text) {

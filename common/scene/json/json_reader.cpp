@@ -1,7 +1,7 @@
 #include "common/scene/json/json_reader.h"
 
 #include "common/system/error.h"
-#include "common/system/escape.h"
+#include "common/system/suggestion.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -46,19 +46,16 @@ std::string describe(JsonRange range) {
     return message("in [", number_text(range.low), ", ", number_text(range.high), "]");
 }
 
-/// Returns the least number of insertions, deletions, replacements and swaps of neighbors that turn one short word
-/// into the other.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-    std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-    for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
-    for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
-    for (std::size_t i = 1; i <= a.size(); ++i)
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] != b[j - 1])});
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-                d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
-        }
-    return d[a.size()][b.size()];
+std::string listed(const std::vector<std::string_view>& names) {
+    std::string list;
+    for (const std::string_view name : names) list += (list.empty() ? "" : ", ") + quoted_text(name);
+    return list;
+}
+
+std::string unknown_key(const std::string& key, const std::vector<std::string_view>& known) {
+    const std::string text = "unknown key " + quoted_text(key), nearest = suggestion(key, known);
+    if (!nearest.empty()) return text + nearest;
+    return text + ", expected one of " + listed(known);
 }
 
 bool is_identifier(std::string_view key) {
@@ -68,25 +65,6 @@ bool is_identifier(std::string_view key) {
 }
 
 } // namespace
-
-std::string quoted_text(std::string_view text) {
-    return '"' + escaped(text.substr(0, 60)) + (text.size() > 60 ? "…\"" : "\"");
-}
-
-std::string suggestion(std::string_view name, const std::vector<std::string_view>& known) {
-    if (name.size() > 40) return "";
-    std::string_view nearest;
-    std::size_t least = name.size() / 3 + 2; // up to a third of the letters plus one may differ
-    for (const std::string_view candidate : known) {
-        if (candidate.size() > 40) continue;
-        const std::size_t distance = edit_distance(name, candidate);
-        if (distance < least) {
-            least = distance;
-            nearest = candidate;
-        }
-    }
-    return nearest.empty() ? "" : message("; did you mean ", quoted_text(nearest), "?");
-}
 
 void JsonValue::fail(const std::string& what) const { throw Error(message(file_->string(), ": ", path_, ": ", what)); }
 
@@ -143,11 +121,7 @@ Rgb JsonValue::rgb(JsonRange range) const {
 std::size_t JsonValue::one_of(const std::vector<std::string_view>& names) const {
     const std::string& text = string();
     const auto found = std::find(names.begin(), names.end(), text);
-    if (found == names.end()) {
-        std::string list;
-        for (const std::string_view name : names) list += (list.empty() ? "" : ", ") + quoted_text(name);
-        expected("one of " + list + suggestion(text, names));
-    }
+    if (found == names.end()) expected("one of " + listed(names) + suggestion(text, names));
     return static_cast<std::size_t>(found - names.begin());
 }
 
@@ -173,8 +147,7 @@ void JsonValue::check_keys(const JsonKeys& keys) const {
     std::vector<std::string_view> known = keys.required;
     known.insert(known.end(), keys.optional.begin(), keys.optional.end());
     for (const std::string& key : node_->keys)
-        if (std::find(known.begin(), known.end(), key) == known.end())
-            fail(message("unknown key ", quoted_text(key), suggestion(key, known)));
+        if (std::find(known.begin(), known.end(), key) == known.end()) fail(unknown_key(key, known));
     for (const std::string_view key : keys.required) at(key);
 }
 

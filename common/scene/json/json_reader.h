@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/image/rgb.h"
+#include "common/system/escape.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -110,11 +111,5 @@ private:
     const std::filesystem::path* file_;
     std::string path_;
 };
-
-/// Returns the text in double quotes, cut to 60 bytes. Control characters and non-ASCII bytes are escaped, so that
-/// any content of a file fits on one line of an error message.
-std::string quoted_text(std::string_view text);
-/// Returns "; did you mean "X"?" for the known name nearest to `name`, or an empty string where none is near.
-std::string suggestion(std::string_view name, const std::vector<std::string_view>& known);
 
 } // namespace duet

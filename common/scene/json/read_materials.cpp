@@ -3,6 +3,7 @@
 #include "common/scene/file_cache.h"
 #include "common/scene/json/scene_keys.h"
 #include "common/system/error.h"
+#include "common/system/suggestion.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,6 +2,7 @@
 
 #include "common/scene/json/scene_node.h"
 #include "common/system/error.h"
+#include "common/system/suggestion.h"
 
 #include <algorithm>
 #include <unordered_map>

@@ -2,6 +2,7 @@
 
 #include "common/scene/json/scene_keys.h"
 #include "common/system/error.h"
+#include "common/system/suggestion.h"
 
 #include <algorithm>
 #include <array>

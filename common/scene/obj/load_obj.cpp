@@ -1,6 +1,5 @@
 #include "common/scene/obj/load_obj.h"
 
-#include "common/scene/json/json_reader.h"
 #include "common/scene/json/read_materials.h"
 #include "common/scene/obj/load_mtl.h"
 #include "common/scene/obj/obj_check.h"
@@ -8,6 +7,8 @@
 #include "common/scene/obj/obj_text.h"
 #include "common/scene/obj/smooth_normals.h"
 #include "common/system/error.h"
+#include "common/system/escape.h"
+#include "common/system/suggestion.h"
 
 #include <tiny_obj_loader.h>
 

@@ -1,7 +1,7 @@
 #include "common/scene/obj/obj_check.h"
 
-#include "common/scene/json/json_reader.h"
 #include "common/system/error.h"
+#include "common/system/escape.h"
 
 #include <algorithm>
 #include <array>

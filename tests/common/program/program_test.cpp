@@ -1,3 +1,4 @@
+#include "common/program/command_line.h"
 #include "common/program/program.h"
 #include "common/program/render_program.h"
 #include "common/program/statistics.h"
@@ -30,6 +31,31 @@ TEST_SUITE("unit") {
         CHECK_FALSE(parse_aovs("").any());
         CHECK_THROWS_AS(parse_aovs("depth,,hit"), Error);
         CHECK_THROWS_AS(parse_aovs("Depth"), Error);
+    }
+
+    TEST_CASE("an unknown option or subcommand is named, with the nearest known one") {
+        const auto error_of = [](std::vector<std::string> arguments) -> std::string {
+            CommandLine program("test", "");
+            int samples = 0;
+            CommandLine& run = program.add_subcommand("run", "");
+            run.add("--spp", samples, "");
+            program.add_subcommand("render", "");
+            std::vector<char*> argv;
+            for (std::string& argument : arguments) argv.push_back(argument.data());
+            try {
+                program.parse(static_cast<int>(argv.size()), argv.data());
+                return "accepted";
+            } catch (const Error& error) {
+                return error.what();
+            }
+        };
+        CHECK(error_of({"test", "run", "--spp", "3"}) == "accepted");
+        CHECK(error_of({"test", "run", "--ssp", "3"}).starts_with("unknown option \"--ssp\"; did you mean \"--spp\"?"));
+        CHECK(error_of({"test", "run", "--ssp=3"}).starts_with("unknown option \"--ssp\"; did you mean"));
+        CHECK(error_of({"test", "rum"}).starts_with("unknown subcommand \"rum\"; did you mean \"run\"?"));
+        CHECK(error_of({"test", "scene.json"})
+                  .starts_with("unknown subcommand \"scene.json\"; expected one of run, render"));
+        CHECK(error_of({"test"}).starts_with("A subcommand is required"));
     }
 
     TEST_CASE("errors become exit codes") {

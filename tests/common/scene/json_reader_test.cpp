@@ -1,4 +1,5 @@
 #include "common/scene/json/json_reader.h"
+#include "common/system/suggestion.h"
 
 #include "tests/support/errors.h"
 
