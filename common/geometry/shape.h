@@ -36,11 +36,11 @@ struct QuadList {
 
 /// A mesh consists of triangles with shared vertices. The vertices are in counter-clockwise order seen from the front.
 struct Mesh {
-    std::vector<Vec3> positions;
-    std::vector<Vec3> normals; ///< one unit normal per position, or empty for flat shading
-    std::vector<Vec2> uvs;     ///< one uv per position, or empty: barycentric (u, v) of the triangle
-    std::vector<std::array<std::uint32_t, 3>> triangles; ///< indices of the vertices
-    std::vector<std::uint16_t> material_slots;           ///< one slot per triangle, or empty: all 0
+    std::vector<Vec3> positions{};
+    std::vector<Vec3> normals{}; ///< one unit normal per position, or empty for flat shading
+    std::vector<Vec2> uvs{};     ///< one uv per position, or empty: barycentric (u, v) of the triangle
+    std::vector<std::array<std::uint32_t, 3>> triangles{}; ///< indices of the vertices
+    std::vector<std::uint16_t> material_slots{};           ///< one slot per triangle, or empty: all 0
     /// A closed mesh fulfills two conditions. First, each edge, identified by the positions of its ends, is shared by
     /// two triangles that traverse it in opposite directions. Second, each connected component encloses a positive
     /// volume, so its triangles face outward.

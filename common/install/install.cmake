@@ -36,7 +36,7 @@ endforeach()
 install(TARGETS duet_flags duet_image duet_common duet_raster duet_raytrace EXPORT DuetTargets COMPONENT development
     ARCHIVE DESTINATION lib INCLUDES DESTINATION include/duet)
 install(DIRECTORY common raster raytrace DESTINATION include/duet COMPONENT development
-    FILES_MATCHING PATTERN *.h PATTERN lessons EXCLUDE)
+    FILES_MATCHING PATTERN *.h PATTERN lessons EXCLUDE PATTERN api EXCLUDE PATTERN install EXCLUDE)
 install(EXPORT DuetTargets NAMESPACE Duet:: DESTINATION lib/cmake/Duet COMPONENT development)
 write_basic_package_version_file(DuetConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_LIST_DIR}/DuetConfig.cmake ${PROJECT_BINARY_DIR}/DuetConfigVersion.cmake

@@ -84,10 +84,7 @@ Scene default_scene_for_mesh(const std::filesystem::path& path, UpAxis up) {
     const double radius = 0.5 * length(file_box.diagonal());
     if (!(radius > 1e-6 * max_component(max(abs(file_box.low), abs(file_box.high)))) || radius < 1e-15 || radius > 1e15)
         throw Error(path.string() + ": the mesh is too small or too large to be framed by a camera");
-    object.to_world = turned_up(up == UpAxis::kGuessed ? guessed_up(obj.mesh, file_box) : up);
-    object.to_world_end = object.to_world;
-    object.to_object = inverse_affine(object.to_world);
-    object.identity = object.to_world == Mat4();
+    object.place(turned_up(up == UpAxis::kGuessed ? guessed_up(obj.mesh, file_box) : up));
 
     for (Vec3d& p : points) p = transform_point(Mat4d(object.to_world), p);
     const Box3d box = bounds_of(points);

@@ -1,6 +1,7 @@
 // This file computes the data that is derived from a scene's description, once for both pipelines.
 #include "common/medium/density_grid.h"
 #include "common/scene/bake.h"
+#include "common/scene/build_scene.h"
 #include "common/scene/emitter_texture.h"
 #include "common/scene/motion_bounds.h"
 #include "common/scene/scene.h"
@@ -16,22 +17,6 @@ namespace {
 /// Beyond this bound the squares of coordinates come close to float's range. It is slightly above 1e18, the limit for
 /// numbers in files.
 constexpr float kMaxCoordinate = 1.001e18f;
-
-/// Checks the scene's references. A broken reference is an error of the program that built the scene, not of a file.
-void check_references(const Scene& scene) {
-    DUET_CHECK_EQ(scene.materials.size(), scene.material_names.size());
-    DUET_CHECK(scene.media.size() <= kMaxMedia);
-    for (const Object& object : scene.objects) {
-        DUET_CHECK_LT(object.shape, scene.shapes.size());
-        DUET_CHECK(!object.materials.empty());
-        for (const std::uint32_t material : object.materials) DUET_CHECK_LT(material, scene.materials.size());
-        const auto* mesh = std::get_if<Mesh>(&scene.shapes[object.shape]);
-        if (mesh == nullptr || mesh->material_slots.empty()) continue;
-        DUET_CHECK_EQ(mesh->material_slots.size(), mesh->triangles.size());
-        DUET_CHECK_LT(*std::max_element(mesh->material_slots.begin(), mesh->material_slots.end()),
-                      object.materials.size());
-    }
-}
 
 void bake_single_objects(Scene& scene) {
     std::vector<std::uint32_t> uses(scene.shapes.size());
@@ -226,7 +211,7 @@ SceneNeeds find_needs(const Scene& scene) {
 
 void finish_scene(Scene& scene) {
     scene.maps.resize(scene.materials.size());
-    check_references(scene);
+    check_scene(scene);
     drop_ineffective(scene);
     build_mipmaps(scene.textures);
     bake_single_objects(scene);

@@ -6,6 +6,15 @@
 
 namespace duet {
 
+void Object::place(const Mat4& start, const Mat4& end) {
+    to_world = start;
+    to_world_end = end;
+    // This is the inverse of the rounded matrix, because the pipelines apply the rounded one.
+    to_object = Mat4(inverse_affine(Mat4d(start)));
+    moving = !(start == end);
+    identity = !moving && start == Mat4();
+}
+
 ObjectTransform object_transform(const Object& object, float time) {
     if (!object.moving) return {object.to_world, object.to_object};
     const Mat4 to_world = lerp(object.to_world, object.to_world_end, time);

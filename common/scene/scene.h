@@ -24,15 +24,20 @@ namespace duet {
 /// Static objects whose shape is used once are baked: their shape is in world space and their transform is the
 /// identity.
 struct Object {
-    std::string name;
+    std::string name{};
     std::uint32_t shape = 0; ///< index into Scene::shapes
     /// These are indices into Scene::materials, one for each material slot of the shape, and at least one.
-    std::vector<std::uint32_t> materials;
+    std::vector<std::uint32_t> materials{};
     std::uint32_t entry = 0;  ///< index of the element of the file's "objects" that the object belongs to
     bool identity = true;     ///< whether to_world is the identity at all times
     bool moving = false;      ///< whether to_world_end differs from to_world
-    Mat4 to_world, to_object; ///< transform at the start of the motion (time 0), and its inverse
-    Mat4 to_world_end;        ///< transform at the end (time 1); entries are interpolated in between
+    Mat4 to_world{}, to_object{}; ///< transform at the start of the motion (time 0), and its inverse
+    Mat4 to_world_end{};          ///< transform at the end (time 1); entries are interpolated in between
+
+    /// Sets the transform at the start and at the end of the motion, and what follows from it.
+    void place(const Mat4& start, const Mat4& end);
+    /// Sets the transform of an object at rest.
+    void place(const Mat4& at) { place(at, at); }
 };
 
 /// SceneNeeds lists the features that the scene uses. Pipelines use it to leave out code paths once, at the start.
@@ -83,8 +88,8 @@ struct Scene {
 };
 
 /// Computes the scene's derived data: surface lights, bounds, needs, and whether meshes are closed. It also bakes
-/// static objects whose shape is used once. This is the last step of every loader, and of tests that build scenes by
-/// hand.
+/// static objects whose shape is used once. This is the last step of every loader, and of programs that build a scene
+/// in code (build_scene.h). Throws Error where the scene's parts do not fit together.
 void finish_scene(Scene& scene);
 
 /// An ObjectTransform is an object's transform and its inverse at a time in [0, 1] of the motion.

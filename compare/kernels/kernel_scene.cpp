@@ -140,9 +140,7 @@ Object make_object(std::uint32_t shape, const Mat4d& to_world) {
     object.name = message("object ", shape);
     object.shape = shape;
     object.materials = {0};
-    object.to_world = object.to_world_end = Mat4(to_world);
-    object.to_object = Mat4(inverse_affine(to_world));
-    object.identity = to_world == Mat4d();
+    object.place(Mat4(to_world));
     return object;
 }
 

@@ -27,9 +27,7 @@ Object object_of(std::uint32_t shape, const Mat4& to_world) {
     Object object;
     object.shape = shape;
     object.materials = {0};
-    object.to_world = object.to_world_end = to_world;
-    object.to_object = Mat4(inverse_affine(Mat4d(to_world)));
-    object.identity = to_world == Mat4();
+    object.place(to_world);
     return object;
 }
 

@@ -141,8 +141,8 @@ TrialScene random_lit_scene(TrialRandom& random, int width, int height) {
     add_contents(scene, random, {true, true, true, true, true}, Mat4());
     for (std::size_t i = 0; i < scene.objects.size(); ++i)
         scene.objects[i].materials = {static_cast<std::uint32_t>(i % scene.materials.size())};
-    scene.objects.back().to_world_end = translation(Vec3(0.2f, 0.1f, 0)) * scene.objects.back().to_world;
-    scene.objects.back().moving = true;
+    Object& last = scene.objects.back();
+    last.place(last.to_world, translation(Vec3(0.2f, 0.1f, 0)) * last.to_world);
     scene.environment = SkyEnvironment{};
     scene.lights = {PointLight{random.vector() * 3.0f, Rgb(5.0f)}, SunLight{random.direction(), Rgb(1.0f)}};
     result.view.camera.aperture_radius = random.coin() ? 0.05 : 0;

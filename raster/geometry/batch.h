@@ -16,11 +16,10 @@ namespace duet::raster {
 struct Fragment {
     std::uint32_t id = 0;
     float reversed_depth = 0;
-    std::uint16_t sample_index : 15 = 0; ///< pixel index in the tile, see tile_sample_index
-    std::uint16_t inside : 1 = 0; ///< well inside the triangle, see edge_margins
+    std::uint16_t sample_index = 0; ///< pixel index in the tile, see tile_sample_index
     std::uint16_t tile = 0;
 };
-static_assert(sizeof(Fragment) == 12 && TileGrid::kTileSize * TileGrid::kTileSize <= 1 << 15);
+static_assert(sizeof(Fragment) == 12 && TileGrid::kTileSize * TileGrid::kTileSize <= 1 << 16);
 
 /// Stores the coverage mask of a triangle that fits into a box of 8 × 8 samples.
 struct CoverageMask {

@@ -115,8 +115,7 @@ void Assembler::add_fragments(const SmallTriangle& small, std::uint64_t samples,
         const int bit = std::countr_zero(bits), across = bit % kSmallSide, down = bit / kSmallSide;
         double reversed_depth = (plane.constant + down * plane.y) + across * plane.x;
         if (plan_->viewport.orthographic) reversed_depth = plan_->viewport.near / reversed_depth;
-        const bool inside = small.well_inside >> bit & 1;
-        if (!inside) {
+        if (!(small.well_inside >> bit & 1)) {
             if (!whole) whole = shape_.unclipped(*object_, small.index);
             reversed_depth = interpolate(*whole, min_offset_.position(small.x + across, small.y + down))
                                  .reversed_depth(plan_->viewport.near);
@@ -126,8 +125,7 @@ void Assembler::add_fragments(const SmallTriangle& small, std::uint64_t samples,
         batch_->fragments.push_back(
             {.id = id,
              .reversed_depth = to_stored_depth(reversed_depth),
-             .sample_index = static_cast<std::uint16_t>(tile_sample_index(column % kSize, row % kSize) & 0x7fff),
-             .inside = inside,
+             .sample_index = static_cast<std::uint16_t>(tile_sample_index(column % kSize, row % kSize)),
              .tile = static_cast<std::uint16_t>(row / kSize * columns + column / kSize)});
     }
 }

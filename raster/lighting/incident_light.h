@@ -58,12 +58,11 @@ template <typename T> IncidentT<T> incident(const SunLight& sun) {
 
 /// Calls use(IncidentT<T>) for each light, at the world-space point returned by position(). position() is not called
 /// for suns, whose light is the same everywhere.
-template <bool kSuns, typename Position, typename Use>
-void for_each_incident(Lights<kSuns> lights, const Position& position, const Use& use) {
+template <typename Position, typename Use>
+void for_each_incident(std::span<const Light> lights, const Position& position, const Use& use) {
     using T = decltype(position().x);
-    for (const Light& light : lights.all) {
-        const auto* sun = std::get_if<SunLight>(&light);
-        if (kSuns || sun != nullptr)
+    for (const Light& light : lights) {
+        if (const auto* sun = std::get_if<SunLight>(&light))
             use(incident<T>(*sun));
         else
             use(incident<T>(light, position()));

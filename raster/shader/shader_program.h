@@ -8,8 +8,6 @@
 #include "raster/shader/sphere_interpolation.h"
 #include "raster/visibility/hit_tile.h"
 
-#include <algorithm>
-#include <cassert>
 #include <optional>
 #include <vector>
 
@@ -58,9 +56,7 @@ public:
         : data_(data), geometry_(geometry), view_(view), shader_(shader), surface_(data, geometry, view),
           interpolator_(geometry.triangles, view, tile, shader, data.scene.needs.footprints),
           ray_directions_(view.pinhole.direction, view.pinhole.direction_dx, view.pinhole.direction_dy, tile),
-          eye_(view.pinhole.origin), only_suns_(std::ranges::all_of(data.scene.lights, [](const Light& light) {
-              return std::holds_alternative<SunLight>(light);
-          })) {
+          eye_(view.pinhole.origin) {
         if (view.viewport.orthographic)
             ray_origins_.emplace(view.pinhole.origin, view.pinhole.origin_dx, view.pinhole.origin_dy, tile);
     }
@@ -86,38 +82,24 @@ private:
     void shade_packets(std::span<const SamplePacket> packets, Colors* colors, std::uint32_t* visible) {
         interpolator_.interpolate_packets(packets, true, [&](std::size_t first, std::span<const ResultPacket> results) {
             for (std::size_t s = 0; s < results.size(); ++s) visible[first + s] = results[s].samples->visible;
-            for (std::size_t s = 0, end; s < results.size(); s = end) {
-                end = s + 1;
-                if (results[s].object_view != nullptr) {
-                    if (is_fast_path(*results[s].object_view))
-                        while (end < results.size() && can_share_loop(&packets[first], results, s, end)) ++end;
-                    shade_solved(&packets[first + s], results.subspan(s, end - s), &colors[first + s]);
-                } else if (results[s].samples->visible != 0) {
+            for (std::size_t s = 0; s < results.size(); ++s) {
+                if (results[s].object_view != nullptr)
+                    shade_solved(packets[first + s], results[s], colors[first + s]);
+                else if (results[s].samples->visible != 0)
                     shade_objects(packets[first + s], *results[s].samples, colors[first + s]);
-                }
             }
         });
     }
 
-    /// Returns true if the specialization for one color, unperturbed normals and suns only (kFastPath) applies.
-    bool is_fast_path(const ObjectView& object) const { return only_suns_ && object.is_uniform(); }
-    /// Returns true if two packets can be shaded by the same loop, because their samples share the object and the
-    /// offset.
-    static bool can_share_loop(const SamplePacket* packets, std::span<const ResultPacket> results, std::size_t a,
-                               std::size_t b) {
-        return results[a].object_view == results[b].object_view && results[a].directions == results[b].directions &&
-               packets[a].offsets == nullptr && packets[b].offsets == nullptr && packets[a].offset == packets[b].offset;
-    }
-
-    /// Shades one packet, or several for which can_share_loop() holds.
-    void shade_solved(const SamplePacket* packets, std::span<const ResultPacket> results, Colors* colors) {
-        const ResultPacket& result = results.front();
-        const SampleOffset offset = packets->offsets != nullptr ? SampleOffset{0, 0} : packets->offset;
+    /// Shades a packet whose samples see one object. `colors` is __restrict, so what its batches share is loaded once.
+    void shade_solved(const SamplePacket& packet, const ResultPacket& result, Colors& __restrict colors) {
+        const SampleOffset offset = packet.offsets != nullptr ? SampleOffset{0, 0} : packet.offset;
         ray_directions_.set_offset(offset);
         if (ray_origins_) ray_origins_->set_offset(offset);
-        if (is_fast_path(*result.object_view)) return shade_as<true>(packets, results, colors);
-        surface_.set_packet(*packets, *result.samples, {&result.b1, &result.b2, &result.b1_steps, &result.b2_steps});
-        shade_as<false>(packets, results, colors);
+        if (!result.object_view->is_uniform())
+            surface_.set_packet(packet, *result.samples, {&result.b1, &result.b2, &result.b1_steps, &result.b2_steps});
+        for (std::size_t i = 0; i < kPacketSize; i += Floats::size)
+            store(colors, i, shader_.template fragment<Floats>(fragment(packet, result, i)));
     }
 
     /// Shades a packet that sees several objects: spheres immediately, triangles later by shade_sub_packets().
@@ -158,7 +140,7 @@ private:
         interpolate_sphere(SpherePacket(view_, packet, sphere, wants_derivatives<S>()), sphere.sphere, shader_,
                            *sphere_view_, result);
         Colors own;
-        shade_solved(&packet, std::span(&result, 1), &own);
+        shade_solved(packet, result, own);
         copy_lanes(lanes, own, colors);
     }
 
@@ -176,44 +158,19 @@ private:
             copy_lanes(sub_packet_visible_[i], sub_packet_colors_[i], *sub_packets_[i].colors);
     }
 
-    template <bool kFastPath>
-    void shade_as(const SamplePacket* packets, std::span<const ResultPacket> results, Colors* colors) const {
-        if constexpr (wants_directions<S>())
-            if (results.front().directions) return shade_together<kFastPath, true>(packets, results, colors);
-        shade_together<kFastPath, false>(packets, results, colors);
-    }
-
-    /// `colors` is __restrict, so what packets share is loaded only once.
-    template <bool kFastPath, bool kFacing>
-    void shade_together(const SamplePacket* packets, std::span<const ResultPacket> results,
-                        Colors* __restrict colors) const {
-        const ObjectView& object = *results.front().object_view;
-        for (std::size_t s = 0; s < results.size(); ++s)
-            for (std::size_t i = 0; i < kPacketSize; i += Floats::size)
-                store(
-                    colors[s], i,
-                    shader_.template fragment<Floats>(fragment<kFastPath, kFacing>(packets[s], results[s], object, i)));
-    }
-
-    template <bool kFastPath, bool kFacing>
-    FragmentOf<S, Floats, kFastPath, kFacing> fragment(const SamplePacket& packet, const ResultPacket& result,
-                                                       const ObjectView& object, std::size_t i) const {
-        const Floats near(static_cast<float>(view_.pinhole.near));
+    FragmentOf<S, Floats> fragment(const SamplePacket& packet, const ResultPacket& result, std::size_t i) const {
+        const Floats near(static_cast<float>(view_.pinhole.near)), depth = load(result.depth, i);
         const Floats reversed_depth = packet.reversed_depth != nullptr
                                           ? Floats::load_aligned(packet.reversed_depth + i)
-                                          : min(near / load(result.depth, i), Floats(1.0f));
-        assert(!kFacing || packet.reversed_depth != nullptr);
-        // A packet solved for directions has no depths. (The reversed depth is 0 where nothing is visible.)
-        const Floats depth = kFacing ? near / xsimd::select(reversed_depth > Floats(0.0f), reversed_depth, Floats(1.0f))
-                                     : load(result.depth, i);
+                                          : min(near / depth, Floats(1.0f));
         return {derivatives(result, i),
-                visible_side<kFacing>(result, i),
+                packet_detail::vector(result.ng, 0, i),
                 varyings_at(result.at, i),
                 ray_origins_ ? vector(*ray_origins_, packet, i) : broadcast<Floats>(eye_),
                 vector(ray_directions_, packet, i),
                 depth,
                 reversed_depth,
-                object,
+                *result.object_view,
                 surface_,
                 i};
     }
@@ -241,13 +198,6 @@ private:
         }
         return result;
     }
-    template <bool kFacing>
-    static VisibleSide<Floats, kFacing> visible_side(const ResultPacket& result, std::size_t i) {
-        if constexpr (kFacing)
-            return {};
-        else
-            return {packet_detail::vector(result.ng, 0, i)};
-    }
     static auto derivatives(const ResultPacket& result, std::size_t i) {
         if constexpr (wants_derivatives<S>())
             return ScreenDerivatives<VaryingBatch, true>{varyings_at(result.dx, i), varyings_at(result.dy, i)};
@@ -269,7 +219,6 @@ private:
     std::vector<Colors> sub_packet_colors_;
     std::vector<std::uint32_t> sub_packet_visible_;
     std::optional<ObjectView> sphere_view_; ///< view of the last sphere shaded
-    bool only_suns_;                        ///< true if all lights of the scene are suns
 };
 
 /// Implements a ShaderProgram that owns a copy of its shader.

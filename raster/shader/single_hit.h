@@ -75,7 +75,7 @@ Rgb shade_single_hit(const RasterSceneData& data, const PassView& view, const S&
     const Source colors(data.scene, at, -direction);
     return shader.template fragment<float>(FragmentOf<S, float>{
         derivatives,
-        {at.ng},
+        at.ng,
         interpolated(at.weights),
         Vec3(pinhole.origin + pinhole.origin_dx * pixel.x + pinhole.origin_dy * pixel.y),
         direction,

@@ -14,7 +14,6 @@ template <VertexShader S>
 void interpolate_sphere(const SpherePacket& at, const Sphere& sphere, const S& shader, const ObjectView& object,
                         InterpolatedPacket<S, float>& result) {
     result.object_view = &object;
-    result.directions = false;
     result.depth = at.depth;
     const Vec3T<Floats> center = broadcast<Floats>(sphere.center);
     const Floats radius(sphere.radius), one(1.0f);

@@ -34,9 +34,9 @@ template <typename T> struct PhongFactors {
 
 /// Returns the radiance of a surface under all lights. `base` is the base color, `ambient` the radiance from all
 /// directions, and position() returns the world-space point.
-template <typename T, bool kSuns, typename Position>
-RgbT<T> phong(Lights<kSuns> lights, Rgb ambient, RgbT<T> base, const Position& position, const Direction<T>& n,
-              const Direction<T>& wo) {
+template <typename T, typename Position>
+RgbT<T> phong(std::span<const Light> lights, Rgb ambient, RgbT<T> base, const Position& position,
+              const Direction<T>& n, const Direction<T>& wo) {
     RgbT<T> sum = base * broadcast<T>(ambient);
     const RgbT<T> diffuse = base * T(kPhongDiffuse);
     for_each_incident(lights, position, [&](const IncidentT<T>& light) {
@@ -61,7 +61,7 @@ template <typename T> struct PhongLight {
 };
 /// Returns the light at the world-space point that position() returns.
 template <typename T, typename Position>
-PhongLight<T> phong_light(Lights<false> lights, const Position& position, const Direction<T>& n,
+PhongLight<T> phong_light(std::span<const Light> lights, const Position& position, const Direction<T>& n,
                           const Direction<T>& wo) {
     PhongLight<T> sum{RgbT<T>(T(0)), RgbT<T>(T(0))};
     for_each_incident(lights, position, [&](const IncidentT<T>& light) {
@@ -90,7 +90,7 @@ struct VertexLighting {
     template <typename T> using Varyings = PhongLight<T>;
 
     template <typename T> static Varyings<T> light(const VertexInput<T>& v, Vec3T<T> p, Vec3T<T> n) {
-        return phong_light(Lights<false>{v.object.data.scene.lights}, [&] { return p; }, Direction<T>{n, T(1)},
+        return phong_light(std::span(v.object.data.scene.lights), [&] { return p; }, Direction<T>{n, T(1)},
                            Direction<T>{v.object.to_viewer(p), T(1)});
     }
     template <typename T, typename F> RgbT<T> fragment(const F& f) const {

@@ -120,9 +120,6 @@ void DepthTile::clear_block(std::size_t block) {
     std::fill_n(reversed_depth_.begin() + static_cast<std::ptrdiff_t>(block * kBlockSamples), kBlockSamples, 0.0f);
     std::fill_n(ids_.begin() + static_cast<std::ptrdiff_t>(block * kBlockSamples), kBlockSamples,
                 static_cast<std::int32_t>(kNoTriangle));
-    constexpr std::size_t kPacketsPerBlock = kBlockSamples / kPacketSize;
-    std::fill_n(inside_.begin() + static_cast<std::ptrdiff_t>(block * kPacketsPerBlock), kPacketsPerBlock,
-                std::uint16_t{0});
 }
 
 void DepthTile::clear_undrawn() {
@@ -182,7 +179,6 @@ void DepthTile::depth_test_batch(std::size_t sample_index, std::int32_t number, 
     const auto wins = xsimd::bool_cast(xsimd::select(xsimd::bool_cast(lanes), bits, Ints(-1)) > to_beat);
     xsimd::select(wins, reversed_depth, before).store_aligned(&reversed_depth_[sample_index]);
     xsimd::select(xsimd::bool_cast(wins), id, id_before).store_aligned(&ids_[sample_index]);
-    inside_[sample_index / kPacketSize] |= static_cast<std::uint16_t>(lane_bits(wins) << sample_index % kPacketSize);
 }
 
 /// Draws the samples of one packet of a block, from `first` on. depth_at(i) returns the reversed depths of the
@@ -248,7 +244,7 @@ void DepthTile::draw_edge_samples(const DrawTriangle& triangle, const UnclippedT
         const int bit = std::countr_zero(samples), x = x0 + bit % kBlock, y = y0 + bit / kBlock;
         const Interpolated here = at.at(offset_.position(x, y), all.triangle_kind);
         depth_test_sample(block * kBlockSamples + static_cast<std::size_t>(bit), triangle.id,
-                          to_stored_depth(here.reversed_depth(viewport_.near)), false);
+                          to_stored_depth(here.reversed_depth(viewport_.near)));
     }
 }
 
@@ -298,19 +294,16 @@ void DepthTile::draw(const CoverageMask& mask) {
 }
 
 void DepthTile::draw(std::span<const Fragment> fragments) {
-    for (const Fragment& f : fragments) depth_test_sample(f.sample_index, f.id, f.reversed_depth, f.inside);
+    for (const Fragment& f : fragments) depth_test_sample(f.sample_index, f.id, f.reversed_depth);
 }
 
-void DepthTile::depth_test_sample(std::size_t sample_index, std::uint32_t id, float reversed_depth, bool inside) {
+void DepthTile::depth_test_sample(std::size_t sample_index, std::uint32_t id, float reversed_depth) {
     begin_block(sample_index / kBlockSamples);
     const auto number = static_cast<std::int32_t>(id);
     const bool tie_won = reversed_depth == reversed_depth_[sample_index] && number < ids_[sample_index];
     if (!(reversed_depth > reversed_depth_[sample_index] || tie_won)) return;
     reversed_depth_[sample_index] = reversed_depth;
     ids_[sample_index] = number;
-    const auto bit = static_cast<std::uint16_t>(1u << sample_index % kPacketSize);
-    std::uint16_t& packet = inside_[sample_index / kPacketSize];
-    packet = static_cast<std::uint16_t>(inside ? packet | bit : packet & ~bit);
 }
 
 void DepthTile::update_farthest(std::size_t block) {

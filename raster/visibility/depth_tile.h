@@ -36,7 +36,7 @@ public:
     void draw(std::span<const Fragment> fragments);
     /// Draws one sample of pixel (x, y).
     void draw(int x, int y, std::uint32_t id, float reversed_depth) {
-        depth_test_sample(sample_index(x, y), id, reversed_depth, false);
+        depth_test_sample(sample_index(x, y), id, reversed_depth);
     }
 
     const PixelRect& rect() const { return rect_; }
@@ -60,9 +60,6 @@ public:
     /// The arrays are in storage order. They are valid in blocks drawn to, and everywhere after clear_undrawn().
     const std::int32_t* ids() const { return ids_.data(); }
     const float* reversed_depth() const { return reversed_depth_.data(); }
-    /// Returns one bit per sample of the packet that starts at `sample_index`, set if the sample lies inside the
-    /// unsnapped visible triangle (edge_margins).
-    std::uint32_t inside(std::size_t sample_index) const { return inside_[sample_index / kPacketSize]; }
     /// Returns true if any sample of the block was drawn to.
     bool drawn(std::size_t block) const { return drawn_[block]; }
 
@@ -86,7 +83,7 @@ private:
     void depth_test_batch(std::size_t sample_index, std::int32_t id, const Floats& reversed_depth, const Lanes& lanes);
     void draw_edge_samples(const DrawTriangle& triangle, const UnclippedTriangles& whole, std::size_t block,
                            std::uint64_t samples);
-    void depth_test_sample(std::size_t sample_index, std::uint32_t id, float reversed_depth, bool inside);
+    void depth_test_sample(std::size_t sample_index, std::uint32_t id, float reversed_depth);
     void update_farthest(std::size_t block);
     void clear_block(std::size_t block);
     void begin_block(std::size_t block) {
@@ -99,8 +96,6 @@ private:
     Viewport viewport_;
     alignas(64) std::array<float, kTileSamples> reversed_depth_;
     alignas(64) std::array<std::int32_t, kTileSamples> ids_;
-    static_assert(kPacketSize == 16);
-    std::array<std::uint16_t, kTileSamples / kPacketSize> inside_; ///< one mask per packet
     /// No sample of a block has less reversed depth than its bound.
     alignas(64) std::array<float, kBlocks * kBlocks> farthest_;
     std::array<std::uint8_t, kBlocks * kBlocks>

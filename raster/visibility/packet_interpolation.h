@@ -23,12 +23,8 @@ template <VertexShader S, typename D> struct InterpolatedPacket {
     PacketOf<D> depth;      ///< camera-space −z, meters
     /// Derivatives of b1 and b2 along the row and the column, if requested.
     std::array<PacketOf<float>, 2> b1_steps, b2_steps;
-    /// A sample's bit is set if it is certainly inside the unsnapped triangle, where the solution is accurate. No
-    /// bits are set for directions.
+    /// A sample's bit is set if it is certainly inside the unsnapped triangle, where the solution is accurate.
     std::uint32_t inside = 0;
-    /// Only the direction of `at` is known, nothing else but `samples` is set, and all normals are on the visible
-    /// side (SetupPacket::affine_ok).
-    bool directions = false;
 };
 
 /// Solves for the samples of a packet if all see triangles of one object. S's vertex function computes the
@@ -77,9 +73,6 @@ private:
     void interpolate_at(const PacketSetups& samples, const Positions& positions, ResultPacket& result) const;
     template <typename Lookup, typename Positions>
     void interpolate_lanes(const Lookup& lookup, const Positions& positions, ResultPacket& result) const;
-    bool may_interpolate_directions(const SamplePacket& packet, const PacketSetups& samples) const;
-    template <typename Lookup, typename Positions>
-    static void interpolate_directions(const Lookup& lookup, const Positions& positions, ResultPacket& result);
     template <typename Lookup>
     static void interpolate_varyings(const Lookup& lookup, std::size_t i, ResultPacket& result);
     void recompute_inexact_samples(const SamplePacket& packet, const PacketSetups& samples, ResultPacket& result) const;
@@ -108,7 +101,7 @@ struct NoVaryings {
 };
 /// Interpolates only the vertex normals, which the fragment function normalizes.
 struct NormalVaryings {
-    static constexpr bool kTextureCoordinates = false, kDirections = true;
+    static constexpr bool kTextureCoordinates = false;
     template <typename T> struct Varyings { Vec3T<T> n; };
     template <typename T> Varyings<T> vertex(const VertexInput<T>& v) const { return {v.n}; }
 };
@@ -225,44 +218,11 @@ void PacketInterpolator<S, D>::interpolate_varyings(const Lookup& lookup, std::s
     }
 }
 
-/// Computes the varyings times Σe, which are linear in the image. The factor does not change their direction.
-template <VertexShader S, typename D>
-template <typename Lookup, typename Positions>
-void PacketInterpolator<S, D>::interpolate_directions(const Lookup& lookup, const Positions& positions,
-                                                      ResultPacket& result) {
-    if constexpr (Setups::kDirections)
-        for (std::size_t i = 0; i < kPacketSize; i += Floats::size) {
-            const Floats x = positions.x(i), y = positions.y(i);
-            for (std::size_t c = 0; c < kCount; ++c) {
-                const auto coefficient = [&](std::size_t k) {
-                    return lookup.template get<float>(
-                        i, [c, k](const Setups& s) -> const PacketOf<float>& { return s.directions[c][k]; });
-                };
-                store(result.at[c], i,
-                      multiply_add(coefficient(0), x, multiply_add(coefficient(1), y, coefficient(2))));
-            }
-        }
-}
-
-/// Returns true if directions suffice: all samples are certainly inside their triangles, and no attribute depends
-/// on the position on the triangle.
-template <VertexShader S, typename D>
-bool PacketInterpolator<S, D>::may_interpolate_directions(const SamplePacket& packet,
-                                                          const PacketSetups& samples) const {
-    return Setups::kDirections && (samples.visible & ~(samples.on_mesh & packet.inside)) == 0 &&
-           samples.all_affine_ok();
-}
-
 template <VertexShader S, typename D>
 template <typename Positions>
 void PacketInterpolator<S, D>::interpolate_at(const PacketSetups& samples, const Positions& positions,
                                               ResultPacket& result) const {
-    samples.with_lookup([&](const auto& lookup) {
-        if (result.directions)
-            interpolate_directions(lookup, positions, result);
-        else
-            interpolate_lanes(lookup, positions, result);
-    });
+    samples.with_lookup([&](const auto& lookup) { interpolate_lanes(lookup, positions, result); });
 }
 
 template <VertexShader S, typename D>
@@ -291,7 +251,6 @@ void PacketInterpolator<S, D>::interpolate_one(const SamplePacket& packet, const
     if (samples.on_mesh == 0) return;
     setups_.use(*samples.object, *samples.shape, samples.first_id);
     result.object_view = &setups_.object();
-    result.directions = may_interpolate_directions(packet, samples);
     if (packet.offsets == nullptr) {
         if (packet.offset != grid_offset_) set_grid(packet.offset);
         const auto column = static_cast<std::size_t>(packet.x - origin_x_),
@@ -306,7 +265,6 @@ void PacketInterpolator<S, D>::interpolate_one(const SamplePacket& packet, const
         }
         interpolate_at(samples, positions, result);
     }
-    if (result.directions) return;
     result.inside &= samples.on_mesh;
     if (recompute_inexact) recompute_inexact_samples(packet, samples, result);
 }

@@ -23,7 +23,6 @@ inline SamplePacket sample_packet(const DepthTile& tile, int x, int y, std::uint
             .y = y,
             .ids = tile.ids() + sample_index,
             .reversed_depth = tile.reversed_depth() + sample_index,
-            .inside = tile.inside(sample_index),
             .offset = tile.offset()};
 }
 inline SamplePacket sample_packet(const DepthTile& tile, int x, int y) {

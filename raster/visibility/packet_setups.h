@@ -25,8 +25,6 @@ template <VertexShader S, typename D> struct PacketSetups : PacketPrimitives {
 
     /// Groups the setups into pairs. It must be called after SetupCache::finish().
     void find_pairs(const SetupCache<S, D>& setups);
-    /// Returns true if SetupPacket::affine_ok holds for all visible triangles.
-    bool all_affine_ok() const;
     /// Calls use(lookup), where lookup.get() looks up a value of each sample's setup (see below).
     template <typename Use> void with_lookup(const Use& use) const {
         const Pair& pair = pairs[0];
@@ -108,23 +106,6 @@ template <VertexShader S, typename D> void PacketSetups<S, D>::find_pairs(const 
         const auto in_second = xsimd::bool_cast(lanes_from<float>(seconds >> i));
         store(lanes, i, load(lanes, i) + xsimd::select(in_second, Ints(kEach), Ints(0)));
     }
-}
-
-template <VertexShader S, typename D> bool PacketSetups<S, D>::all_affine_ok() const {
-    std::uint32_t affine_ok = 0;
-    for (std::size_t k = 0; k < pair_count; ++k) {
-        const auto& pair = pairs[k];
-        const std::uint32_t of_pair = pair.first->affine_ok | pair.second->affine_ok << kPacketSize;
-        if (of_pair == ~std::uint32_t{0}) { // the common case
-            affine_ok |= pair.samples;
-            continue;
-        }
-        for (std::size_t i = 0; i < kPacketSize; i += Ints::size) {
-            const Ints bit = Ints(1) << load(lanes, i);
-            affine_ok |= pair.samples & lane_bits((Ints(static_cast<std::int32_t>(of_pair)) & bit) != Ints(0)) << i;
-        }
-    }
-    return affine_ok == (1u << kPacketSize) - 1;
 }
 
 } // namespace duet::raster

@@ -15,7 +15,6 @@ struct SamplePacket {
     /// The reversed depths (DepthTile::reversed_depth) are aligned to 64 bytes. If the pointer is null, they must be
     /// computed.
     const float* reversed_depth = nullptr;
-    std::uint32_t inside = 0;          ///< one bit per sample that is known to lie inside the unsnapped triangle
     SampleOffset offset;               ///< of every sample in its pixel
     const std::array<SampleOffset, kPacketSize>* offsets = nullptr; ///< per-sample offsets; null: all use `offset`
 

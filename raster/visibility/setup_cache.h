@@ -24,7 +24,6 @@ namespace duet::raster {
 template <VertexShader S, typename D> struct SetupPacket {
     using Plane = std::array<PacketOf<D>, 3>;
     using VaryingPackets = std::array<PacketOf<float>, kVaryings<S>>;
-    static constexpr bool kDirections = wants_directions<S>() && std::is_same_v<D, float>;
     /// This is the upper bound of M/Σe, where M = steepest·(|x| + |y|) + greatest bounds the terms of a plane.
     /// M/Σe is about the triangle's length over its height in pixels, or its farthest depth in the tile over the
     /// sample's depth. Beyond this bound, the planes are too inaccurate.
@@ -35,11 +34,6 @@ template <VertexShader S, typename D> struct SetupPacket {
     PacketOf<D> steepest, greatest; ///< maxima over e1, e2 and sum: of |coefficient| of x and y, and of 1
     VaryingPackets n, n1, n2;       ///< varyings at the first corner, and their derivatives along the two barycentrics
     std::array<PacketOf<float>, 3> ng; ///< as VertexInput::ng
-    /// These are the planes Σ(e·varying) relative to the tile's corner, only for shaders with kDirections.
-    std::array<std::array<PacketOf<float>, 3>, kDirections ? kVaryings<S> : 0> directions;
-    /// A triangle's bit is set if `directions` may replace its varyings: M/Σe is at most kSteepest everywhere in the
-    /// tile, and all corner normals are on the visible side.
-    std::uint32_t affine_ok;
 };
 
 /// Caches the setups of mesh and quad triangles, for one view of a tile. S's vertex function computes the varyings.
@@ -86,8 +80,6 @@ private:
     std::uint32_t set_up_planes(const Corners& corners, Setups& to) const;
     void set_up_varyings(std::size_t i, const Corners& corners, Floats side, std::uint32_t second_halves,
                          Setups& to) const;
-    void set_up_directions(std::size_t i, Setups& to) const;
-    std::uint32_t facing(std::size_t i, const Corners& corners, const Setups& of) const;
 
     const Triangles& triangles_;
     const PassView& view_;
@@ -99,7 +91,6 @@ private:
     const ObjectView* object_view_ = nullptr;
     std::map<std::uint32_t, ObjectView> object_views_;
 
-    static constexpr float kMinCosine = 0.125f;
     static constexpr std::size_t kCapacity = 1024, kMost = kCapacity / kPacketSize, kTableSize = kCapacity;
     static constexpr std::uint64_t kEmptySlot = std::uint64_t{kNoTriangle} << 32;
     /// This direct-mapped table holds (id, slot), indexed by the lower bits of the id. A triangle whose entry was
@@ -254,43 +245,6 @@ void SetupCache<S, D>::set_up_varyings(std::size_t i, const Corners& corners, Fl
     store(to.ng[2], i, ng.z);
 }
 
-/// Computes the planes e0·n0 + e1·n1 + e2·n2, with Σe − e1 − e2 for e0, for one batch of triangles from the
-/// i-th on. It requires their planes and varyings.
-template <VertexShader S, typename D> void SetupCache<S, D>::set_up_directions(std::size_t i, Setups& to) const {
-    if constexpr (Setups::kDirections)
-        for (std::size_t c = 0; c < kVaryings<S>; ++c) {
-            const Floats n = load(to.n[c], i), n1 = load(to.n1[c], i), n2 = load(to.n2[c], i);
-            const auto coefficient = [&](std::size_t k) {
-                return multiply_add(load(to.e1[k], i), n1,
-                                    multiply_add(load(to.e2[k], i), n2, Floats(load(to.sum[k], i) * n)));
-            };
-            const Floats by_x = coefficient(0), by_y = coefficient(1);
-            store(to.directions[c][0], i, by_x);
-            store(to.directions[c][1], i, by_y);
-            store(to.directions[c][2], i,
-                  negated_multiply_add(by_x, load(to.x, i), negated_multiply_add(by_y, load(to.y, i), coefficient(2))));
-        }
-}
-
-/// Returns one bit per triangle of the batch from the i-th on, set if the cosine between ng and each corner's
-/// normal exceeds kMinCosine. The interpolated normal then has at least this length, so its direction has an
-/// error of at most 45ε·kSteepest / kMinCosine, about 2^-7.5 (40ε with fused multiply-add; mostly less than 2^-12,
-/// because steep planes and inclined normals seldom coincide).
-template <VertexShader S, typename D>
-std::uint32_t SetupCache<S, D>::facing(std::size_t i, const Corners& corners, const Setups& of) const {
-    const Vec3T<Floats> ng =
-        object_view_->normal(Vec3T<Floats>{load(of.ng[0], i), load(of.ng[1], i), load(of.ng[2], i)});
-    const Floats of_ng = inverse_sqrt(dot(ng, ng));
-    std::uint32_t all = (1u << Floats::size) - 1;
-    for (const auto& corner : corners) {
-        const Vec3T<Floats> n =
-            object_view_->normal(Vec3T<Floats>{load(corner[4], i), load(corner[5], i), load(corner[6], i)});
-        const Floats cosine = dot(n, ng) * inverse_sqrt(dot(n, n)) * of_ng;
-        all &= lane_bits(cosine > Floats(kMinCosine));
-    }
-    return all << i;
-}
-
 /// Loads eight values for each of three corners: position and u, normal and v.
 template <VertexShader S, typename D>
 void SetupCache<S, D>::gather_vertices(const PacketOf<std::int32_t>& ids, Corners& corners) const {
@@ -348,11 +302,6 @@ std::uint32_t SetupCache<S, D>::set_up_planes(const Corners& corners, Setups& to
         }
         // Under perspective Σ(e·depth) is constant, and its coefficients of x and y are rounding noise.
         if (view_.viewport.orthographic) move(planes.depth_sum);
-        // Σe is smallest at the farthest corner k, where it is eₖ = determinant / w. `most` bounds M in the tile,
-        // with the origin at the tile's corner. It includes the error of moving the plane's origin there and back.
-        const Doubles farthest = max(max(w[0], w[1]), w[2]),
-                      most = multiply_add(steepest, Doubles(4.0) * size, greatest);
-        to.affine_ok |= lane_bits(abs(planes.determinant) * Doubles(double{Setups::kSteepest}) >= most * farthest) << i;
         const Doubles scale = Doubles(1.0) / max(steepest, greatest);
         for (std::size_t c = 0; c < 3; ++c) {
             store_rounded(to.e1[c], i, planes.e1[c] * scale);
@@ -390,21 +339,13 @@ template <VertexShader S, typename D>
 void SetupCache<S, D>::set_up(const PacketOf<std::int32_t>& ids, Setups& to) const {
     Corners corners;
     gather_vertices(ids, corners);
-    to.affine_ok = 0;
     // A front face runs counter-clockwise in the image (y points down) unless the object is mirrored.
     std::uint32_t front = set_up_planes(corners, to);
     if (object_->mirrored) front = ~front;
     const std::uint32_t halves = second_halves(ids);
-    std::uint32_t facing_bits = 0;
-    for (std::size_t i = 0; i < kPacketSize; i += Floats::size) {
+    for (std::size_t i = 0; i < kPacketSize; i += Floats::size)
         set_up_varyings(i, corners, xsimd::select(lanes_from<float>(front >> i), Floats(1.0f), Floats(-1.0f)), halves,
                         to);
-        if (Setups::kDirections && object_view_->smooth && object_view_->is_uniform())
-            facing_bits |= facing(i, corners, to);
-    }
-    to.affine_ok &= facing_bits;
-    if (to.affine_ok != 0)
-        for (std::size_t i = 0; i < kPacketSize; i += Floats::size) set_up_directions(i, to);
 }
 
 } // namespace duet::raster

@@ -155,52 +155,33 @@ template <typename V> struct ScreenDerivatives<V, true> {
     V dx, dy;
 };
 
-/// Holds what FragmentInput has unless all normals are on the visible side.
-template <typename T, bool kFacing> struct VisibleSide {
-    Vec3T<T> ng; ///< geometric normal on the visible side, in object space, of any length
-};
-/// Nothing is needed where all normals are on the visible side.
-template <typename T> struct VisibleSide<T, true> {};
-
-/// Holds the lights of a scene. If kSuns is true, all of them are suns.
-template <bool kSuns> struct Lights {
-    std::span<const Light> all;
-};
-
 /// Holds the input of a fragment function, which is a sample with a visible surface. dx and dy exist if the shader
-/// requests derivatives. If kFastPath is true, the object has one color, no map perturbs its normals, and all lights
-/// are suns; then there are no virtual calls, and batches stay in registers. If kFacing is true, all interpolated
-/// normals are on the visible side, and ng does not exist (wants_directions).
-template <typename T, typename V, bool kDerivatives, bool kFastPath, bool kFacing>
-struct FragmentInput : ScreenDerivatives<V, kDerivatives>, VisibleSide<T, kFacing> {
-    V at;                  ///< perspective-correct interpolated varyings
-    Vec3T<T> origin, direction; ///< world-space camera ray; `way` has camera-space −z = 1
-    T depth;               ///< camera-space −z, meters
-    T reversed_depth;      ///< near / depth, in (0, 1]
+/// requests derivatives.
+template <typename T, typename V, bool kDerivatives> struct FragmentInput : ScreenDerivatives<V, kDerivatives> {
+    Vec3T<T> ng;                ///< geometric normal on the visible side, in object space, of any length
+    V at;                       ///< perspective-correct interpolated varyings
+    Vec3T<T> origin, direction; ///< world-space camera ray; `direction` has camera-space −z = 1
+    T depth;                    ///< camera-space −z, meters
+    T reversed_depth;           ///< near / depth, in (0, 1]
     const ObjectView& object;
     const ColorSource& colors;
     std::size_t first; ///< index in the packet of lane 0's sample
 
     Vec3T<T> p() const { return origin + direction * depth; } ///< in world space
-    Lights<kFastPath> lights() const { return {object.data.scene.lights}; }
+    std::span<const Light> lights() const { return object.data.scene.lights; }
     Direction<T> wo() const { return {direction, -inverse_sqrt(dot(direction, direction))}; } ///< towards the viewer
     /// Returns the world-space shading normal on the visible side from an interpolated object-space normal n. A
     /// normal or bump map overrides n.
     Direction<T> normal(Vec3T<T> n) const {
-        return !kFastPath && object.has_normal_map ? Direction<T>{mapped_normal(), T(1)} : smooth_normal(n);
+        return object.has_normal_map ? Direction<T>{mapped_normal(), T(1)} : smooth_normal(n);
     }
     /// Returns the shading normal without normal and bump maps.
-    Direction<T> smooth_normal(Vec3T<T> n) const {
-        if constexpr (kFacing)
-            return Direction<T>::of(object.normal(n));
-        else
-            return object.shading_normal(n, this->ng);
-    }
+    Direction<T> smooth_normal(Vec3T<T> n) const { return object.shading_normal(n, ng); }
     /// Returns the base color, with filtered textures.
     RgbT<T> base_color() const;
     /// Adds the emitted radiance of an emissive material.
     RgbT<T> with_emitted(RgbT<T> reflected) const {
-        return !kFastPath && object.is_emissive ? reflected + emitted() : reflected;
+        return object.is_emissive ? reflected + emitted() : reflected;
     }
 
 private:
@@ -214,9 +195,9 @@ private:
     return colors.base_colors(first);
 }
 
-template <typename T, typename V, bool kDerivatives, bool kFastPath, bool kFacing>
-RgbT<T> FragmentInput<T, V, kDerivatives, kFastPath, kFacing>::base_color() const {
-    if (kFastPath || object.color) return broadcast<T>(*object.color);
+template <typename T, typename V, bool kDerivatives>
+RgbT<T> FragmentInput<T, V, kDerivatives>::base_color() const {
+    if (object.color) return broadcast<T>(*object.color);
     if constexpr (std::same_as<T, float>)
         return colors.base_color(first);
     else
@@ -229,8 +210,8 @@ RgbT<T> FragmentInput<T, V, kDerivatives, kFastPath, kFacing>::base_color() cons
     return {x, y, z};
 }
 
-template <typename T, typename V, bool kDerivatives, bool kFastPath, bool kFacing>
-Vec3T<T> FragmentInput<T, V, kDerivatives, kFastPath, kFacing>::mapped_normal() const {
+template <typename T, typename V, bool kDerivatives>
+Vec3T<T> FragmentInput<T, V, kDerivatives>::mapped_normal() const {
     if constexpr (std::same_as<T, float>)
         return colors.mapped_normal(first);
     else
@@ -243,8 +224,8 @@ Vec3T<T> FragmentInput<T, V, kDerivatives, kFastPath, kFacing>::mapped_normal() 
     return {r, g, b};
 }
 
-template <typename T, typename V, bool kDerivatives, bool kFastPath, bool kFacing>
-RgbT<T> FragmentInput<T, V, kDerivatives, kFastPath, kFacing>::emitted() const {
+template <typename T, typename V, bool kDerivatives>
+RgbT<T> FragmentInput<T, V, kDerivatives>::emitted() const {
     if constexpr (std::same_as<T, float>)
         return colors.emitted(first);
     else
@@ -266,18 +247,8 @@ template <typename S> constexpr bool wants_texture_coordinates() {
     else
         return true;
 }
-/// Returns true if only the directions of a shader's varyings matter. `static constexpr bool kDirections = true;`
-/// declares that its fragment function returns the same result for any positive multiple of all varyings and does
-/// not read ng. This saves the division by depth.
-template <typename S> constexpr bool wants_directions() {
-    if constexpr (requires { S::kDirections; })
-        return S::kDirections && !wants_derivatives<S>();
-    else
-        return false;
-}
 template <typename S, typename T> using VaryingsOf = typename S::template Varyings<T>;
-template <typename S, typename T, bool kFastPath = false, bool kFacing = false>
-using FragmentOf = FragmentInput<T, VaryingsOf<S, T>, wants_derivatives<S>(), kFastPath, kFacing>;
+template <typename S, typename T> using FragmentOf = FragmentInput<T, VaryingsOf<S, T>, wants_derivatives<S>()>;
 
 /// This is the number of floats in a shader's varyings, which are interpolated one by one.
 template <typename S> inline constexpr std::size_t kVaryings =
@@ -316,13 +287,9 @@ concept FragmentOutput = std::same_as<O, RgbT<T>> || std::same_as<O, SurfaceAttr
 /// compared with light.
 template <typename S>
 concept Shader = VertexShader<S> &&
-    requires(const S& s, const FragmentOf<S, float>& one, const FragmentOf<S, Floats>& many,
-             const FragmentOf<S, Floats, true>& fast_path,
-             const FragmentOf<S, Floats, true, wants_directions<S>()>& facing) {
+    requires(const S& s, const FragmentOf<S, float>& one, const FragmentOf<S, Floats>& many) {
     { s.template fragment<float>(one) } -> FragmentOutput<float>;
     { s.template fragment<Floats>(many) } -> FragmentOutput<Floats>;
-    { s.template fragment<Floats>(fast_path) } -> FragmentOutput<Floats>;
-    { s.template fragment<Floats>(facing) } -> FragmentOutput<Floats>;
 };
 
 } // namespace duet::raster

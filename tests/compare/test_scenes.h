@@ -1,7 +1,7 @@
 // This header builds simple scenes for the tests of compare/.
 #pragma once
 
-#include "common/scene/scene.h"
+#include "common/scene/build_scene.h"
 
 namespace duet::test {
 
@@ -18,16 +18,7 @@ inline Scene empty_scene(int width = 64, int height = 48) {
 
 /// Adds a shape with a transform, and with an end transform if it moves. Returns the object's index.
 inline std::uint32_t add(Scene& scene, Shape shape, const Mat4& to_world = {}, const Mat4* to_world_end = nullptr) {
-    Object object;
-    object.shape = static_cast<std::uint32_t>(scene.shapes.size());
-    object.materials = {0};
-    object.to_world = to_world;
-    object.to_object = inverse_affine(to_world);
-    object.to_world_end = to_world_end != nullptr ? *to_world_end : to_world;
-    object.moving = !(object.to_world_end == object.to_world);
-    object.identity = !object.moving && to_world == Mat4{};
-    scene.shapes.push_back(std::move(shape));
-    scene.objects.push_back(std::move(object));
+    add_object(scene, "", std::move(shape), 0).place(to_world, to_world_end != nullptr ? *to_world_end : to_world);
     return static_cast<std::uint32_t>(scene.objects.size() - 1);
 }
 

@@ -45,21 +45,6 @@ Scene slivers() {
     return scene;
 }
 
-/// Returns the same triangles with vertex normals, some of which point to the other side.
-Scene smooth_slivers() {
-    Scene scene = slivers();
-    std::mt19937 random(2);
-    std::normal_distribution<float> lean(0, 0.4f);
-    Mesh& mesh = std::get<Mesh>(scene.shapes[0]);
-    mesh.normals.resize(mesh.positions.size());
-    for (const auto& [a, b, c] : mesh.triangles) {
-        const Vec3 ng = normalize(cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a]));
-        for (const std::uint32_t corner : {a, b, c})
-            mesh.normals[corner] = normalize(ng + Vec3(lean(random), lean(random), lean(random)));
-    }
-    return scene;
-}
-
 /// Returns a wall of kAcross × kAcross cells with two triangles each. The indices of any eight adjacent triangles are
 /// 1024 apart, so neighbors compete for the same slots of a table.
 constexpr std::uint32_t kAcross = 64;
@@ -113,16 +98,6 @@ struct PacketImage {
         }
     }
 };
-
-/// Returns whether a sample is inside its unsnapped triangle, by the signs of its edge functions in double.
-bool lies_inside(const raster::UnclippedTriangle& whole, Vec2d pixel) {
-    const raster::FixedPoint beside{static_cast<int>(pixel.x) * raster::kSubpixels,
-                                    static_cast<int>(pixel.y) * raster::kSubpixels};
-    const raster::Interpolation planes(whole.a, whole.b, whole.c, beside);
-    return std::ranges::all_of(planes.e, [&](const Vec3d& e) {
-        return e.x * (pixel.x - planes.origin_x) + e.y * (pixel.y - planes.origin_y) + e.z >= 0;
-    });
-}
 
 } // namespace
 
@@ -211,28 +186,6 @@ TEST_SUITE("unit") {
         }
     }
 
-    TEST_CASE("coverage vouches only for samples that lie in their unsnapped triangles, and for most of those") {
-        for (const View& view : {perspective(), orthographic()}) {
-            const PacketImage shown_image(slivers(), view);
-            int vouched = 0, wrong = 0, inside = 0;
-            shown_image.for_each_tile([&](const raster::PixelRect&, std::span<const raster::SamplePacket> packets) {
-                for (const raster::SamplePacket& place : packets)
-                    for (std::size_t i = 0; i < raster::kPacketSize; ++i) {
-                        const auto id = static_cast<std::uint32_t>(place.ids[i]);
-                        if (id == raster::kNoTriangle) continue;
-                        const bool lies = lies_inside(shown_image.geometry.triangles.unclipped(id), place.position(i));
-                        vouched += place.inside >> i & 1;
-                        wrong += (place.inside >> i & 1) && !lies;
-                        inside += lies;
-                    }
-            });
-            CHECK(wrong == 0);
-            CHECK(vouched > 20'000);
-            CHECK(vouched > inside * 0.9);
-            CHECK(vouched < inside); // it cannot decide at the edges
-        }
-    }
-
     TEST_CASE("a quad is solved side by side, as two triangles, and its diagonal does not show") {
         using raster::kPacketSize, raster::NoVaryings, raster::PacketInterpolator;
         Scene scene;
@@ -314,50 +267,6 @@ TEST_SUITE("unit") {
             CHECK(worst < 1e-5); // relative to a radius of 40
             CHECK(worst_depth < 1e-6);
             CHECK(wrong_side <= 2); // viewed exactly edge-on
-        }
-    }
-
-    TEST_CASE("directions of normals are those of the exact ray's hit, and taken only where they face the viewer") {
-        using raster::kPacketSize, raster::NormalVaryings, raster::PacketInterpolator;
-        const Scene scene = smooth_slivers();
-        const Mesh& mesh = std::get<Mesh>(scene.shapes[0]);
-        for (const View& view : {perspective(), orthographic()}) {
-            const PacketImage shown_image(scene, view);
-            const NormalVaryings normals;
-            int results = 0, of_directions = 0, turned = 0;
-            double worst = 0;
-            shown_image.for_each_tile([&](const raster::PixelRect& rect,
-                                          std::span<const raster::SamplePacket> packets) {
-                PacketInterpolator<NormalVaryings, float> solver(shown_image.geometry.triangles, shown_image.pass, rect,
-                                                                 normals, false);
-                solver.interpolate_packets(
-                    packets, true, each([&](std::size_t s, const auto& result) {
-                        results += result.samples->on_mesh != 0;
-                        if (result.samples->on_mesh == 0 || !result.directions) return;
-                        ++of_directions;
-                        for (std::size_t i = 0; i < kPacketSize; ++i) {
-                            if (!(result.samples->visible >> i & 1)) continue;
-                            const raster::Interpolated at =
-                                interpolate(shown_image.geometry.triangles.unclipped(result.samples->id(i)),
-                                            packets[s].position(i));
-                            const auto& corner = mesh.triangles[result.samples->index(i)];
-                            const auto number = [&](std::size_t k) { return Vec3d(mesh.normals[corner[k]]); };
-                            const auto p = [&](std::size_t k) { return Vec3d(mesh.positions[corner[k]]); };
-                            const Vec3d wanted = normalize(number(0) * at.b0 + number(1) * at.b1 + number(2) * at.b2);
-                            const Vec3d n = normalize(Vec3d(Vec3(result.at[0][i], result.at[1][i], result.at[2][i])));
-                            worst = std::max(worst, length(n - wanted));
-                            const Vec3d way = shown_image.pinhole.ray(packets[s].position(i)).direction,
-                                        ng = cross(p(1) - p(0), p(2) - p(0));
-                            turned += dot(ng, way) * dot(ng, n) > 0; // the visible side of the face is opposite to n
-                        }
-                    }));
-            });
-            CHECK(results > 1000);
-            CHECK(of_directions > results / 20);
-            CHECK(of_directions < results * 0.9); // flipped normals and slivers are not among them
-            CHECK(turned == 0);
-            CHECK(worst < 0x1p-16);
-            CHECK(worst > 0x1p-20);
         }
     }
 }

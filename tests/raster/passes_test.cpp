@@ -16,8 +16,7 @@ Scene varied() {
     add(scene, QuadList{{{Vec3(-3, -0.6f, 3), Vec3(6, 0, 0), Vec3(0, 0, -6)}}});
     add(scene, QuadList{{{Vec3(-1, 3, -1), Vec3(2, 0, 0), Vec3(0, 0, 2)}}}, Mat4(), Emissive{Rgb(8.0f)});
     Object& mover = add(scene, Sphere{Vec3(0, 0, 0), 0.3f}, Mat4(translation(Vec3(-1.5f, 0, 0))));
-    mover.to_world_end = Mat4(translation(Vec3(-1, 0.3f, 0)));
-    mover.moving = true;
+    mover.place(mover.to_world, Mat4(translation(Vec3(-1, 0.3f, 0))));
     scene.environment = SkyEnvironment{};
     finish_scene(scene);
     return scene;
@@ -118,9 +117,7 @@ TEST_SUITE("unit") {
         Scene scene;
         Object& mover =
             add(scene, QuadList{{{Vec3(-8, -4, 0), Vec3(8, 0, 0), Vec3(0, 8, 0)}}}, Mat4(), Diffuse{{Rgb(1.0f)}});
-        mover.moving = true;
-        mover.identity = false;
-        mover.to_world_end = Mat4(translation(Vec3(2, 0, 0))); // its right edge moves from x = 0 to x = 2
+        mover.place(Mat4(), Mat4(translation(Vec3(2, 0, 0)))); // its right edge moves from x = 0 to x = 2
         finish_scene(scene);
         View view{look({0, 0, 5}, {0, 0, 0}), 64, 8};
         view.camera.projection = Camera::Projection::kOrthographic;

@@ -2,7 +2,7 @@
 // against every primitive.
 #pragma once
 
-#include "common/scene/scene.h"
+#include "common/scene/build_scene.h"
 #include "raster/render.h"
 
 #include <algorithm>
@@ -40,25 +40,15 @@ inline Mesh turned_inside_out(Mesh mesh) {
 
 /// Adds an object with the given material, or gray diffuse by default.
 inline Object& add(Scene& scene, Shape shape, const Mat4& to_world = Mat4(), Material material = Diffuse{}) {
-    scene.shapes.push_back(std::move(shape));
-    scene.materials.push_back(std::move(material));
-    scene.material_names.push_back("material " + std::to_string(scene.materials.size()));
-    Object object;
-    object.shape = static_cast<std::uint32_t>(scene.shapes.size() - 1);
-    object.materials = {static_cast<std::uint32_t>(scene.materials.size() - 1)};
-    object.identity = to_world == Mat4();
-    object.to_world = object.to_world_end = to_world;
-    object.to_object = Mat4(inverse_affine(Mat4d(to_world)));
-    scene.objects.push_back(object);
-    return scene.objects.back();
+    const std::uint32_t index =
+        add_material(scene, "material " + std::to_string(scene.materials.size() + 1), std::move(material));
+    return add_object(scene, "", std::move(shape), index, to_world);
 }
 
 /// Adds a second instance of an existing shape, which also prevents the first from being baked.
 inline void add_instance(Scene& scene, std::size_t of, const Mat4& to_world) {
     Object object = scene.objects[of];
-    object.identity = to_world == Mat4();
-    object.to_world = object.to_world_end = to_world;
-    object.to_object = Mat4(inverse_affine(Mat4d(to_world)));
+    object.place(to_world);
     scene.objects.push_back(object);
 }
 

@@ -162,8 +162,7 @@ TEST_SUITE("unit") {
     TEST_CASE("forty spots over what moves: their maps are coarser than requested, fit in memory, and that is told") {
         Scene scene = floor_scene();
         Object& box = add(scene, QuadList{box_quads(Vec3(-0.5f, 0, -0.5f), Vec3(0.5f, 1, 0.5f))});
-        box.moving = true;
-        box.to_world_end = translation(Vec3(0.1f, 0, 0));
+        box.place(box.to_world, translation(Vec3(0.1f, 0, 0)));
         for (int i = 0; i < 40; ++i)
             scene.lights.push_back(
                 SpotLight{Vec3(0, 3 + 0.1f * static_cast<float>(i), 0), Vec3(0, -1, 0), Rgb(1), 0.8f, 0.7f});
@@ -187,8 +186,7 @@ TEST_SUITE("unit") {
     TEST_CASE("what moves does not shade itself by its own motion, and leaves a blurred shadow") {
         Scene scene = floor_scene();
         Object& ball = add(scene, Sphere{Vec3(0, 0, 0), 0.3f}, translation(Vec3(-1, 1, 0)));
-        ball.moving = true;
-        ball.to_world_end = translation(Vec3(1, 1, 0));
+        ball.place(ball.to_world, translation(Vec3(1, 1, 0)));
         scene.lights.push_back(SunLight{normalize(Vec3(0.1f, -1, 0.1f)), Rgb(2)});
         finish_scene(scene);
         raster::RasterSettings settings;
@@ -205,8 +203,7 @@ TEST_SUITE("unit") {
         // The sphere is alone, without a floor to shade, and must be fully lit.
         Scene alone;
         Object& other = add(alone, Sphere{Vec3(0, 0, 0), 0.3f}, translation(Vec3(-1, 1, 0)));
-        other.moving = true;
-        other.to_world_end = translation(Vec3(1, 1, 0));
+        other.place(other.to_world, translation(Vec3(1, 1, 0)));
         alone.lights = scene.lights;
         alone.camera = scene.camera;
         finish_scene(alone);

@@ -32,11 +32,7 @@ struct SceneBuilder {
         object.name = "object " + std::to_string(scene.objects.size());
         object.shape = shape_index;
         object.materials = {material};
-        object.to_world = begin;
-        object.to_world_end = end;
-        object.to_object = Mat4(inverse_affine(Mat4d(begin)));
-        object.moving = !(begin == end);
-        object.identity = begin == Mat4() && !object.moving;
+        object.place(begin, end);
         scene.objects.push_back(std::move(object));
         return static_cast<std::uint32_t>(scene.objects.size() - 1);
     }

@@ -126,12 +126,7 @@ private:
         object.shape = *node.shape;
         object.entry = entry_;
         object.materials = node.materials;
-        object.to_world = Mat4(motion.start);
-        object.to_world_end = Mat4(motion.end);
-        // This is the inverse of the rounded matrix, because the pipelines apply the rounded one.
-        object.to_object = Mat4(inverse_affine(Mat4d(object.to_world)));
-        object.moving = !(object.to_world == object.to_world_end);
-        object.identity = !object.moving && object.to_world == Mat4();
+        object.place(Mat4(motion.start), Mat4(motion.end));
         scene_->objects.push_back(std::move(object));
     }
 

@@ -1,6 +1,6 @@
 // These tests check what finish_scene computes: baked transforms that leave the visible surface unchanged, lights on
 // the correct side, bounds, and required features.
-#include "common/scene/scene.h"
+#include "common/scene/build_scene.h"
 
 #include "common/geometry/quad.h"
 #include "common/geometry/sphere.h"
@@ -10,6 +10,8 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <functional>
+#include <limits>
 #include <random>
 
 using namespace duet;
@@ -23,11 +25,7 @@ Object placed(std::uint32_t shape, const Mat4d& to_world, const Mat4d& end) {
     object.name = message("object ", shape);
     object.shape = shape;
     object.materials = {0};
-    object.to_world = Mat4(to_world);
-    object.to_world_end = Mat4(end);
-    object.to_object = Mat4(inverse_affine(Mat4d(object.to_world)));
-    object.moving = !(object.to_world == object.to_world_end);
-    object.identity = !object.moving && object.to_world == Mat4();
+    object.place(Mat4(to_world), Mat4(end));
     return object;
 }
 
@@ -118,6 +116,42 @@ const SurfaceLight& only_light(const Scene& scene) {
 } // namespace
 
 TEST_SUITE("unit") {
+
+    TEST_CASE("a scene in code whose parts do not fit together is refused, and the message names the part") {
+        const auto ring = [] {
+            Scene scene;
+            const std::uint32_t gray = add_material(scene, "gray", Diffuse{});
+            add_object(scene, "patch", Mesh{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, .triangles = {{0, 1, 2}}},
+                       gray, Mat4(translation(Vec3(1, 2, 3))));
+            return scene;
+        };
+        const auto error_after = [&](const std::function<void(Scene&)>& change) {
+            Scene scene = ring();
+            change(scene);
+            return error_of([&] { finish_scene(scene); });
+        };
+        const auto mesh = [](Scene& scene) -> Mesh& { return std::get<Mesh>(scene.shapes[0]); };
+        constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+        const std::vector<std::pair<std::function<void(Scene&)>, const char*>> cases{
+            {[](Scene&) {}, "no error"},
+            {[](Scene& s) { s.material_names.clear(); }, "found 0 material names, expected 1"},
+            {[](Scene& s) { s.objects[0].shape = 1; }, "\"patch\"'s shape: found the index 1, expected one below 1"},
+            {[](Scene& s) { s.objects[0].materials = {3}; }, "\"patch\"'s material: found the index 3"},
+            {[](Scene& s) { s.objects[0].materials.clear(); }, "\"patch\": it has no material"},
+            {[](Scene& s) { s.objects[0].identity = true; }, "\"patch\": Object::place() was not called"},
+            {[](Scene& s) { s.objects[0].moving = true; }, "\"patch\": Object::place() was not called"},
+            {[](Scene& s) { std::get<Diffuse>(s.materials[0]).albedo.texture = 0; },
+             "a texture of the material \"gray\": found the index 0, expected one below 0"},
+            {[&](Scene& s) { mesh(s).triangles[0][2] = 3; }, "found the vertex 3 in triangle 0, expected one below 3"},
+            {[&](Scene& s) { mesh(s).positions[1].y = kNan; }, "the vertex 1 is not finite"},
+            {[&](Scene& s) { mesh(s).normals.resize(2); }, "found 2 normals, expected 0 or 3"},
+            {[&](Scene& s) { mesh(s).uvs.resize(4); }, "found 4 texture coordinates, expected 0 or 3"},
+            {[&](Scene& s) { mesh(s).material_slots = {1}; }, "found the material slot 1, expected one below 1"},
+            {[](Scene& s) { s.camera.look_at = s.camera.eye; }, "look_at must not be where its eye is"},
+            {[](Scene& s) { s.lights = {SunLight{{0, -2, 0}, Rgb(1.0f)}}; }, "a sun's direction has the length 2"},
+        };
+        for (const auto& [change, expected] : cases) CHECK(says(error_after(change), expected));
+    }
 
     TEST_CASE("Baked objects look as before, mirrored or not") {
         std::mt19937 random(3);
