@@ -31,13 +31,13 @@ Mesh torus(std::uint32_t around, std::uint32_t across) {
 
 Scene gold_ring() {
     Scene scene;
-    const std::uint32_t gold =
-        add_material(scene, "gold", Metal{.roughness = 0.3f, .conductor = find_conductor("gold")});
+    const Metal metal{.roughness = 0.3f, .conductor = find_conductor("gold").value()};
+    const std::uint32_t gold = add_material(scene, "gold", metal);
     const std::uint32_t clay = add_material(scene, "clay", Diffuse{Rgb(0.5f)});
-    const std::uint32_t lamp = add_material(scene, "lamp", Emissive{Rgb(20.0f)});
+    const std::uint32_t glow = add_material(scene, "glow", Emissive{Rgb(20.0f)});
     add_object(scene, "ring", torus(96, 48), gold, translation(Vec3(0, 0.4f, 0)));
     add_object(scene, "ground", QuadList{{{Vec3(-9, 0, 9), Vec3(18, 0, 0), Vec3(0, 0, -18)}}}, clay);
-    add_object(scene, "lamp", Sphere{Vec3(2, 4, 1), 0.5f}, lamp);
+    add_object(scene, "light", Sphere{Vec3(2, 4, 1), 0.5f}, glow);
     scene.environment = SkyEnvironment{};
     scene.camera.eye = {0, 2.5, 4};
     scene.camera.look_at = {0, 0.3, 0};
