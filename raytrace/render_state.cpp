@@ -24,7 +24,8 @@ void check(const View& view, const PathTracerSettings& settings) {
         throw Error(
             "adaptive sampling gives pixels different numbers of samples: expected no shard, and a sampler whose "
             "samples do not depend on how many there are");
-    if (settings.max_depth < 0) throw Error(message("depth ", settings.max_depth, ": expected at least 0"));
+    if (settings.max_depth < 0 || settings.max_depth > PathTracerSettings::kMostDepth)
+        throw Error(message("depth ", settings.max_depth, ": expected 0 to ", PathTracerSettings::kMostDepth));
 }
 
 // Returns the view, checked before anything is made of it.

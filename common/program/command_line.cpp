@@ -140,21 +140,17 @@ std::string CommandLine::unknown_argument(std::string_view first) const {
     const auto given = std::ranges::find_if(subcommands_, [](const auto& one) { return one->app_->parsed(); });
     if (given != subcommands_.end()) return (*given)->unknown_argument({});
     std::vector<std::string> names;
-    const auto explain = [&](const char* what, std::string_view found) {
-        return what + quoted_text(found) + suggestion(found, {names.begin(), names.end()});
-    };
     if (!subcommands_.empty() && !first.empty() && !first.starts_with('-')) {
-        std::string list;
-        for (const auto& one : subcommands_) {
-            names.push_back(one->app_->get_name());
-            list += (list.empty() ? "; expected one of " : ", ") + names.back();
-        }
-        return explain("unknown subcommand ", first) + list;
+        for (const auto& one : subcommands_) names.push_back(one->app_->get_name());
+        return "unknown subcommand " + quoted_text(first) + suggestion_or_list(first, {names.begin(), names.end()});
     }
     for (const CLI::Option* option : app_->get_options())
         for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
     for (const std::string& argument : app_->remaining())
-        if (argument.starts_with("-")) return explain("unknown option ", argument.substr(0, argument.find('=')));
+        if (argument.starts_with("-")) {
+            const std::string option = argument.substr(0, argument.find('='));
+            return "unknown option " + quoted_text(option) + suggestion(option, {names.begin(), names.end()});
+        }
     return {};
 }
 

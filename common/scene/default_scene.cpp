@@ -1,5 +1,6 @@
 #include "common/scene/default_scene.h"
 
+#include "common/scene/build_scene.h"
 #include "common/scene/obj/add_obj_materials.h"
 #include "common/system/error.h"
 
@@ -98,9 +99,7 @@ Scene default_scene_for_mesh(const std::filesystem::path& path, UpAxis up) {
     Object floor;
     floor.name = "ground";
     floor.shape = 1;
-    floor.materials = {static_cast<std::uint32_t>(scene.materials.size())};
-    scene.materials.push_back(Diffuse{{Rgb(0.3f)}}); // darker than the sky at the horizon
-    scene.material_names.push_back("ground");
+    floor.materials = {add_material(scene, "ground", Diffuse{{Rgb(0.3f)}})}; // darker than the sky at the horizon
     scene.shapes.push_back(std::move(obj.mesh));
     // Two sides of the ground are parallel to the image, so that the horizon is level.
     const Vec3d forward = scene.camera.look_at - scene.camera.eye;

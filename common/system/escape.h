@@ -10,8 +10,8 @@ namespace duet {
 /// for each byte that is not part of valid UTF-8. The result is one line.
 std::string escaped(std::string_view text);
 
-/// Returns the text in double quotes, cut to 60 bytes. Control characters and non-ASCII bytes are escaped, so that
-/// any content of a file fits on one line of an error message.
+/// Returns the text in double quotes, cut to 60 bytes and escaped, so that any content of a file fits on one line of an
+/// error message.
 std::string quoted_text(std::string_view text);
 
 /// Returns the text with the entities of HTML and SVG for &, < and ", so that it can be an element's or an attribute's.

@@ -31,18 +31,12 @@ std::size_t file_size(std::ifstream& in, const fs::path& path) {
     return static_cast<std::size_t>(end);
 }
 
-/// Large meshes of the project's own scenes are generated.
-std::string hint_at_generator(const fs::path& path) {
-    if (path.parent_path().filename() != "generated") return {};
-    return "; the build targets \"models\" and \"gallery-models\" generate this folder's files";
-}
-
 } // namespace
 
 std::ifstream open_file(const fs::path& path, std::uint64_t limit) {
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
-    if (!fs::exists(status)) throw Error(message(path.string(), ": no such file", hint_at_generator(path)));
+    if (!fs::exists(status)) throw Error(message(path.string(), ": no such file"));
     if (!fs::is_regular_file(status)) throw Error(message(path.string(), ": not a regular file"));
     std::ifstream in(path, std::ios::binary);
     const std::size_t size = file_size(in, path);

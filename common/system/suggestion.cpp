@@ -40,4 +40,15 @@ std::string suggestion(std::string_view name, const std::vector<std::string_view
     return nearest.empty() ? "" : "; did you mean " + quoted_text(nearest) + "?";
 }
 
+std::string listed(const std::vector<std::string_view>& names) {
+    std::string list;
+    for (const std::string_view name : names) list += (list.empty() ? "" : ", ") + quoted_text(name);
+    return list;
+}
+
+std::string suggestion_or_list(std::string_view name, const std::vector<std::string_view>& known) {
+    const std::string nearest = suggestion(name, known);
+    return nearest.empty() ? "; expected one of " + listed(known) : nearest;
+}
+
 } // namespace duet

@@ -2,6 +2,7 @@
 #include "common/program/command_line.h"
 #include "compare/arguments.h"
 #include "compare/bench/bench.h"
+#include "raytrace/settings.h"
 
 namespace duet::compare {
 
@@ -34,7 +35,7 @@ void add_bench(CommandLine& program) {
         .positive();
     bench.add("--size", options.size, "Image size WIDTHxHEIGHT (default: the scene's shape with 65536 pixels)");
     bench.add("--depth", options.choice.depth, "The path tracer's scattering events at most (default 64)")
-        .range(0, 1 << 20);
+        .range(0, raytrace::PathTracerSettings::kMostDepth);
     bench.add("--threads", options.choice.threads, "Threads (default: all)").range(1, 1024);
     bench.add("--seed", options.measure.seed, "Seeds count up from the one after this (default 0)").range(0, 1 << 30);
     bench.add_parsed(

@@ -42,10 +42,31 @@ bool is_sphere(const Scene& scene, std::uint32_t index) {
     return sphere != nullptr && !object.moving && transformed(*sphere, object.to_world);
 }
 
+/// Returns the radius of a tube with the volume and the surface of an object, 2·volume/area, in meters.
+float tube_radius(const RasterSceneData& data, std::uint32_t index) {
+    const Object& object = data.scene.objects[index];
+    const Shape& shape = data.scene.shapes[object.shape];
+    const Vec3d center(data.objects[index].bounds.center());
+    double volume = 0, area = 0; // six times the one, twice the other
+    for (std::uint32_t i = 0; i < primitive_count(shape); ++i) {
+        const PrimitiveVertices vertices = primitive_vertices(shape, i);
+        const auto at = [&](int k) {
+            return transform_point(Mat4d(object.to_world), Vec3d(vertices.p[static_cast<std::size_t>(k)])) - center;
+        };
+        for (int k = 2; k < vertices.count; ++k) {
+            const Vec3d a = at(0), b = at(k - 1), c = at(k);
+            volume += dot(a, cross(b, c));
+            area += length(cross(b - a, c - a));
+        }
+    }
+    return area > 0 ? static_cast<float>(2 * abs(volume) / 6 / (area / 2)) : 0.0f;
+}
+
 } // namespace
 
 GlassShapes::GlassShapes(const RasterSceneData& data, const RasterSettings& settings) {
     std::vector<std::uint32_t> objects = data.glass;
+    std::erase_if(objects, [&](std::uint32_t i) { return !data.objects[i].closed; });
     const auto mapped = std::stable_partition(objects.begin(), objects.end(),
                                               [&](std::uint32_t i) { return is_sphere(data.scene, i); });
     const auto spheres = static_cast<std::size_t>(mapped - objects.begin());
@@ -59,11 +80,10 @@ GlassShapes::GlassShapes(const RasterSceneData& data, const RasterSettings& sett
         Shape& shape = shapes_[i];
         shape.center = Vec3d(bounds.center());
         if (i < spheres) return;
-        const Vec3 extent = bounds.diagonal();
         if (is_inside(data, objects[i], shape.center))
             shape.map = shape_of(data, settings, objects[i], shape.center);
         else
-            shape.local_radius = std::min({extent.x, extent.y, extent.z}) / 2;
+            shape.local_radius = tube_radius(data, objects[i]);
     });
     for (std::size_t i = 0; i < objects.size(); ++i) of_object_[objects[i]] = i;
 }

@@ -11,7 +11,8 @@ namespace duet::raster {
 
 /// Holds the shapes of a scene's glass objects. Spheres at rest are exact. Other shapes are exact up to the resolution
 /// of a map, if each ray from the center leaves them once. A ring, or another object whose center lies outside of it,
-/// is taken for a ball that touches it wherever a ray enters.
+/// is taken for a ball that touches it wherever a ray enters, of the radius of a tube with its volume and surface.
+/// Surfaces that enclose nothing have no shape.
 class GlassShapes {
 public:
     GlassShapes(const RasterSceneData& data, const RasterSettings& settings);
@@ -34,7 +35,7 @@ private:
     struct Shape {
         Vec3d center;
         std::optional<OctahedralMap> map; ///< outward normal and distance; a sphere needs none
-        std::optional<float> local_radius; ///< of balls that touch the object from within, in meters; has no center
+        std::optional<float> local_radius; ///< of the balls that touch it from within, in meters
     };
     std::vector<Shape> shapes_;
     std::vector<std::size_t> of_object_; ///< shapes_.size() if it has none

@@ -42,20 +42,20 @@ AmbientLight ambient_light(const RasterSceneData& data, const RasterSettings& se
 void add_indirect_light(const RasterSettings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
                         Planes3& radiance) {
     add_reflected(settings, gbuffer, radiance, [&](int x, int y, const RgbT<Floats>&, const auto& lit) {
-        return probes.irradiance(gbuffer.projection.eye(), gbuffer.points(x, y), gbuffer.normal.vector(x, y), lit);
+        return probes.irradiance(gbuffer.projection, gbuffer.points(x, y), gbuffer.normal.vector(x, y), lit);
     });
 }
 
 void add_indirect_light(const RasterSettings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
                         GtaoImage& half, Planes3& radiance) {
     half.add_irradiance(settings.threads, [&](const Vec3T<Floats>& p, const Vec3T<Floats>& n, const auto& lanes) {
-        return probes.irradiance(gbuffer.projection.eye(), p, n, lanes);
+        return probes.irradiance(gbuffer.projection, p, n, lanes);
     });
     add_reflected(settings, gbuffer, radiance, [&](int x, int y, const RgbT<Floats>& albedo, const auto& lit) {
         auto [visible, irradiance, found] = half.lit_at(x, y);
         if (const auto alone = lit & !found; xsimd::any(alone)) // surfaces thinner than the pixels of half resolution
             irradiance = blend(alone,
-                               probes.irradiance(gbuffer.projection.eye(), gbuffer.points(x, y),
+                               probes.irradiance(gbuffer.projection, gbuffer.points(x, y),
                                                  gbuffer.normal.vector(x, y), alone),
                                irradiance);
         return irradiance * RgbT<Floats>{with_bounces(visible, albedo.r), with_bounces(visible, albedo.g),

@@ -22,7 +22,8 @@ using Vec3s = Vec3T<Floats>;
 constexpr int kDistanceSide = 16; ///< texels of an octahedral map of distances
 /// Before their visibility is judged, points are moved off their surface and towards the viewer by these fractions of
 /// the distance between probes, as the maps of distances are coarse (Majercik et al. 2021, "Scaling Probe-Based
-/// Real-Time Dynamic Global Illumination for Production", §4.1). Below a roof, the normal alone leads along it.
+/// Real-Time Dynamic Global Illumination for Production", §4.1). The normal alone does not lead away from a corner, such
+/// as that of a wall with a roof, and light would leak in there.
 constexpr float kNormalBias = 0.2f, kViewBias = 0.3f;
 /// Points beyond the outermost probes are interpolated where they would be this fraction of a cell further in, since
 /// the outermost probes may be hidden.
@@ -162,7 +163,7 @@ IrradianceHarmonics IrradianceProbes::gather(const ProbeCapture& capture, int bo
             const GBuffer& g = face.gbuffer;
             const RgbT<Floats> albedo = g.diffuse.color(p.x, p.y) + g.specular.color(p.x, p.y);
             const RgbT<Floats> arriving =
-                irradiance(g.projection.eye(), g.points(p.x, p.y), g.normal.vector(p.x, p.y), seen);
+                irradiance(g.projection, g.points(p.x, p.y), g.normal.vector(p.x, p.y), seen);
             light += blend(seen, albedo * arriving * Floats(kInvPi), RgbT<Floats>(Floats(0.0f)));
         }
         if (hazy) light += face.haze.color(p.x, p.y) * around;
@@ -194,7 +195,7 @@ private:
     static Floats visibility(const Probe& probe, const Vec3s& to_probe, const Vec3s& n) {
         const Floats squared = max(dot(to_probe, to_probe), Floats(1e-20f)), over = inverse_sqrt(squared);
         const Floats distance = squared * over, cosine = dot(to_probe, n) * over, half(0.5f), one(1.0f);
-        // Probes behind the surface count less, but smoothly, so that no edge shows (Majercik et al., §5.2).
+        // Probes behind the surface count less, but smoothly, so that no edge shows (Majercik et al. 2019, §5.2).
         const Floats front = (cosine + one) * half;
         const auto [mean, mean_square] = probe.distance.at<2>(-to_probe);
         const Floats variance = max(mean_square - mean * mean, Floats(1e-4f) * mean_square);
@@ -265,16 +266,17 @@ RgbT<Floats> IrradianceProbes::mean_radiance(const Vec3d& eye, const Vec3s& p, c
 }
 
 /// Returns by how much a point is moved for the test of what it sees: at most half of the way to the viewer.
-Vec3s IrradianceProbes::bias(const Vec3s& p, const Vec3s& n) const {
+Vec3s IrradianceProbes::bias(const Vec3s& n, const Vec3s& to_viewer) const {
     const auto step = static_cast<float>(std::min({step_.x, step_.y, step_.z}));
-    const Floats over = inverse_sqrt(max(dot(p, p), Floats(std::numeric_limits<float>::min())));
-    return n * Floats(kNormalBias * step) - p * min(Floats(kViewBias * step) * over, Floats(0.5f));
+    const Floats over = inverse_sqrt(max(dot(to_viewer, to_viewer), Floats(std::numeric_limits<float>::min())));
+    return n * Floats(kNormalBias * step) + to_viewer * min(Floats(kViewBias * step) * over, Floats(0.5f));
 }
 
-RgbT<Floats> IrradianceProbes::irradiance(const Vec3d& eye, const Vec3s& p, const Vec3s& n, const Mask& mask) const {
+RgbT<Floats> IrradianceProbes::irradiance(const Vec3d& eye, const Vec3s& p, const Vec3s& n, const Vec3s& to_viewer,
+                                          const Mask& mask) const {
     const Place place = place_of(eye, p);
     const std::array<Floats, 9> basis = harmonics(n);
-    const Vec3s at = p + bias(p, n);
+    const Vec3s at = p + bias(n, to_viewer);
     RgbT<Floats> result(Floats(0.0f));
     for_each_cell(place.cells, lane_bits(mask), [&](std::int32_t base, const Mask& own) {
         Floats sum(0.0f);

@@ -19,9 +19,14 @@ public:
     IrradianceProbes(const RasterSceneData& data, const RasterSettings& settings);
 
     /// Returns the irradiance at points relative to the eye at `eye`, with unit normals; unspecified in lanes that
-    /// `mask` leaves out.
+    /// `mask` leaves out. Nothing lies between the points and p + to_viewer.
     RgbT<Floats> irradiance(const Vec3d& eye, const Vec3T<Floats>& p, const Vec3T<Floats>& n,
-                            const xsimd::batch_bool<float>& mask) const;
+                            const Vec3T<Floats>& to_viewer, const xsimd::batch_bool<float>& mask) const;
+    /// The same for points that a camera sees.
+    RgbT<Floats> irradiance(const ScreenProjection& camera, const Vec3T<Floats>& p, const Vec3T<Floats>& n,
+                            const xsimd::batch_bool<float>& mask) const {
+        return irradiance(camera.eye(), p, n, camera.to_viewer(p) * camera.distance(p), mask);
+    }
     /// Returns the mean radiance from all directions at points in space. Walls do not stop it between two probes. Far
     /// from the probes it is that of the sky, as far as they see it; `sky` may be empty.
     RgbT<Floats> mean_radiance(const Vec3d& eye, const Vec3T<Floats>& p, const AmbientLight& sky) const;
@@ -53,7 +58,7 @@ private:
                               const Floats& cells) const;
     struct Place;
     Place place_of(const Vec3d& eye, const Vec3T<Floats>& p) const;
-    Vec3T<Floats> bias(const Vec3T<Floats>& p, const Vec3T<Floats>& n) const;
+    Vec3T<Floats> bias(const Vec3T<Floats>& n, const Vec3T<Floats>& to_viewer) const;
     template <typename Visit> void for_each_neighbor(std::size_t probe, const Visit& visit) const;
     struct Corner;
 

@@ -52,8 +52,11 @@ public:
         const Floats entering =
             Floats(1.0f) - specular_albedo(LobeLookup()(alpha_, cosine, lanes), f0_, alpha_, cosine).g;
         const auto exit = data_.glass_shapes->exit(object, gbuffer_.projection.eye(), p_, n_, in.w);
-        if (!exit) // light leaves in the direction it came from
-            return lookup_(p_, n_, w_, alpha_, lanes) * entering * (tint * tint);
+        if (!exit) { // small glass: light leaves in the direction it came from
+            if (data_.objects[static_cast<std::size_t>(object)].closed)
+                return lookup_(p_, n_, w_, alpha_, lanes) * entering * (tint * tint);
+            return lookup_(p_, n_ * Floats(-1.0f), in.w, alpha_, lanes) * entering * tint; // as into water
+        }
         // All light that does not leave at once leaves later; most of it in about the same direction.
         const Refracted out = refract(in.w, exit->n * Floats(-1.0f), Floats(1 / glass.ior));
         const auto absorbed = [&](float per_meter) { return xsimd::exp(exit->length * Floats(-per_meter)); };

@@ -164,7 +164,7 @@ template <typename T, typename V, bool kDerivatives> struct FragmentInput : Scre
     T depth;                    ///< camera-space −z, meters
     T reversed_depth;           ///< near / depth, in (0, 1]
     const ObjectView& object;
-    const ColorSource& colors;
+    const ColorSource& colors; ///< for base_color(), normal() and with_emitted() alone
     std::size_t first; ///< index in the packet of lane 0's sample
 
     Vec3T<T> p() const { return origin + direction * depth; } ///< in world space

@@ -1,4 +1,5 @@
 // These tests compare each light effect of the rasterizer with the path tracer's value of the same quantity.
+#include "common/scene/build_scene.h"
 #include "compare/metrics/error_metrics.h"
 #include "raster/render.h"
 #include "raytrace/render.h"
@@ -111,13 +112,7 @@ TEST_SUITE("statistical") {
     TEST_CASE("area lights over rough metal: transformed cosines have the measured error") {
         Scene scene;
         const auto add = [&](Shape shape, Material material) {
-            scene.shapes.push_back(std::move(shape));
-            scene.materials.push_back(std::move(material));
-            scene.material_names.push_back("material " + std::to_string(scene.materials.size()));
-            Object object;
-            object.shape = static_cast<std::uint32_t>(scene.shapes.size() - 1);
-            object.materials = {object.shape};
-            scene.objects.push_back(object);
+            add_object(scene, "", std::move(shape), add_material(scene, "", std::move(material)));
         };
         add(QuadList{{{Vec3(-3, 0, 3), Vec3(6, 0, 0), Vec3(0, 0, -6)}}}, Metal{{Rgb(0.9f, 0.7f, 0.4f)}, 0.4f});
         add(QuadList{{{Vec3(-1, 1, -2), Vec3(2, 0, 0), Vec3(0, 1, 0)}}},

@@ -46,18 +46,6 @@ std::string describe(JsonRange range) {
     return message("in [", number_text(range.low), ", ", number_text(range.high), "]");
 }
 
-std::string listed(const std::vector<std::string_view>& names) {
-    std::string list;
-    for (const std::string_view name : names) list += (list.empty() ? "" : ", ") + quoted_text(name);
-    return list;
-}
-
-std::string unknown_key(const std::string& key, const std::vector<std::string_view>& known) {
-    const std::string text = "unknown key " + quoted_text(key), nearest = suggestion(key, known);
-    if (!nearest.empty()) return text + nearest;
-    return text + ", expected one of " + listed(known);
-}
-
 bool is_identifier(std::string_view key) {
     return !key.empty() && key.size() <= 60 && std::all_of(key.begin(), key.end(), [](char c) {
         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
@@ -147,7 +135,8 @@ void JsonValue::check_keys(const JsonKeys& keys) const {
     std::vector<std::string_view> known = keys.required;
     known.insert(known.end(), keys.optional.begin(), keys.optional.end());
     for (const std::string& key : node_->keys)
-        if (std::find(known.begin(), known.end(), key) == known.end()) fail(unknown_key(key, known));
+        if (std::find(known.begin(), known.end(), key) == known.end())
+            fail("unknown key " + quoted_text(key) + suggestion_or_list(key, known));
     for (const std::string_view key : keys.required) at(key);
 }
 

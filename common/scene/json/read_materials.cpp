@@ -161,10 +161,7 @@ float read_ior(const JsonValue& owner, float fallback) {
 /// Fails because none of the known names is `name`.
 [[noreturn]] void fail_unknown(const JsonValue& name, std::string_view what,
                                const std::vector<std::string_view>& known) {
-    std::string hint = suggestion(name.string(), known);
-    if (hint.empty())
-        for (const std::string_view one : known) hint += message(hint.empty() ? "; known are " : ", ", one);
-    name.fail(message("unknown ", what, " ", quoted_text(name.string()), hint));
+    name.fail(message("unknown ", what, " ", quoted_text(name.string()), suggestion_or_list(name.string(), known)));
 }
 
 Conductor read_conductor(const JsonValue& owner) {

@@ -103,6 +103,8 @@ void SceneNodeReader::read_mesh(const JsonValue& value, SceneNode& node) {
 }
 
 const SceneNodeReader::LoadedMesh& SceneNodeReader::load_mesh(const JsonValue& value, bool own_material) {
+    constexpr const char* kHowToGenerate =
+        "; the build targets \"models\" and \"gallery-models\" generate this folder's files";
     constexpr MeshNormals kKinds[] = {MeshNormals::kFile, MeshNormals::kFlat, MeshNormals::kSmooth};
     const std::size_t kind = value.has("normals") ? value.at("normals").one_of({"file", "flat", "smooth"}) : 0;
     const std::filesystem::path file = resolve_path(value.file(), value.at("file").string());
@@ -117,7 +119,9 @@ const SceneNodeReader::LoadedMesh& SceneNodeReader::load_mesh(const JsonValue& v
         scene_->shapes.push_back(std::move(obj.mesh));
         return meshes_.emplace(key, std::move(mesh)).first->second;
     } catch (const Error& error) {
-        value.at("file").fail(error.what());
+        // The meshes of models/generated/ are not part of the repository.
+        const bool generated = file.parent_path().filename() == "generated" && !std::filesystem::exists(file);
+        value.at("file").fail(error.what() + std::string(generated ? kHowToGenerate : ""));
     }
 }
 

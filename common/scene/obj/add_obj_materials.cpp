@@ -1,5 +1,6 @@
 #include "common/scene/obj/add_obj_materials.h"
 
+#include "common/scene/build_scene.h"
 #include "common/system/error.h"
 
 namespace duet {
@@ -25,11 +26,8 @@ std::vector<std::uint32_t> add_obj_materials(const std::filesystem::path& file, 
         };
         for_each_texture(material, map);
         for_each_texture(maps, map);
-        indices.push_back(static_cast<std::uint32_t>(scene.materials.size()));
-        scene.materials.push_back(material);
-        scene.maps.resize(scene.materials.size() - 1);
-        scene.maps.push_back(maps);
-        scene.material_names.push_back(file.stem().string() + ":" + (entry.name.empty() ? "default" : entry.name));
+        const std::string name = file.stem().string() + ":" + (entry.name.empty() ? "default" : entry.name);
+        indices.push_back(add_material(scene, name, material, maps));
     }
     return indices;
 }

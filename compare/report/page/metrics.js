@@ -14,10 +14,11 @@ const metricTexts = {
   flip: [
     data.flip.name,
     "mean over the pixels of how visible the difference is to someone who alternates between the images: 0 not at " +
-        "all, 1 the most. Half of the sum is of pixels below the weighted median, a quarter below the first quartile" +
+        "all, 1 the most. Pixels below the weighted median make up half of the sum, those below the first quartile " +
+        "a quarter" +
         (data.eight_bit ? "" :
-                          "; a pixel has the largest value of all exposures, which go from start to stop in even " +
-                          "steps of EV")
+                          "; each image is shown at several exposures, evenly spaced from the start to the stop " +
+                          "exposure (in EV), and a pixel counts with its largest value")
   ],
   mean_signed_error: ["Mean signed error", `red, green, blue; positive: ${data.sides[0].name} is brighter`],
   worst: ["Worst pixel", "largest difference of a channel"],

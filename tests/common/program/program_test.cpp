@@ -54,7 +54,7 @@ TEST_SUITE("unit") {
         CHECK(error_of({"test", "run", "--ssp=3"}).starts_with("unknown option \"--ssp\"; did you mean"));
         CHECK(error_of({"test", "rum"}).starts_with("unknown subcommand \"rum\"; did you mean \"run\"?"));
         CHECK(error_of({"test", "scene.json"})
-                  .starts_with("unknown subcommand \"scene.json\"; expected one of run, render"));
+                  .starts_with("unknown subcommand \"scene.json\"; expected one of \"run\", \"render\""));
         CHECK(error_of({"test"}).starts_with("A subcommand is required"));
     }
 

@@ -135,9 +135,9 @@ TEST_SUITE("unit") {
         const std::vector<std::pair<std::function<void(Scene&)>, const char*>> cases{
             {[](Scene&) {}, "no error"},
             {[](Scene& s) { s.material_names.clear(); }, "found 0 material names, expected 1"},
-            {[](Scene& s) { s.objects[0].shape = 1; }, "\"patch\"'s shape: found the index 1, expected one below 1"},
-            {[](Scene& s) { s.objects[0].materials = {3}; }, "\"patch\"'s material: found the index 3"},
-            {[](Scene& s) { s.objects[0].materials.clear(); }, "\"patch\": it has no material"},
+            {[](Scene& s) { s.objects[0].shape = 1; }, "the shape of the object patch: found the index 1, expected"},
+            {[](Scene& s) { s.objects[0].materials = {3}; }, "a material of the object patch: found the index 3"},
+            {[](Scene& s) { s.objects[0].materials.clear(); }, "\"patch\": found 0 materials, expected at least 1"},
             {[](Scene& s) { s.objects[0].identity = true; }, "\"patch\": Object::place() was not called"},
             {[](Scene& s) { s.objects[0].moving = true; }, "\"patch\": Object::place() was not called"},
             {[](Scene& s) { std::get<Diffuse>(s.materials[0]).albedo.texture = 0; },
@@ -146,9 +146,11 @@ TEST_SUITE("unit") {
             {[&](Scene& s) { mesh(s).positions[1].y = kNan; }, "the vertex 1 is not finite"},
             {[&](Scene& s) { mesh(s).normals.resize(2); }, "found 2 normals, expected 0 or 3"},
             {[&](Scene& s) { mesh(s).uvs.resize(4); }, "found 4 texture coordinates, expected 0 or 3"},
-            {[&](Scene& s) { mesh(s).material_slots = {1}; }, "found the material slot 1, expected one below 1"},
+            {[&](Scene& s) { mesh(s).material_slots = {1}; }, "\"patch\": found 1 materials, expected at least 2"},
             {[](Scene& s) { s.camera.look_at = s.camera.eye; }, "look_at must not be where its eye is"},
             {[](Scene& s) { s.lights = {SunLight{{0, -2, 0}, Rgb(1.0f)}}; }, "a sun's direction has the length 2"},
+            {[](Scene& s) { s.lights = {SpotLight{{}, {0, -1, 0}, Rgb(1.0f), 0.5f, 0.6f}}; }, "cos_inner must be above"},
+            {[](Scene& s) { s.shapes[0] = Sphere{{}, 0}; }, "\"patch\": found the radius 0, expected one above 0"},
         };
         for (const auto& [change, expected] : cases) CHECK(says(error_after(change), expected));
     }

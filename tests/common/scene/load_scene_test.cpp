@@ -231,7 +231,7 @@ TEST_SUITE("unit") {
             {with_materials(R"({"m": {"type": "diffuse", "albedo": {"texture": "t"}}})"),
              "$.materials.m.albedo.texture: unknown texture \"t\""},
             {with_materials(R"({"m": {"type": "diffuse", "ior": 1.5}})"),
-             "$.materials.m: unknown key \"ior\", expected one of \"type\""},
+             "$.materials.m: unknown key \"ior\"; expected one of \"type\""},
             {with_materials(R"({"m": {"type": "dielectric", "ior": 0.5}})"), "$.materials.m.ior: found 0.5"},
             {with_materials(R"({"m": {"type": "metal", "roughness": -0.1}})"), "$.materials.m.roughness: found -0.1"},
             {with_materials(R"({"m": {"type": "emissive"}})"), "$.materials.m: the key \"radiance\" is missing"},
