@@ -22,8 +22,8 @@ using Vec3s = Vec3T<Floats>;
 constexpr int kDistanceSide = 16; ///< texels of an octahedral map of distances
 /// Before their visibility is judged, points are moved off their surface and towards the viewer by these fractions of
 /// the distance between probes, as the maps of distances are coarse (Majercik et al. 2021, "Scaling Probe-Based
-/// Real-Time Dynamic Global Illumination for Production", §4.1). The normal alone does not lead away from a corner, such
-/// as that of a wall with a roof, and light would leak in there.
+/// Real-Time Dynamic Global Illumination for Production", §4.1). The normal alone does not lead away from a corner,
+/// such as that of a wall with a roof, and light would leak in there.
 constexpr float kNormalBias = 0.2f, kViewBias = 0.3f;
 /// Points beyond the outermost probes are interpolated where they would be this fraction of a cell further in, since
 /// the outermost probes may be hidden.

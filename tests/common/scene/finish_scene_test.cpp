@@ -149,7 +149,8 @@ TEST_SUITE("unit") {
             {[&](Scene& s) { mesh(s).material_slots = {1}; }, "\"patch\": found 1 materials, expected at least 2"},
             {[](Scene& s) { s.camera.look_at = s.camera.eye; }, "look_at must not be where its eye is"},
             {[](Scene& s) { s.lights = {SunLight{{0, -2, 0}, Rgb(1.0f)}}; }, "a sun's direction has the length 2"},
-            {[](Scene& s) { s.lights = {SpotLight{{}, {0, -1, 0}, Rgb(1.0f), 0.5f, 0.6f}}; }, "cos_inner must be above"},
+            {[](Scene& s) { s.lights = {SpotLight{{}, {0, -1, 0}, Rgb(1.0f), 0.5f, 0.6f}}; },
+             "a spot light's cos_inner must be above its cos_outer"},
             {[](Scene& s) { s.shapes[0] = Sphere{{}, 0}; }, "\"patch\": found the radius 0, expected one above 0"},
         };
         for (const auto& [change, expected] : cases) CHECK(says(error_after(change), expected));
