@@ -46,12 +46,13 @@ bool is_sphere(const Scene& scene, std::uint32_t index) {
 float tube_radius(const RasterSceneData& data, std::uint32_t index) {
     const Object& object = data.scene.objects[index];
     const Shape& shape = data.scene.shapes[object.shape];
+    const Mat4d to_world(object.to_world);
     const Vec3d center(data.objects[index].bounds.center());
     double volume = 0, area = 0; // six times the one, twice the other
     for (std::uint32_t i = 0; i < primitive_count(shape); ++i) {
         const PrimitiveVertices vertices = primitive_vertices(shape, i);
         const auto at = [&](int k) {
-            return transform_point(Mat4d(object.to_world), Vec3d(vertices.p[static_cast<std::size_t>(k)])) - center;
+            return transform_point(to_world, Vec3d(vertices.p[static_cast<std::size_t>(k)])) - center;
         };
         for (int k = 2; k < vertices.count; ++k) {
             const Vec3d a = at(0), b = at(k - 1), c = at(k);

@@ -1,4 +1,5 @@
 // These tests check the maps over directions that probes hold, and where probes stand.
+#include "tests/raster/path_traced.h"
 #include "tests/raster/scenes.h"
 #include "tests/raster/varied_scene.h"
 
@@ -7,7 +8,6 @@
 #include "raster/probes/radiance_map.h"
 #include "raster/probes/solid_test.h"
 #include "raster/raster_scene.h"
-#include "raytrace/render.h"
 
 #include "compare/stress/accelerated_scene.h"
 
@@ -257,14 +257,10 @@ TEST_SUITE("unit") {
         scene.camera = look({0, 6, 6}, {0, 2, 0}, 20);
         finish_scene(scene);
         const View view{scene.camera, 120, 120};
-        raytrace::PathTracerSettings settings;
-        settings.samples_per_pixel = 16;
-        Control control;
         const auto sky = [](const ImageRgb& image) {
             return std::ranges::count_if(image.pixels(), [](Rgb c) { return c.g > 0.5f; });
         };
-        const auto truth = sky(raytrace::render(raytrace::prepare(scene, settings), view, settings, control).radiance);
-        const auto shown = sky(render(scene, view, {}).radiance);
+        const auto truth = sky(path_traced(scene, view, 16)), shown = sky(render(scene, view, {}).radiance);
         CHECK(shown > truth / 3); // measured: 0.46 of it; a map seen from the center gave 0.05
         CHECK(shown < truth);
     }
@@ -279,11 +275,7 @@ TEST_SUITE("unit") {
         scene.camera = look({0, 1.5, 5}, {0, 1, 0}, 30);
         finish_scene(scene);
         const View view{scene.camera, 200, 200};
-        raytrace::PathTracerSettings settings;
-        settings.samples_per_pixel = 16;
-        Control control;
-        const ImageRgb truth = raytrace::render(raytrace::prepare(scene, settings), view, settings, control).radiance,
-                       image = render(scene, view, {}).radiance;
+        const ImageRgb truth = path_traced(scene, view, 16), image = render(scene, view, {}).radiance;
         const auto is_red = [](Rgb c) { return c.r > 2 * c.g; };
         int red = 0, shown = 0, differ = 0;
         for (int y = 0; y < 133; ++y) // the lowest row of the mirror above the balls themselves

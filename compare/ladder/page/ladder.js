@@ -8,7 +8,6 @@ const row = (...cells) => make("tr", {}, ...cells);
 const head = (text, kind = {}) => make("th", { scope: "col", ...kind }, text);
 const cell = (...content) => make("td", {}, ...content);
 const figureCell = text => make("td", { class: "number" }, text);
-const countOf = (n, word) => `${countText(n)} ${word}${n === 1 ? "" : "s"}`;
 
 function lede() {
   const spp = report.samples_per_pixel;

@@ -126,3 +126,4 @@ function secondsText(s) {
 }
 const ratioText = r => r >= 10 ? r.toFixed(0) : r.toFixed(1);
 const countText = n => Number(n).toLocaleString("en").replaceAll(",", "\u2009");
+const countOf = (n, word) => `${countText(n)} ${word}${n === 1 ? "" : "s"}`;

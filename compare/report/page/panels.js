@@ -4,10 +4,7 @@ const rendered = sides.every(side => side.rendering); // so times and skips are 
 const tag = side => make("span", { class: side.style }, `${side.symbol} ${side.name}`);
 const secondsOf = side => side.rendering.statistics.seconds;
 const workSeconds = side => secondsOf(side).prepare + secondsOf(side).render;
-function samplesText(side) {
-  const samples = side.rendering.statistics.samples_per_pixel;
-  return `${countText(samples)} ${samples === 1 ? "sample" : "samples"} per pixel`;
-}
+const samplesText = side => `${countOf(side.rendering.statistics.samples_per_pixel, "sample")} per pixel`;
 
 // Shows only the sections that have content.
 function showSections() {
