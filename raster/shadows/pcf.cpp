@@ -8,8 +8,9 @@ namespace {
 using Mask = Floats::batch_bool_type;
 
 /// Facets of one surface meet at up to 27 degrees (tangent), or at the fraction kOfElevation of the light's elevation
-/// above the surface, and do not shade each other.
-constexpr float kSteepest = 0.5f, kOfElevation = 0.9f;
+/// above the surface, and do not shade each other. A greater fraction lets more light below a roof along a wall, a
+/// smaller one draws darker lines in valleys; 0.7 minimizes the sum of both errors in a coarse trough.
+constexpr float kSteepest = 0.5f, kOfElevation = 0.7f;
 /// A texel on the light's side whose surface falls from the receiver's plane by a greater fraction of the elevation
 /// lies beyond the end of the receiver's surface, and says nothing about its light.
 constexpr float kFalling = 0.23f;
