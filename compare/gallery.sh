@@ -36,7 +36,7 @@ mkdir -p $work/orbit
 "$bin/raster" models/gallery/orbit.json --orbit 72 --spp 16 -o "$work/orbit/%04d.png" --quiet
 ffmpeg -loglevel error -y -framerate 15 -i "$work/orbit/%04d.png" -vf crop=320:178:0:2 -c:v libwebp_anim -quality 75 \
     -loop 0 gallery/orbit.webp
-trace lantern gallery/lantern --spp 512 --adaptive
+trace lantern gallery/lantern --spp 2048 --adaptive
 picture lantern
 trace menger gallery/menger --spp 220 --adaptive
 picture menger --tone filmic --exposure 0.5
