@@ -17,8 +17,11 @@ struct PrepareLimits {
 
     /// Shadow maps have at most 64 texels for a pixel of the image.
     int shadow_map_side(int finest) const { return std::min(finest, power_of_two(8)); }
-    /// Radiance maps of reflections, and the shapes of glass objects, have at most 16 texels for a pixel.
-    int radiance_map_side(int finest) const { return std::min(finest, power_of_two(4)); }
+    /// Radiance maps of reflections, and the shapes of glass objects, have at most 16 texels for a pixel; above a side
+    /// of 256 at most one, because balls, which show a whole map, would show single texels of it.
+    int radiance_map_side(int finest) const {
+        return std::min({finest, power_of_two(4), std::max(256, power_of_two(1))});
+    }
     /// There is at most one irradiance probe for 16 pixels.
     int irradiance_probes(int most) const { return at_most(most, pixels_ / 16); }
     /// There is at most one reflection probe for 64 pixels.

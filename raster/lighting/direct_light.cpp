@@ -38,10 +38,20 @@ public:
 
 private:
     struct Sum {
-        RgbT<Floats> exact{Floats(0.0f)}, unshadowed{Floats(0.0f)}, shadowed{Floats(0.0f)}; ///< as in DirectLight
+        RgbT<Floats> exact{Floats(0.0f)}, unshadowed{Floats(0.0f)}, shadowed{Floats(0.0f)};
 
         void add(const Sum& other) {
             exact += other.exact, unshadowed += other.unshadowed, shadowed += other.shadowed;
+        }
+        /// Returns the fraction of each channel that arrives, as DirectLight stores it.
+        RgbT<Floats> lit() const {
+            const xsimd::batch_bool<float> none = max_component(unshadowed) <= Floats(0.0f);
+            const auto fraction = [&](const Floats& all, const Floats& part) {
+                const Floats found = xsimd::select(all > Floats(0.0f), part / all, Floats(1.0f));
+                return xsimd::select(none, Floats(DirectLight::kNoLight), found);
+            };
+            return {fraction(unshadowed.r, shadowed.r), fraction(unshadowed.g, shadowed.g),
+                    fraction(unshadowed.b, shadowed.b)};
         }
     };
 
@@ -158,8 +168,8 @@ private:
     }
     void store(int x, int y, const Sum& sum) {
         result_.exact.set(x, y, sum.exact);
-        if (result_.shadowed.empty()) return;
-        result_.unshadowed.set(x, y, sum.unshadowed), result_.shadowed.set(x, y, sum.shadowed);
+        if (result_.lit.empty()) return;
+        result_.unshadowed.set(x, y, sum.unshadowed), result_.lit.set(x, y, sum.lit());
     }
 
     const GBuffer& gbuffer_;
@@ -193,7 +203,7 @@ void compute_direct_light(const RasterSceneData& data, const RasterSettings& set
         return shadows != nullptr && shadows->shadows(its.index) && shadows->noisy(its.index);
     });
     light.exact.set_size(width, height);
-    for (Planes3* image : {&light.unshadowed, &light.shadowed}) {
+    for (Planes3* image : {&light.unshadowed, &light.lit}) {
         if (noisy)
             image->set_size(width, height);
         else

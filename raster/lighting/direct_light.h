@@ -14,14 +14,14 @@ namespace duet::raster {
 /// Holds radiance towards the viewer, for each pixel; 0 for the background.
 struct DirectLight {
     Planes3 exact; ///< from lights without shadows, and lights whose shadows are not noisy
-    /// From lights with noisy shadows; empty if there are none. The quotient is the visible fraction of these lights
-    /// together, which may be filtered without blurring the surfaces (Heitz, Hill and McGuire 2018, "Combining Analytic
-    /// Direct Illumination and Stochastic Shadows").
-    Planes3 unshadowed, shadowed;
+    /// From lights with noisy shadows, as if nothing shaded them; empty if there are none.
+    Planes3 unshadowed;
+    /// The fraction of it that arrives, in [0, 1], which may be filtered without blurring the surfaces; kNoLight where
+    /// unshadowed is black.
+    Planes3 lit;
+    static constexpr float kNoLight = -1;
 
-    std::size_t memory_bytes() const {
-        return exact.memory_bytes() + unshadowed.memory_bytes() + shadowed.memory_bytes();
-    }
+    std::size_t memory_bytes() const { return exact.memory_bytes() + unshadowed.memory_bytes() + lit.memory_bytes(); }
 };
 
 /// Says how many lights stand for all. If a cluster of pixels has more near lights than `most`, about so many are

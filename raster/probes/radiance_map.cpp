@@ -41,7 +41,7 @@ struct LobeSamples {
     }
 };
 
-/// Halves a map. TextureSampler of the octahedral square differ in solid angle by a factor of up to 5, but neighbors
+/// Halves a map. Texels of the octahedral square differ in solid angle by a factor of up to 5, but neighbors
 /// hardly do.
 OctahedralMap halved(const OctahedralMap& fine) {
     OctahedralMap coarse(fine.side() / 2);

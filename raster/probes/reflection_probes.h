@@ -10,8 +10,7 @@
 namespace duet::raster {
 
 /// Holds the reflection probes of a scene, which no view changes. The largest objects that reflect have a probe at
-/// their
-/// center, which does not see them; all others use the nearest probe.
+/// their center, which does not see them; all others use the nearest probe.
 class ReflectionProbes {
 public:
     /// Renders the probes (raster/probes/render_reflection_probes.cpp). `data` must have its irradiance probes, if the
@@ -30,8 +29,9 @@ public:
 
     /// The largest reflecting objects have probes of their own; all others use the nearest probe.
     static constexpr int kMostProbes = 96;
-    /// Texels of the sharp maps: of the kLargest largest objects, and of the others.
-    static constexpr int kLargest = 24, kSide = 256, kSmallSide = 128;
+    /// Texels along a side of the sharp map of the object that is the i-th largest, from 0 on. Few are seen so large
+    /// that their image shows single texels.
+    static constexpr int map_side(std::size_t i) { return i < 4 ? 512 : i < 16 ? 256 : 128; }
 
 private:
     struct Probe {

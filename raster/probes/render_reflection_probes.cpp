@@ -104,7 +104,7 @@ ReflectionProbes::ReflectionProbes(const RasterSceneData& data, const RasterSett
     if (sites.empty()) return;
     probes_.resize(sites.size());
     parallel_for(sites.size(), settings.threads, [&](std::size_t i) {
-        const int side = PrepareLimits(data.scene).radiance_map_side(i < kLargest ? kSide : kSmallSide);
+        const int side = PrepareLimits(data.scene).radiance_map_side(map_side(i));
         probes_[i] = {sites[i].center, render_map(data, settings, sites[i], side)};
     });
     for (std::uint32_t object = 0; object < data.scene.objects.size(); ++object) {
