@@ -4,6 +4,8 @@
 #include "raster/lighting/light_set.h"
 #include "raster/lighting/lit_batch.h"
 
+#include <utility>
+
 namespace duet::raster {
 namespace {
 
@@ -52,6 +54,17 @@ private:
             };
             return {fraction(unshadowed.r, shadowed.r), fraction(unshadowed.g, shadowed.g),
                     fraction(unshadowed.b, shadowed.b)};
+        }
+    };
+
+    /// What lights of one source send to the viewer, if nothing shades them.
+    struct SourceLight {
+        std::size_t source = ShadowLookup::kUnshadowed;
+        RgbT<Floats> reflected{Floats(0.0f)};
+        Vec3T<Floats> direction{Floats(0.0f), Floats(0.0f), Floats(0.0f)}; ///< to the lights: a mean, not unit
+
+        void add(const RgbT<Floats>& light, const Vec3T<Floats>& wi) {
+            reflected += light, direction += wi * max_component(light);
         }
     };
 
@@ -107,35 +120,46 @@ private:
         const Vec3T<Floats> facet =
             shadows_ == nullptr ? batch.n() : facet_normals(gbuffer_, batch.p(), batch.n(), x, y);
         Sum sum;
-        for (const WeightedLight& light : near)
-            add(batch, lights_[light.index], light.weight, LitBatch::Lobes::kAll, facet, x, y, sum);
+        SourceLight one_source;
+        for (const WeightedLight& light : near) {
+            const std::size_t source =
+                shadows_ == nullptr ? ShadowLookup::kUnshadowed : shadows_->source(lights_[light.index].index);
+            if (source != one_source.source) add_shadowed(batch, std::exchange(one_source, {source}), facet, x, y, sum);
+            const FrameLight& its = lights_[light.index];
+            const RgbT<Floats> all = reflected(batch, its, light.weight, LitBatch::Lobes::kAll);
+            if (source == ShadowLookup::kUnshadowed)
+                sum.exact += all;
+            else
+                one_source.add(all, direction_to_middle(batch, its));
+        }
+        add_shadowed(batch, one_source, facet, x, y, sum);
         for (const LightField& field : std::span(fields_).first(field_count_))
             sum.exact += batch.diffuse(field.irradiance(batch.p(), batch.n()));
         if (batch.specular())
             for (const std::uint32_t i : distant_)
-                add(batch, lights_[i], 1, LitBatch::Lobes::kSpecular, facet, x, y, sum);
+                sum.exact += reflected(batch, lights_[i], 1, LitBatch::Lobes::kSpecular);
         return sum;
     }
 
-    void add(const LitBatch& batch, const FrameLight& light, float weight, LitBatch::Lobes lobes,
-             const Vec3T<Floats>& facet, int x, int y, Sum& sum) const {
-        RgbT<Floats> reflected = batch.reflected(light, lobes) * Floats(weight);
-        if (!media_.empty() && lane_bits(max_component(reflected) > Floats(0.0f)) != 0) {
-            const LightDirection to = direction_to(light, batch.p());
-            reflected *= transmittance(optical_depth(media_, batch.p(), to.wi, to.distance));
-        }
-        if (shadows_ == nullptr || !shadows_->shadows(light.index)) {
-            sum.exact += reflected;
-            return;
-        }
-        const xsimd::batch_bool<float> lit = max_component(reflected) > Floats(0.0f);
-        if (lane_bits(lit) == 0) return;
-        const Vec3T<Floats> wi = direction_to_middle(batch, light);
-        const Floats visible = shadows_->visibility(light.index, receiver(batch, wi, x, y),
+    RgbT<Floats> reflected(const LitBatch& batch, const FrameLight& light, float weight, LitBatch::Lobes lobes) const {
+        const RgbT<Floats> all = batch.reflected(light, lobes) * Floats(weight);
+        if (media_.empty() || lane_bits(max_component(all) > Floats(0.0f)) == 0) return all;
+        const LightDirection to = direction_to(light, batch.p());
+        return all * transmittance(optical_depth(media_, batch.p(), to.wi, to.distance));
+    }
+
+    /// Adds the lights of one source, which share one look at its shadows.
+    void add_shadowed(const LitBatch& batch, const SourceLight& light, const Vec3T<Floats>& facet, int x, int y,
+                      Sum& sum) const {
+        const xsimd::batch_bool<float> lit = max_component(light.reflected) > Floats(0.0f);
+        if (light.source == ShadowLookup::kUnshadowed || lane_bits(lit) == 0) return;
+        const Vec3T<Floats>& to = light.direction;
+        const Vec3T<Floats> wi = to * inverse_sqrt(max(dot(to, to), Floats(1e-30f)));
+        const Floats visible = shadows_->visibility(light.source, receiver(batch, wi, x, y),
                                                     receiving_normal(batch, wi, facet), x, y, lit);
-        const RgbT<Floats> seen = reflected * xsimd::select(lit, visible, Floats(0.0f));
-        if (shadows_->noisy(light.index))
-            sum.unshadowed += reflected, sum.shadowed += seen;
+        const RgbT<Floats> seen = light.reflected * xsimd::select(lit, visible, Floats(0.0f));
+        if (shadows_->noisy(light.source))
+            sum.unshadowed += light.reflected, sum.shadowed += seen;
         else
             sum.exact += seen;
     }
@@ -199,8 +223,9 @@ void compute_direct_light(const RasterSceneData& data, const RasterSettings& set
     const int width = gbuffer.width(), height = gbuffer.height();
     std::vector<FrameLight> lights;
     if (settings.components.direct) lights = frame_lights(data.scene.lights, gbuffer.projection);
-    const bool noisy = std::ranges::any_of(lights, [&](const FrameLight& its) {
-        return shadows != nullptr && shadows->shadows(its.index) && shadows->noisy(its.index);
+    const bool noisy = shadows != nullptr && std::ranges::any_of(lights, [&](const FrameLight& its) {
+        const std::size_t source = shadows->source(its.index);
+        return source != ShadowLookup::kUnshadowed && shadows->noisy(source);
     });
     light.exact.set_size(width, height);
     for (Planes3* image : {&light.unshadowed, &light.lit}) {

@@ -59,7 +59,7 @@ LightSet::LightSet(std::span<const FrameLight> lights, const ShadowLookup* shado
         float plane = -1; // with an axis of 0, all points are in front
         const float power = average(light.emitted);
         float area = 1, most = kHuge;
-        bool may_be_far = sums && (shadows == nullptr || !shadows->shadows(light.index));
+        bool may_be_far = sums && (shadows == nullptr || shadows->source(light.index) == ShadowLookup::kUnshadowed);
         set(kConeCosine, 0), set(kConeSine, 0);
         switch (light.kind) {
         case FrameLight::Kind::kTriangle:

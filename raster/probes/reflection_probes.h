@@ -29,9 +29,10 @@ public:
 
     /// The largest reflecting objects have probes of their own; all others use the nearest probe.
     static constexpr int kMostProbes = 96;
-    /// Texels along a side of the sharp map of the object that is the i-th largest, from 0 on. Few are seen so large
-    /// that their image shows single texels.
-    static constexpr int map_side(std::size_t i) { return i < 4 ? 512 : i < 16 ? 256 : 128; }
+    /// Texels along a side of the sharp map of the i-th largest mirror, from 0 on. Few are seen so large that their
+    /// image shows single texels.
+    static constexpr int mirror_side(std::size_t i) { return i < 4 ? 512 : i < 16 ? 256 : 128; }
+    static constexpr int kRoughSide = 128; ///< the same for objects that show faint or blurred images
 
 private:
     struct Probe {

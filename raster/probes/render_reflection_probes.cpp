@@ -12,22 +12,33 @@
 namespace duet::raster {
 namespace {
 
-bool any_reflects(const Scene& scene, const Object& object) {
-    return std::any_of(object.materials.begin(), object.materials.end(),
-                       [&](std::uint32_t material) { return reflects(scene.materials[material]); });
+bool any_material(const Scene& scene, const Object& object, bool (*is)(const Material&)) {
+    return std::ranges::any_of(object.materials, [&](std::uint32_t material) { return is(scene.materials[material]); });
+}
+
+/// Returns whether a material shows bright and sharp images: smooth metal or glass. Textures may make it smooth.
+bool is_mirror(const Material& material) {
+    constexpr float kSmooth = 0.15f; // a rougher lobe is wider than two texels of the smallest maps
+    const auto smooth = [](const ScalarSlot& roughness) { return !roughness.constant() || roughness.value < kSmooth; };
+    if (const auto* metal = std::get_if<Metal>(&material)) return smooth(metal->roughness);
+    if (const auto* glass = std::get_if<Dielectric>(&material)) return smooth(glass->roughness);
+    const auto* principled = std::get_if<Principled>(&material);
+    return principled != nullptr && smooth(principled->roughness) &&
+           (!principled->metallic.constant() || principled->metallic.value > 0);
 }
 
 struct Site {
     Vec3d center;
     std::vector<std::uint32_t> excluded; ///< objects that the probe does not see, in order
     std::uint32_t object = kNoObject;    ///< whose own probe it is
+    int side = 0;                        ///< texels of its map
 };
 
 /// Returns the objects that reflect, the largest first.
 std::vector<std::uint32_t> reflecting_objects(const RasterSceneData& data) {
     std::vector<std::uint32_t> objects;
     for (std::uint32_t i = 0; i < data.scene.objects.size(); ++i)
-        if (any_reflects(data.scene, data.scene.objects[i])) objects.push_back(i);
+        if (any_material(data.scene, data.scene.objects[i], reflects)) objects.push_back(i);
     const auto size = [&](std::uint32_t i) { return length(data.objects[i].bounds.diagonal()); };
     std::stable_sort(objects.begin(), objects.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return size(a) > size(b); });
@@ -36,12 +47,17 @@ std::vector<std::uint32_t> reflecting_objects(const RasterSceneData& data) {
 
 std::vector<Site> sites_of(const RasterSceneData& data) {
     std::vector<Site> sites;
-    const int most = PrepareLimits(data.scene).reflection_probes(ReflectionProbes::kMostProbes);
+    const PrepareLimits limits(data.scene);
+    const int most = limits.reflection_probes(ReflectionProbes::kMostProbes);
+    std::size_t mirrors = 0;
     for (const std::uint32_t object : reflecting_objects(data)) {
         if (sites.size() == static_cast<std::size_t>(most)) break;
         std::set<std::uint32_t> excluded(data.glass.begin(), data.glass.end());
         excluded.insert(object);
-        sites.push_back({Vec3d(data.objects[object].bounds.center()), {excluded.begin(), excluded.end()}, object});
+        const int finest = any_material(data.scene, data.scene.objects[object], is_mirror)
+                               ? ReflectionProbes::mirror_side(mirrors++) : ReflectionProbes::kRoughSide;
+        sites.push_back({Vec3d(data.objects[object].bounds.center()), {excluded.begin(), excluded.end()}, object,
+                         limits.radiance_map_side(finest)});
     }
     return sites;
 }
@@ -77,7 +93,8 @@ bool shows_light(const ProbeCapture& capture) {
 
 /// Renders the map of one probe, on one thread. What lights hide from the probe is visible from other points, so rough
 /// surfaces, which get the lights' own reflections as direct light, need a map without the lights.
-RadianceMap render_map(const RasterSceneData& data, const RasterSettings& settings, const Site& site, int side) {
+RadianceMap render_map(const RasterSceneData& data, const RasterSettings& settings, const Site& site) {
+    const int side = site.side;
     const auto capture = [&](const std::vector<std::uint32_t>& excluded) {
         constexpr std::size_t kMostLights = 16; // of a cluster of pixels; prepares models/lanterns.json in seconds
         ProbeCapture result(data, settings, site.center, side / 2, excluded, {kMostLights});
@@ -104,8 +121,7 @@ ReflectionProbes::ReflectionProbes(const RasterSceneData& data, const RasterSett
     if (sites.empty()) return;
     probes_.resize(sites.size());
     parallel_for(sites.size(), settings.threads, [&](std::size_t i) {
-        const int side = PrepareLimits(data.scene).radiance_map_side(map_side(i));
-        probes_[i] = {sites[i].center, render_map(data, settings, sites[i], side)};
+        probes_[i] = {sites[i].center, render_map(data, settings, sites[i])};
     });
     for (std::uint32_t object = 0; object < data.scene.objects.size(); ++object) {
         const Vec3d center(data.objects[object].bounds.center());

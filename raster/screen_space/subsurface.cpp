@@ -153,7 +153,7 @@ void blur_solid_light(const SolidMaterials& materials, const GBuffer& gbuffer, i
     PlaneFloat fractions(gbuffer.width(), gbuffer.height());
     for_each_batch(gbuffer.width(), gbuffer.height(), threads,
                    [&](int x, int y) { store(fractions, x, y, look_up(materials.fraction, gbuffer.material, x, y)); });
-    for (const Axis axis : {Axis::kRows, Axis::kColumns}) {
+    for (const Axis axis : {Axis::kColumns, Axis::kRows}) {
         const Blur blur(materials, fractions, gbuffer, axis, light);
         for_each_batch(gbuffer.width(), gbuffer.height(), threads,
                        [&](int x, int y) { buffer.set(x, y, blur.at(x, y)); });

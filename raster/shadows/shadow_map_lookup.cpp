@@ -75,10 +75,9 @@ MapShadows::Receivers MapShadows::at_moment(const Receivers& receivers, int x, i
     return {{load(px, 0), load(py, 0), load(pz, 0)}, {load(nx, 0), load(ny, 0), load(nz, 0)}};
 }
 
-Floats MapShadows::visibility(std::size_t light, const Vec3T<Floats>& point, const Vec3T<Floats>& normal, int x, int y,
-                              const Mask&) const {
-    const std::size_t source = shadows_.source_of(light);
-    if (source == shadows_.sources().size() || unblocked_.contains(source, x, y)) return Floats(1.0f);
+Floats MapShadows::visibility(std::size_t source, const Vec3T<Floats>& point, const Vec3T<Floats>& normal, int x,
+                              int y, const Mask&) const {
+    if (unblocked_.contains(source, x, y)) return Floats(1.0f);
     const Receivers receivers{point, normal};
     const auto [p, n] = to_moment_.empty() ? receivers : at_moment(receivers, x, y);
     const std::span<const SoftShadowMap> cells = soft_.of(source, moment_);

@@ -29,13 +29,14 @@ public:
     /// does not shade itself by its motion. `threads` = 0 stands for all.
     MapShadows(const RasterSceneData& data, const GBuffer& gbuffer, float time, int threads);
 
-    bool shadows(std::size_t light) const override { return shadows_.source_of(light) < shadows_.sources().size(); }
-    bool noisy(std::size_t light) const override {
-        return shadows(light) && !soft_.of(shadows_.source_of(light), moment_).empty();
+    std::size_t source(std::size_t light) const override {
+        const std::size_t source = shadows_.source_of(light);
+        return source < shadows_.sources().size() ? source : kUnshadowed;
     }
+    bool noisy(std::size_t source) const override { return !soft_.of(source, moment_).empty(); }
     /// Each pixel of a block of 4 × 4 looks at one cell of an area light, with taps of its own. The mean over a block
     /// is the shadow; add_direct_light() (raster/lighting/shadow_filter.h) computes it.
-    Floats visibility(std::size_t light, const Vec3T<Floats>& p, const Vec3T<Floats>& n, int x, int y,
+    Floats visibility(std::size_t source, const Vec3T<Floats>& p, const Vec3T<Floats>& n, int x, int y,
                       const xsimd::batch_bool<float>& mask) const override;
 
 private:
