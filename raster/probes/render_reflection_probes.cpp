@@ -21,7 +21,7 @@ bool is_mirror(const Material& material) {
     constexpr float kSmooth = 0.15f; // a rougher lobe is wider than two texels of the smallest maps
     const auto smooth = [](const ScalarSlot& roughness) { return !roughness.constant() || roughness.value < kSmooth; };
     if (const auto* metal = std::get_if<Metal>(&material)) return smooth(metal->roughness);
-    if (const auto* glass = std::get_if<Dielectric>(&material)) return smooth(glass->roughness);
+    if (const auto* glass = std::get_if<Dielectric>(&material)) return glass->thin || smooth(glass->roughness);
     const auto* principled = std::get_if<Principled>(&material);
     return principled != nullptr && smooth(principled->roughness) &&
            (!principled->metallic.constant() || principled->metallic.value > 0);
