@@ -19,10 +19,9 @@ struct LadderImages {
     ImageRgb image(std::size_t k) const;
 };
 
-/// Renders the images of all ladder stages. Each camera sample is shaded in two ways. The rasterizer's shading
-/// yields the components of raster::LightComponentImages: emission e, direct d, environment v, indirect g, reflection
-/// r,
-/// and s, the light that shadows remove from d. The path tracer yields those of raytrace::LightComponents: emission E,
+/// Renders the images of all ladder stages. Each camera sample is shaded in two ways. The rasterizer's shading yields
+/// the components of raster::LightComponentImages: emission e, direct d, environment v, indirect g, reflection r, and
+/// s, the light that shadows remove from d. The path tracer yields those of raytrace::LightComponents: emission E,
 /// direct D, unshadowed U, environment V, reflection R, indirect G. The stages are the means, over the path tracer's
 /// camera samples, of
 ///
@@ -32,8 +31,7 @@ struct LadderImages {
 ///                                                  I₇ = E + D + V + G + R, the path tracer's image.
 ///
 /// The rasterizer shades the hits of one sample of all pixels together, since its effects look at other pixels. It
-/// takes
-/// the lens center as their viewer, at the time the shutter opens (raster::HitShader).
+/// takes the lens center as their viewer, at the time the shutter opens (raster::HitShader).
 ///
 /// `first` is I₀. If `control` is stopped, returns what is finished.
 LadderImages evaluate_ladder(ImageRgb first, const PreparedPair& pair, const View& view, Control& control);

@@ -55,10 +55,9 @@ struct RungPlan {
     std::string note;                     ///< what the scene or the rasterizer lacks; empty: nothing
 };
 
-/// Returns what both pipelines render at each rung. A new approximation of the rasterizer must be added to the
-/// settings of its rung here and, if it contributes light, to raster::LightComponentImages. The rest of the ladder
-/// needs
-/// no change.
+/// Returns what both pipelines render at each rung. A new approximation of the rasterizer must be added to the settings
+/// of its rung here and, if it contributes light, to raster::LightComponentImages. The rest of the ladder needs no
+/// change.
 std::array<RungPlan, kRungCount> plan_rungs(const Scene& scene, const PreparedPair& pair);
 
 } // namespace duet::compare

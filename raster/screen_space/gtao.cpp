@@ -138,8 +138,7 @@ struct Line {
     Vec3s directions{Floats(0.0f), Floats(0.0f), Floats(0.0f)};
 };
 /// Searches the line turned by `pattern` about the view.
-Line search_line(const GBuffer& gbuffer, const Vec3s& p, const Vec3s& normal, float radius,
-                                  const Pattern& pattern) {
+Line search_line(const GBuffer& gbuffer, const Vec3s& p, const Vec3s& normal, float radius, const Pattern& pattern) {
     const Floats one(1.0f), none(0.0f);
     const Vec3s v = gbuffer.projection.to_viewer(p);
     const Vec3s n = unit_of(normal + v * max(Floats(kLeastCosine) - dot(normal, v), none));

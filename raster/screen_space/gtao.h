@@ -10,8 +10,7 @@
 namespace duet::raster {
 
 /// Holds the occlusion of a G-buffer, and optionally its irradiance, at half resolution. Its memory is reused from
-/// frame
-/// to frame.
+/// frame to frame.
 class GtaoImage {
 public:
     /// Searches occluders up to `radius` meters away; radius 0 searches none. The G-buffer must outlive this object's
@@ -24,8 +23,7 @@ public:
     /// Returns the visibility of a batch of the G-buffer's pixels, upsampled along depths and normals.
     SkyVisibility<Floats> at(int x, int y) const { return upsampled(x, y).sky; }
     /// Returns the visible fraction and the irradiance of a batch, after add_irradiance(). `found` marks the lanes
-    /// whose
-    /// surface has a pixel at half resolution nearby; the others have no irradiance.
+    /// whose surface has a pixel at half resolution nearby; the others have no irradiance.
     struct Lit {
         Floats visible;
         RgbT<Floats> irradiance;
@@ -62,8 +60,7 @@ private:
     PlaneFloat depth_;      ///< reversed depth of every second pixel of every second row
     Planes3 normal_;        ///< likewise
     /// Before averaging: what is hidden along one line, and what there is to hide. Their sums over neighbors are
-    /// divided
-    /// by each other, since a line's share of the hemisphere depends on its direction.
+    /// divided by each other, since a line's share of the hemisphere depends on its direction.
     PlaneFloat lost_, all_;
     Planes3 lost_directions_;
     Planes smooth_; ///< after averaging
