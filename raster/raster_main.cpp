@@ -4,63 +4,80 @@
 #include "raster/shading/built_in_shaders.h"
 #include "raster/visibility/multisample.h"
 
-int main(int argc, char** argv) {
-    using namespace duet;
-    std::string shading_name = "lit";
+namespace {
+
+using namespace duet;
+
+struct Options {
+    std::string shading = "lit";
     bool no_environment = false, no_culling = false;
-    raster::RasterSettings options;
+    raster::RasterSettings settings; // all that an option sets as it is
+};
+
+void add_options(CommandLine& command_line, Options& options) {
+    command_line.add("--shading", options.shading,
+                     raster::shading_list() + " (default: lit, by materials and lights)");
+    command_line.add(
+        "--msaa", options.settings.multisamples,
+        "Multisampling: coverage and depth at 2, 4, 8 or 16 samples a pixel, shading once a primitive (in place "
+        "of --spp); lit shades each sample");
+    command_line.add_flag("--edges", options.settings.edges,
+                          "Draw lines over the image where depth, normals or objects change");
+    command_line.add_flag("--sample-shading", options.settings.sample_shading, "With --msaa: shade each sample")
+        .needs("--msaa");
+    command_line.add_flag("--no-environment", options.no_environment,
+                          "Leave out the environment's light and background");
+    command_line.add_flag(
+        "--shadows,!--no-shadows", options.settings.shadows,
+        "Shadow maps: sharp ones for point, spot and sun lights, soft ones for area lights (default: on)");
+    command_line.add("--shadow-map", options.settings.shadow_map_side,
+                     "Texels along a shadow map's side, 64 to 8192; a face of a cube map has half as many, of an "
+                     "area light's a quarter (default 2048); fewer where there would be too many for memory, and "
+                     "for an image of less than 256 x 256 pixels, which cannot show them");
+    command_line.add(
+        "--shadow-cells", options.settings.shadow_cells,
+        "Pieces along each side of a rectangular light, 1 to 8, each with a map of its own (default 2)");
+    command_line.add_flag("--ambient-occlusion,!--no-ambient-occlusion", options.settings.ambient_occlusion,
+                          "GTAO: near surfaces hide diffuse light, by the image's depths (default: on)");
+    command_line.add_flag("--indirect,!--no-indirect", options.settings.indirect_light,
+                          "Diffuse light between surfaces, from irradiance probes (default: on)");
+    command_line.add_flag("--subsurface,!--no-subsurface", options.settings.subsurface,
+                          "Light bleeds inside of solids with subsurface scattering, by a blur (default: on)");
+    command_line.add_flag("--fog,!--no-fog", options.settings.fog,
+                          "Media, from froxels: cells of a grid that is aligned with the view (default: on)");
+    command_line
+        .add("--occlusion-radius", options.settings.occlusion_radius,
+             "With --no-indirect: meters up to which surfaces hide the environment (default 0: half of the "
+             "scene's size or of the camera's distance)")
+        .nonnegative();
+    command_line.add_flag("--no-culling", options.no_culling,
+                          "Draw back faces of closed meshes and what is outside the frustum, too (same image)");
+}
+
+raster::RasterSettings settings_of(const Options& options, const RenderSettings& common, std::optional<int> spp) {
+    raster::RasterSettings settings = options.settings;
+    static_cast<RenderSettings&>(settings) = common;
+    settings.samples_per_pixel = spp.value_or(1);
+    settings.shading = raster::parse_shading(options.shading);
+    if (settings.multisamples != 0) raster::multisample_pattern(settings.multisamples); // throws if unsupported
+    settings.environment = !options.no_environment;
+    settings.skips.frustum = settings.skips.back_faces = !options.no_culling;
+    return settings;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    Options options;
     RenderProgram program;
     program.name = "raster";
     program.description = "Renders a scene with the software rasterizer.";
     program.examples = {"raster models/demo.json -o demo.png --size 1280x720 --spp 4",
                         "raster mesh.obj -o mesh.png --msaa 8"};
     program.spp_help = "Samples per pixel (default 1: its center)";
-    program.add_options = [&](CommandLine& command_line) {
-        command_line.add("--shading", shading_name,
-                         raster::shading_list() + " (default: lit, by materials and lights)");
-        command_line.add(
-            "--msaa", options.multisamples,
-            "Multisampling: coverage and depth at 2, 4, 8 or 16 samples a pixel, shading once a primitive (in place "
-            "of --spp); lit shades each sample");
-        command_line.add_flag("--edges", options.edges,
-                              "Draw lines over the image where depth, normals or objects change");
-        command_line.add_flag("--sample-shading", options.sample_shading, "With --msaa: shade each sample")
-            .needs("--msaa");
-        command_line.add_flag("--no-environment", no_environment, "Leave out the environment's light and background");
-        command_line.add_flag(
-            "--shadows,!--no-shadows", options.shadows,
-            "Shadow maps: sharp ones for point, spot and sun lights, soft ones for area lights (default: on)");
-        command_line.add("--shadow-map", options.shadow_map_side,
-                         "Texels along a shadow map's side, 64 to 8192; a face of a cube map has half as many, of an "
-                         "area light's a quarter (default 2048); fewer where there would be too many for memory, and "
-                         "for an image of less than 256 x 256 pixels, which cannot show them");
-        command_line.add(
-            "--shadow-cells", options.shadow_cells,
-            "Pieces along each side of a rectangular light, 1 to 8, each with a map of its own (default 2)");
-        command_line.add_flag("--ambient-occlusion,!--no-ambient-occlusion", options.ambient_occlusion,
-                              "GTAO: near surfaces hide diffuse light, by the image's depths (default: on)");
-        command_line.add_flag("--indirect,!--no-indirect", options.indirect_light,
-                              "Diffuse light between surfaces, from irradiance probes (default: on)");
-        command_line.add_flag("--subsurface,!--no-subsurface", options.subsurface,
-                              "Light bleeds inside of solids with subsurface scattering, by a blur (default: on)");
-        command_line.add_flag("--fog,!--no-fog", options.fog,
-                              "Media, from froxels: cells of a grid that is aligned with the view (default: on)");
-        command_line
-            .add("--occlusion-radius", options.occlusion_radius,
-                 "With --no-indirect: meters up to which surfaces hide the environment (default 0: half of the "
-                 "scene's size or of the camera's distance)")
-            .nonnegative();
-        command_line.add_flag("--no-culling", no_culling,
-                              "Draw back faces of closed meshes and what is outside the frustum, too (same image)");
-    };
+    program.add_options = [&](CommandLine& command_line) { add_options(command_line, options); };
     program.prepare = [&](const Scene& scene, const RenderSettings& common, std::optional<int> spp) -> RenderFunction {
-        raster::RasterSettings settings = options;
-        static_cast<RenderSettings&>(settings) = common;
-        settings.samples_per_pixel = spp.value_or(1);
-        settings.shading = raster::parse_shading(shading_name);
-        if (settings.multisamples != 0) raster::multisample_pattern(settings.multisamples); // throws if unsupported
-        settings.environment = !no_environment;
-        settings.skips.frustum = settings.skips.back_faces = !no_culling;
+        const raster::RasterSettings settings = settings_of(options, common, spp);
         return [prepared = raster::prepare(scene, settings), settings](const View& view, Control& control) {
             return raster::render(prepared, view, settings, control);
         };
