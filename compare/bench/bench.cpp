@@ -8,7 +8,7 @@
 #include "common/system/parallel.h"
 #include "compare/bench/bench_report.h"
 #include "compare/bench/render_reference.h"
-#include "compare/peers/cycles.h"
+#include "compare/peers/blender.h"
 #include "compare/renderer.h"
 #include "compare/report/output.h"
 
@@ -28,8 +28,8 @@ using nlohmann::json;
 /// Checks options before the long renders.
 void check(const BenchOptions& options) {
     check_renderer_choice(options.choice);
-    if (!options.peer.empty() && options.peer != "cycles")
-        throw Error(message("--peer: found ", options.peer, ", expected cycles"));
+    if (!options.peer.empty() && options.peer != "cycles" && options.peer != "eevee")
+        throw Error(message("--peer: found ", options.peer, ", expected cycles or eevee"));
     if (!options.folder.empty()) make_folder(options.folder);
     check_json_path(options.stats);
 }
@@ -61,8 +61,9 @@ public:
         result_.width = view_.width;
         result_.height = view_.height;
         if (!options.peer.empty())
-            peer_ =
-                std::make_shared<CyclesPeer>(scene_, view_, ExportSettings{options.choice.depth, threads_of(options)});
+            peer_ = std::make_shared<BlenderPeer>(
+                options.peer == "eevee" ? BlenderEngine::kEevee : BlenderEngine::kCycles, scene_, view_,
+                ExportSettings{options.choice.depth, threads_of(options)});
     }
 
     /// Returns nothing after an interrupt signal.
@@ -96,10 +97,11 @@ private:
         result_.reference = reference("path", options_.reference_spp);
         result_.no_naive = naive_limitation(scene_);
         if (!interrupt_.raised() && result_.no_naive.empty()) check_against(reference("naive", options_.check_spp), {});
-        if (!interrupt_.raised() && peer_) check_against(peer_reference(), peer_->notes());
+        if (!interrupt_.raised() && peer_ && peer_->engine() == BlenderEngine::kCycles)
+            check_against(cycles_reference(), peer_->notes());
     }
 
-    CachedReference peer_reference() const {
+    CachedReference cycles_reference() const {
         ProgressBar bar(label("reference by Cycles"), options_.quiet);
         Control control = bar.control(interrupt_);
         Control silent{&interrupt_.flag(), {}};
@@ -111,7 +113,7 @@ private:
     void measure_all() {
         std::vector<BenchRenderer> renderers = duet_renderers(scene_, view_, options_.choice);
         if (peer_)
-            for (BenchRenderer& c : cycles_renderers(peer_, options_.choice.spps)) renderers.push_back(std::move(c));
+            for (BenchRenderer& c : blender_renderers(peer_, options_.choice.spps)) renderers.push_back(std::move(c));
         ProgressBar bar(label("measuring"), options_.quiet);
         Control control = bar.control(interrupt_);
         result_.rows = measure(renderers, result_.reference.reference, counted_, options_.measure, control);
@@ -126,7 +128,7 @@ private:
     const Scene scene_;
     const View view_;
     const Image<std::uint8_t> counted_;
-    std::shared_ptr<CyclesPeer> peer_; ///< null: none requested
+    std::shared_ptr<BlenderPeer> peer_; ///< null: none requested
     SceneResult result_;
 };
 

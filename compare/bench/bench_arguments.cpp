@@ -24,7 +24,8 @@ void add_bench(CommandLine& program) {
              "For each of the path tracer's techniques, of sobol, stratified, independent (default: all)")
         .comma_separated();
     bench.add("--spp", options.choice.spps, "Samples a pixel (default 1,4,16,64)").comma_separated().range(1, 1 << 20);
-    bench.add("--peer", options.peer, "cycles: measure Blender's path tracer beside ours, where Blender is installed");
+    bench.add("--peer", options.peer,
+              "Measure Blender's path tracer (cycles) or rasterizer (eevee, which also needs xvfb) beside ours");
     bench.add("--at-seconds", options.equal_times_seconds, "Compare errors at these times, too: 1,4,15")
         .comma_separated()
         .positive();

@@ -20,7 +20,7 @@ struct BenchOptions {
     std::filesystem::path references; ///< cache folder; empty: default_reference_folder()
     ImageSize size{0, 0};             ///< 0 × 0: the scene's aspect ratio with about 65,536 pixels
     RendererChoice choice;
-    std::string peer;            ///< "cycles"; empty: none
+    std::string peer;            ///< "cycles" or "eevee"; empty: none
     std::vector<double> equal_times_seconds; ///< times in seconds at which errors are compared; empty: none
     BenchMeasureSettings measure;
     int reference_spp = 0; ///< 0: 16 × the maximum of choice.spps

@@ -1,5 +1,5 @@
 // These tests compare our images with those of Cycles. They are skipped if Blender is not installed.
-#include "compare/peers/cycles.h"
+#include "compare/peers/blender.h"
 
 #include "common/system/file.h"
 #include "compare/bench/bias_check.h"
@@ -32,7 +32,7 @@ BiasCheck against_cycles(const fs::path& path, int width, int height, int spp) {
     const Scene scene = load_scene(path);
     const View view{scene.camera, width, height};
     const ReferenceSettings settings{scratch.path(), spp, 64, 2};
-    CyclesPeer peer(scene, view, {settings.depth, settings.threads});
+    BlenderPeer peer(BlenderEngine::kCycles, scene, view, {settings.depth, settings.threads});
     Control control;
     const auto render = [&](int n, std::uint64_t seed) { return peer.unbiased_image(n, seed, control); };
     const std::string program = peer.program(control);
@@ -86,7 +86,7 @@ TEST_SUITE("image") {
     TEST_CASE("Blender's time is its render's, and a stop ends it") {
         if (!blender_is_installed()) return;
         const Scene scene = load_scene(fs::path(DUET_SOURCE_DIR) / "models" / "cornell.json");
-        CyclesPeer peer(scene, {scene.camera, 32, 32}, {8, 1});
+        BlenderPeer peer(BlenderEngine::kCycles, scene, {scene.camera, 32, 32}, {8, 1});
         Control control;
         peer.render({1, 1, false}, control);
         const double few = peer.render({16, 1, false}, control).seconds;

@@ -1,5 +1,6 @@
-# Builds the scene that compare/peers/export_scene.cpp wrote in Blender, then renders it with Cycles on each request.
-# Run by compare/peers/cycles.cpp: blender -b --factory-startup --debug-cycles --python cycles.py -- FOLDER
+# Builds the scene that compare/peers/export_scene.cpp wrote in Blender, then renders it on each request with Cycles,
+# Blender's path tracer, or with EEVEE, its rasterizer.
+# Run by compare/peers/blender.cpp: blender -b --factory-startup --debug-cycles --python blender.py -- FOLDER ENGINE
 # The scene's coordinates are used in Blender without rotation, with y up.
 # The script supports Blender 3.x and 4.x. Where their names differ, a tuple lists the alternatives, and the first that
 # exists is used.
@@ -8,11 +9,13 @@ import json
 import math
 import os
 import sys
+import time
 
 import bpy
 from mathutils import Matrix, Vector
 
-FOLDER = sys.argv[sys.argv.index("--") + 1]
+FOLDER, ENGINE = sys.argv[sys.argv.index("--") + 1:]
+EEVEE = ENGINE == "eevee"
 WHITE = (1.0, 1.0, 1.0, 1.0)
 GLOSSY = ("ShaderNodeBsdfGlossy", "ShaderNodeBsdfAnisotropic")  # since 4.0, the second name is for both
 SHARP = ("SHARP", "GGX")  # since 4.0, a roughness of 0 is used instead of SHARP
@@ -202,6 +205,10 @@ def make_material(m):
                "emissive": emissive}[m["type"]](nodes, m)
     output = nodes.tree.nodes.new("ShaderNodeOutputMaterial")
     nodes.tree.links.new(surface, output.inputs["Surface"])
+    if EEVEE:
+        material.use_screen_refraction = m["type"] == "dielectric"
+        if m["type"] == "emissive":
+            material.shadow_method = "NONE"  # the light that stands for it would be in its shadow
     inside = absorption(nodes, m)
     if inside is not None:
         nodes.tree.links.new(inside, output.inputs["Volume"])
@@ -324,17 +331,78 @@ def make_camera(c):
     bpy.context.scene.camera = thing
 
 
-def set_up_render(settings):
-    scene = bpy.context.scene
-    render, cycles = scene.render, scene.cycles
-    render.engine = "CYCLES"
-    render.resolution_x, render.resolution_y, render.resolution_percentage = settings["width"], settings["height"], 100
-    render.threads_mode, render.threads = "FIXED", settings["threads"]
-    render.use_persistent_data = True  # the BVH is built once, as in Duet
-    render.use_compositing = render.use_sequencer = render.use_motion_blur = False
-    render.image_settings.file_format, render.image_settings.color_depth = "OPEN_EXR", "32"
-    render.image_settings.color_mode = "RGB"
-    render.dither_intensity = 0.0
+def add_lamp(name, shape, radiance, area, place, settings):
+    """Adds a light of EEVEE, whose surfaces do not light others by themselves. Lambert's law: power = pi L A."""
+    data = bpy.data.lights.new(name, shape)
+    strength = max(radiance)
+    data.color, data.energy = [c / strength for c in radiance], math.pi * strength * area
+    for key, value in settings.items():
+        setattr(data, key, value)
+    data.use_contact_shadow = True
+    thing = bpy.data.objects.new(name, data)
+    bpy.context.collection.objects.link(thing)
+    thing.matrix_world = place
+
+
+def add_lamps(scene):
+    """Puts a rectangle in front of each flat emissive mesh, and a ball into each other."""
+    for o in scene["objects"]:
+        used = [scene["materials"][i] for i in o["materials"]]
+        if not used or any(m["type"] != "emissive" for m in used) or max(used[0]["radiance"]) == 0.0:
+            continue
+        matrix, mesh = Matrix(o["matrix"]), bpy.data.objects[o["name"]].data
+        points = [matrix @ v.co for v in mesh.vertices]
+        corners = [[points[v] for v in polygon.vertices] for polygon in mesh.polygons]
+        scaled = [(b - a).cross(c - a) / 2 for a, b, c in corners]
+        area = sum(n.length for n in scaled)
+        middle = [(min(p[i] for p in points) + max(p[i] for p in points)) / 2 for i in range(3)]
+        normal = sum(scaled, Vector())
+        if normal.length < 0.999 * area:  # not flat
+            radius = max((p - Vector(middle)).length for p in points)
+            add_lamp(o["name"], "POINT", used[0]["radiance"], area, Matrix.Translation(middle),
+                     {"shadow_soft_size": radius})
+            continue
+        normal.normalize()
+        along = (corners[0][1] - corners[0][0]).normalized()
+        across = normal.cross(along)
+        low, high = ([f(axis.dot(p) for p in points) for axis in (along, across)] for f in (min, max))
+        center = along * (low[0] + high[0]) / 2 + across * (low[1] + high[1]) / 2 + normal * normal.dot(points[0])
+        size = {"shape": "RECTANGLE", "size": high[0] - low[0], "size_y": high[1] - low[1]}
+        for side in (1.0, -1.0) if used[0]["two_sided"] else (1.0,):
+            turn = Matrix((along * side, across, normal * -side)).transposed().inverted().transposed().to_4x4()
+            offset = normal * (side * 1e-3 * max(size["size"], size["size_y"]))
+            add_lamp(o["name"], "AREA", used[0]["radiance"], area, Matrix.Translation(center + offset) @ turn, size)
+
+
+def set_up_eevee(scene, description):
+    """Switches on what EEVEE has: screen-space reflection, refraction and occlusion, soft shadows, and light probes."""
+    eevee = scene.eevee
+    scene.render.engine = "BLENDER_EEVEE"
+    eevee.use_ssr = eevee.use_ssr_refraction = eevee.use_gtao = eevee.use_soft_shadows = True
+    eevee.use_ssr_halfres = False
+    eevee.shadow_cube_size = eevee.shadow_cascade_size = "2048"
+    eevee.light_threshold = 0.0
+    eevee.gi_cubemap_resolution = "64"  # llvmpipe bakes with more than this for minutes
+    corners = [thing.matrix_world @ Vector(c) for thing in bpy.data.objects if thing.type == "MESH"
+               for c in thing.bound_box]
+    low, high = (Vector([f(c[i] for c in corners) for i in range(3)]) for f in (min, max))
+    reach = (high - low).length + max((scene.camera.matrix_world.translation - c).length for c in corners)
+    data = scene.camera.data
+    data.clip_start, data.clip_end = max(data.clip_start, 1e-4 * reach), reach  # its depths have 24 bits
+    probe = bpy.data.lightprobes.new("irradiance", "GRID")
+    probe.grid_resolution_x = probe.grid_resolution_y = probe.grid_resolution_z = 6
+    thing = bpy.data.objects.new("irradiance", probe)
+    bpy.context.collection.objects.link(thing)
+    half = (high - low) / 2 + Vector((1e-3, 1e-3, 1e-3)) * reach
+    thing.matrix_world = Matrix.Translation((low + high) / 2) @ Matrix.Diagonal((*half, 1.0))
+    add_lamps(description)
+    bpy.ops.scene.light_cache_bake()
+
+
+def set_up_cycles(scene, settings):
+    cycles = scene.cycles
+    scene.render.engine = "CYCLES"
+    scene.render.use_persistent_data = True  # the BVH is built once, as in Duet
     cycles.device = "CPU"
     cycles.pixel_filter_type = "BOX"
     # This pattern is as efficient as the default but scrambled per pixel, so that pixels are independent, as the bias
@@ -351,15 +419,35 @@ def set_up_render(settings):
     cycles.use_denoising = cycles.use_fast_gi = cycles.use_auto_tile = False
 
 
-def serve():
-    scene = bpy.context.scene
+def set_up_render(scene, settings):
+    render = scene.render
+    render.resolution_x, render.resolution_y, render.resolution_percentage = settings["width"], settings["height"], 100
+    render.threads_mode, render.threads = "FIXED", settings["threads"]
+    render.use_compositing = render.use_sequencer = render.use_motion_blur = False
+    render.image_settings.file_format, render.image_settings.color_depth = "OPEN_EXR", "32"
+    render.image_settings.color_mode = "RGB"
+    render.dither_intensity = 0.0
+
+
+def render(scene, spp, seed, adaptive, path):
+    if EEVEE:
+        scene.eevee.taa_render_samples = spp
+    else:
+        scene.cycles.samples, scene.cycles.seed, scene.cycles.use_adaptive_sampling = spp, seed, adaptive
+    start = time.perf_counter()
+    bpy.ops.render.render()
+    if EEVEE:
+        print(f"Render time (without synchronization): {time.perf_counter() - start}", flush=True)
+    bpy.data.images["Render Result"].save_render(path)
+
+
+def serve(scene):
+    if EEVEE:
+        bpy.ops.render.render()  # compiles the shaders
     print("duet: ready", flush=True)
     for line in sys.stdin:
         spp, seed, adaptive, path = line.rstrip("\n").split(" ", 3)
-        scene.cycles.samples, scene.cycles.seed = int(spp), int(seed)
-        scene.cycles.use_adaptive_sampling = adaptive == "1"
-        scene.render.filepath = path
-        bpy.ops.render.render(write_still=True)
+        render(scene, int(spp), int(seed), adaptive == "1", path)
         print("duet: rendered", flush=True)
 
 
@@ -374,8 +462,13 @@ def main():
         make_light(light, number)
     make_environment(description["environment"])
     make_camera(description["camera"])
-    set_up_render(description["render"])
-    serve()
+    scene = bpy.context.scene
+    set_up_render(scene, description["render"])
+    if EEVEE:
+        set_up_eevee(scene, description)
+    else:
+        set_up_cycles(scene, description["render"])
+    serve(scene)
 
 
 main()

@@ -1,4 +1,4 @@
-#include "compare/peers/cycles.h"
+#include "compare/peers/blender.h"
 
 #include "common/image/image_file.h"
 #include "common/system/file.h"
@@ -10,7 +10,7 @@
 
 namespace duet::compare {
 
-extern const std::string_view kCyclesScript; // compare/peers/cycles.py, embedded by CMakeLists.txt
+extern const std::string_view kBlenderScript; // compare/peers/blender.py, embedded by CMakeLists.txt
 
 namespace {
 
@@ -29,10 +29,10 @@ std::optional<double> number_after(const std::string& line, std::string_view lab
 } // namespace
 
 /// The member order ensures that the folder is deleted last, after Blender has ended.
-class CyclesPeer::Process {
+class BlenderPeer::Process {
 public:
-    Process(const Scene& scene, const View& view, const ExportSettings& settings)
-        : notes_(export_scene(folder_.path(), scene, view, settings)), blender_(command(folder_.path())) {}
+    Process(BlenderEngine engine, const Scene& scene, const View& view, const ExportSettings& settings)
+        : notes_(export_scene(folder_.path(), scene, view, settings)), blender_(command(engine, folder_.path())) {}
 
     const ExportNotes& notes() const { return notes_; }
     const std::string& program() const { return program_; } ///< known once the script is ready
@@ -63,11 +63,19 @@ public:
     }
 
 private:
-    static std::vector<std::string> command(const fs::path& folder) {
-        const fs::path script = folder / "cycles.py";
-        write_file(script, kCyclesScript);
-        return {"blender", "-b",       "--factory-startup", "-noaudio", "--debug-cycles", "--python-exit-code",
-                "3",       "--python", script.string(),     "--",       folder.string()};
+    static std::vector<std::string> command(BlenderEngine engine, const fs::path& folder) {
+        const fs::path script = folder / "blender.py";
+        write_file(script, kBlenderScript);
+        const bool eevee = engine == BlenderEngine::kEevee;
+        std::vector<std::string> all;
+        if (eevee) all = {"env", "LIBGL_ALWAYS_SOFTWARE=1", "xvfb-run", "--auto-servernum"};
+        for (const char* const word : {"blender", "-b", "--factory-startup", "-noaudio", "--debug-cycles",
+                                       "--python-exit-code", "3", "--python"})
+            all.emplace_back(word);
+        for (const std::string& word : {script.string(), std::string("--"), folder.string(),
+                                        std::string(eevee ? "eevee" : "cycles")})
+            all.push_back(word);
+        return all;
     }
 
     [[noreturn]] void fail() const {
@@ -76,7 +84,7 @@ private:
         throw Error(text, 1);
     }
 
-    TemporaryFolder folder_{"duet-cycles"};
+    TemporaryFolder folder_{"duet-blender"};
     ExportNotes notes_;
     Subprocess blender_;
     std::deque<std::string> last_lines_;
@@ -84,23 +92,23 @@ private:
     std::string program_;
 };
 
-CyclesPeer::CyclesPeer(const Scene& scene, const View& view, const ExportSettings& settings)
-    : process_(std::make_unique<Process>(scene, view, settings)) {}
+BlenderPeer::BlenderPeer(BlenderEngine engine, const Scene& scene, const View& view, const ExportSettings& settings)
+    : engine_(engine), process_(std::make_unique<Process>(engine, scene, view, settings)) {}
 
-CyclesPeer::~CyclesPeer() = default;
+BlenderPeer::~BlenderPeer() = default;
 
-const ExportNotes& CyclesPeer::notes() const { return process_->notes(); }
+const ExportNotes& BlenderPeer::notes() const { return process_->notes(); }
 
-bool CyclesPeer::wait_until_ready(const Control& control) {
+bool BlenderPeer::wait_until_ready(const Control& control) {
     ready_ = ready_ || process_->wait_for("duet: ready", control).has_value();
     return ready_;
 }
 
-std::string CyclesPeer::program(const Control& control) {
+std::string BlenderPeer::program(const Control& control) {
     return wait_until_ready(control) ? process_->program() : "";
 }
 
-TimedImage CyclesPeer::render(const Job& job, Control& control) {
+TimedImage BlenderPeer::render(const Job& job, Control& control) {
     if (!wait_until_ready(control)) return {};
     const fs::path image = process_->image();
     // Cycles' seeds have 31 bits.
@@ -111,7 +119,7 @@ TimedImage CyclesPeer::render(const Job& job, Control& control) {
     return {read_image(image), *seconds, 0};
 }
 
-ImageRgb CyclesPeer::unbiased_image(int spp, std::uint64_t seed, Control& control) {
+ImageRgb BlenderPeer::unbiased_image(int spp, std::uint64_t seed, Control& control) {
     DUET_CHECK_LE(2, spp);
     const ImageRgb all = render({spp, seed, false}, control).image;
     const ImageRgb first = render({1, seed, false}, control).image;
@@ -122,14 +130,16 @@ ImageRgb CyclesPeer::unbiased_image(int spp, std::uint64_t seed, Control& contro
     return others;
 }
 
-std::vector<BenchRenderer> cycles_renderers(const std::shared_ptr<CyclesPeer>& peer, const std::vector<int>& spps) {
-    std::vector<BenchRenderer> renderers;
-    for (const bool adaptive : {false, true})
-        renderers.push_back({"cycles", adaptive ? "adaptive" : "fixed", "", spps,
+std::vector<BenchRenderer> blender_renderers(const std::shared_ptr<BlenderPeer>& peer, const std::vector<int>& spps) {
+    const auto renderer = [&](const char* technique, const char* sampler, const char* note, bool adaptive) {
+        return BenchRenderer{technique, sampler, note, spps,
                              [peer, adaptive](int spp, std::uint64_t seed, Control& control) {
                                  return peer->render({spp, seed, adaptive}, control);
-                             }});
-    return renderers;
+                             }};
+    };
+    if (peer->engine() == BlenderEngine::kEevee)
+        return {renderer("eevee", "", "EEVEE rasterizes: shadow maps, light probes and what the screen shows.", false)};
+    return {renderer("cycles", "fixed", "", false), renderer("cycles", "adaptive", "", true)};
 }
 
 } // namespace duet::compare

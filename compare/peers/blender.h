@@ -1,4 +1,5 @@
-// Blender's Cycles as a renderer of the bench: it renders the same scene in a Blender subprocess.
+// Blender as a renderer of the bench: Cycles, its path tracer, or EEVEE, its rasterizer, renders the same scene in a
+// subprocess.
 #pragma once
 
 #include "compare/bench/bench_renderer.h"
@@ -8,25 +9,29 @@
 
 namespace duet::compare {
 
+enum class BlenderEngine { kCycles, kEevee };
+
 /// This is one Blender process with one scene. Its renders run one at a time, and never at the same time as Duet's.
-class CyclesPeer {
+class BlenderPeer {
 public:
-    /// Exports the scene to a temporary folder and starts Blender, which must be in PATH, with it. Throws Error
-    /// if Blender is not installed or the scene cannot be exported (see export_scene).
-    CyclesPeer(const Scene& scene, const View& view, const ExportSettings& settings);
-    ~CyclesPeer();
-    CyclesPeer(const CyclesPeer&) = delete;
-    CyclesPeer& operator=(const CyclesPeer&) = delete;
+    /// Exports the scene to a temporary folder and starts Blender, which must be in PATH, with it. EEVEE draws by
+    /// OpenGL, so it also needs a display: a virtual one (xvfb-run in PATH), where Mesa's llvmpipe draws on the CPU.
+    /// Throws Error if a program is not installed or the scene cannot be exported (see export_scene).
+    BlenderPeer(BlenderEngine engine, const Scene& scene, const View& view, const ExportSettings& settings);
+    ~BlenderPeer();
+    BlenderPeer(const BlenderPeer&) = delete;
+    BlenderPeer& operator=(const BlenderPeer&) = delete;
 
     struct Job {
         int spp = 1;
-        std::uint64_t seed = 0;
+        std::uint64_t seed = 0; ///< unused by EEVEE
         bool adaptive = false; ///< Cycles' own adaptive sampling, at its default threshold; spp is then the maximum
     };
     /// Renders one image. The returned `seconds` is what Cycles logs as "render time (without
-    /// synchronization)". It excludes start-up, scene loading, the BVH build and file output. Throws Error
-    /// (exit code 1) with Blender's last lines if Blender fails. Returns an empty image if `control` was
-    /// stopped; the process cannot be used afterwards.
+    /// synchronization)", or how long EEVEE's render command takes. It excludes start-up, scene loading, the BVH
+    /// build, light probes, the compilation of shaders, and file output. Throws Error (exit code 1) with Blender's
+    /// last lines if Blender fails. Returns an empty image if `control` was stopped; the process cannot be used
+    /// afterwards.
     TimedImage render(const Job& job, Control& control);
 
     /// Renders an image without a small bias of Cycles. Cycles takes the first sample of each pixel through the
@@ -35,6 +40,7 @@ public:
     /// the other samples. Requires spp ≥ 2. Returns an empty image if `control` was stopped.
     ImageRgb unbiased_image(int spp, std::uint64_t seed, Control& control);
 
+    BlenderEngine engine() const { return engine_; }
     const ExportNotes& notes() const;
 
     /// Returns Blender's name and version, such as "Blender 3.4.1", once it has built the scene. Returns an
@@ -43,6 +49,7 @@ public:
 
 private:
     class Process;
+    BlenderEngine engine_;
     std::unique_ptr<Process> process_;
     bool wait_until_ready(const Control& control);
     bool ready_ = false; ///< whether Blender has built the scene
@@ -52,7 +59,7 @@ private:
 /// for Duet. Reference images are cached under it.
 inline constexpr int kCyclesExportVersion = 3;
 
-/// Returns two renderers, Cycles with and without adaptive sampling, which share the peer.
-std::vector<BenchRenderer> cycles_renderers(const std::shared_ptr<CyclesPeer>& peer, const std::vector<int>& spps);
+/// Returns the peer's renderers, which share it: Cycles with and without adaptive sampling, or EEVEE.
+std::vector<BenchRenderer> blender_renderers(const std::shared_ptr<BlenderPeer>& peer, const std::vector<int>& spps);
 
 } // namespace duet::compare
