@@ -149,6 +149,21 @@ def equal_error(run):
             "error](gallery/equal-error.svg)", {"gallery/equal-error.svg": plot})
 
 
+@figure("eevee", 4)
+def eevee(run):
+    """the rasterizer beside Blender's"""
+    rows = []
+    for name in ("cornell", "glass", "open-sky", "spheres"):
+        result = run("compare", "bench", scene(name), "--techniques", "raster", "--spp", 1, "--peer", "eevee",
+                     output="").data["scenes"][0]
+        theirs, ours = ({key: row[key]["value"] for key in ("seconds", "relmse")}
+                        for technique in ("eevee", "raster") for row in result["rows"]
+                        if row["technique"] == technique)
+        rows.append([f"`{name}`"] + [f"{ms(each['seconds'], 2)}, {number(each['relmse'])}" for each in (theirs, ours)]
+                    + [number(theirs["seconds"] / ours["seconds"]), number(theirs["relmse"] / ours["relmse"])])
+    return table(["scene", "EEVEE: ms, relMSE", "rasterizer: ms, relMSE", "times as fast", "times the error"], rows)
+
+
 EFFECTS = ("--no-shadows", "--no-ambient-occlusion", "--no-indirect")
 
 

@@ -57,7 +57,7 @@ private:
 
 /// Version of the export and settings that determine what Cycles converges to, like raytrace::kEstimatorVersion
 /// for Duet. Reference images are cached under it.
-inline constexpr int kCyclesExportVersion = 3;
+inline constexpr int kCyclesExportVersion = 4;
 
 /// Returns the peer's renderers, which share it: Cycles with and without adaptive sampling, or EEVEE.
 std::vector<BenchRenderer> blender_renderers(const std::shared_ptr<BlenderPeer>& peer, const std::vector<int>& spps);

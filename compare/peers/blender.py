@@ -430,14 +430,15 @@ def set_up_render(scene, settings):
 
 
 def render(scene, spp, seed, adaptive, path):
-    if EEVEE:
-        scene.eevee.taa_render_samples = spp
-    else:
+    scene.render.filepath = path  # marks the scene as changed, which the settings of Cycles do not
+    if not EEVEE:
         scene.cycles.samples, scene.cycles.seed, scene.cycles.use_adaptive_sampling = spp, seed, adaptive
+        bpy.ops.render.render(write_still=True)
+        return
+    scene.eevee.taa_render_samples = spp
     start = time.perf_counter()
     bpy.ops.render.render()
-    if EEVEE:
-        print(f"Render time (without synchronization): {time.perf_counter() - start}", flush=True)
+    print(f"Render time (without synchronization): {time.perf_counter() - start}", flush=True)
     bpy.data.images["Render Result"].save_render(path)
 
 

@@ -1,6 +1,7 @@
 #include "compare/peers/export_geometry.h"
 
 #include "common/geometry/sphere.h"
+#include "common/vec/frame.h"
 
 #include <cmath>
 
@@ -33,6 +34,21 @@ public:
             if (smooth) soup_.normals.push_back(Vec3(normalize(transform_normal(inverse_, Vec3d(corner.n)))));
         }
         soup_.slots.push_back(slot);
+    }
+    /// Adds a closed surface of rings × sectors cells. corner_at(i, j) makes corner i of ring j, of sectors + 1 and
+    /// rings + 1; those of the first and last ring, the poles, coincide, and those of the first and last sector.
+    template <typename CornerAt> void add_rings(int rings, int sectors, const CornerAt& corner_at) {
+        std::vector<Corner> grid;
+        for (int j = 0; j <= rings; ++j)
+            for (int i = 0; i <= sectors; ++i) grid.push_back(corner_at(i, j));
+        const auto corner = [&](int i, int j) { return grid[static_cast<std::size_t>(j * (sectors + 1) + i)]; };
+        for (int j = 0; j < rings; ++j)
+            for (int i = 0; i < sectors; ++i) {
+                // At a pole, one edge of the cell degenerates to a point, so one of its two triangles is omitted.
+                // Seen from outside, the next sector and the next ring lie right and above, or left and below.
+                if (j > 0) add_triangle(corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), 0, true);
+                if (j + 1 < rings) add_triangle(corner(i, j), corner(i + 1, j + 1), corner(i, j + 1), 0, true);
+            }
     }
     TriangleSoup finish() { return std::move(soup_); }
 
@@ -84,23 +100,29 @@ TriangleSoup world_triangles(const Shape& shape, const Mat4& to_world) {
 TriangleSoup sphere_triangles(int rings) {
     SoupBuilder builder{Mat4()};
     const int sectors = 2 * rings;
-    std::vector<SoupBuilder::Corner>
-        grid; // (rings + 1) × (sectors + 1): corners at the seam and the poles are duplicated
-    for (int j = 0; j <= rings; ++j)
-        for (int i = 0; i <= sectors; ++i) {
-            const Vec2 uv(static_cast<float>(i) / static_cast<float>(sectors),
-                          static_cast<float>(j) / static_cast<float>(rings));
-            const Vec3 p = sphere_direction({i == sectors ? 0.0f : uv.x, uv.y});
-            grid.push_back({builder.add_vertex(p), p, p, uv});
-        }
-    const auto corner = [&](int i, int j) { return grid[static_cast<std::size_t>(j * (sectors + 1) + i)]; };
-    for (int j = 0; j < rings; ++j)
-        for (int i = 0; i < sectors; ++i) {
-            // At a pole, one edge of the cell degenerates to a point, so one of its two triangles is omitted.
-            // Seen from outside, u increases to the right.
-            if (j > 0) builder.add_triangle(corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), 0, true);
-            if (j + 1 < rings) builder.add_triangle(corner(i, j), corner(i + 1, j + 1), corner(i, j + 1), 0, true);
-        }
+    builder.add_rings(rings, sectors, [&](int i, int j) -> SoupBuilder::Corner {
+        const Vec2 uv(static_cast<float>(i) / static_cast<float>(sectors),
+                      static_cast<float>(j) / static_cast<float>(rings));
+        const Vec3 p = sphere_direction({i == sectors ? 0.0f : uv.x, uv.y});
+        return {builder.add_vertex(p), p, p, uv};
+    });
+    return builder.finish();
+}
+
+TriangleSoup sphere_triangles_near(Vec3d pole, double height) {
+    constexpr double kStep = 0.028; // √(8e-4): a chord of that many radians is 1e-4 of the radius below its arc
+    constexpr int kSectors = 224; // 2π / kStep
+    std::vector<double> angles{0}; // of the rings, from the pole
+    while (angles.back() < kPiDouble)
+        angles.push_back(min(angles.back() + kStep * std::sqrt(max(height, angles.back())), kPiDouble));
+    SoupBuilder builder{Mat4()};
+    const FrameT<double> frame = frame_from_normal(pole);
+    builder.add_rings(static_cast<int>(angles.size()) - 1, kSectors, [&](int i, int j) -> SoupBuilder::Corner {
+        const double angle = angles[static_cast<std::size_t>(j)], turn = -2 * kPiDouble * (i % kSectors) / kSectors;
+        const Vec3 p(frame.to_world({std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn),
+                                     std::cos(angle)}));
+        return {builder.add_vertex(p), p, p, sphere_uv(p)};
+    });
     return builder.finish();
 }
 

@@ -27,6 +27,11 @@ TriangleSoup world_triangles(const Shape& shape, const Mat4& to_world);
 /// texture coordinates of sphere_uv. Its vertices lie on the sphere, at most an angle of π/rings apart. Faces
 /// lie at most 1 − cos(π/(2·rings)) below the sphere's surface.
 TriangleSoup sphere_triangles(int rings);
+/// Returns the unit sphere around the origin with rings about a pole, a unit vector, that are the finer the closer they
+/// are to it: from a point at the height `height` above the pole, faces lie below the surface by at most 2e-4 of their
+/// distance. So the ground of a scene may be a huge sphere. Textures have a seam, unlike those of
+/// sphere_triangles.
+TriangleSoup sphere_triangles_near(Vec3d pole, double height);
 /// Returns the number of triangles of sphere_triangles(rings).
 constexpr std::int64_t sphere_triangle_count(int rings) { return 4 * std::int64_t{rings} * (rings - 1); }
 

@@ -278,34 +278,45 @@ private:
         });
     }
 
+    /// Meshes of spheres: one that all share, and one for each that is so near or so large that its facets would show.
+    json add_sphere(const Object& o, const Sphere& sphere, json& meshes) {
+        const Mat4d place = Mat4d(world_transform(o)) * translation(Vec3d(sphere.center));
+        const auto radius = static_cast<double>(sphere.radius);
+        const Vec3d eye = transform_point(inverse_affine(place), view_.camera.eye);
+        const double height = std::abs(length(eye) / radius - 1); // above the surface, in radii
+        const int rings = sphere_rings(count_spheres());
+        constexpr double kLargestError = 2e-3; // of facets, over their distance
+        const bool emits = emitter(scene_.materials[o.materials.front()]) != nullptr; // with a sphere's area, below
+        if (!emits && 1 - std::cos(kPiDouble / (2 * rings)) > kLargestError * height && length(eye) > 0) {
+            meshes.push_back(mesh_json(o.name, sphere_triangles_near(normalize(eye), height)));
+            return {{"mesh", meshes.size() - 1},
+                    {"matrix", matrix_json(place * scaling(Vec3d(radius, radius, radius)))}};
+        }
+        if (!sphere_mesh_) {
+            notes_.insert(message("spheres are meshes of ", sphere_triangle_count(rings),
+                                  " triangles, of a sphere's area"));
+            const TriangleSoup soup = sphere_triangles(rings);
+            sphere_mesh_ = {meshes.size(), std::sqrt(4 * kPiDouble / area(soup))};
+            meshes.push_back(mesh_json("sphere", soup));
+        }
+        const double r = sphere_mesh_->radius * radius;
+        return {{"mesh", sphere_mesh_->index}, {"matrix", matrix_json(place * scaling(Vec3d(r, r, r)))}};
+    }
+
+    json add_triangles(const Object& o, json& meshes) {
+        const TriangleSoup soup = world_triangles(scene_.shapes[o.shape], world_transform(o));
+        if (!soup.normals.empty())
+            notes_.insert("smooth normals: the peer bends directions at their horizon in its own way");
+        meshes.push_back(mesh_json(o.name, soup));
+        return {{"mesh", meshes.size() - 1}, {"matrix", matrix_json(Mat4d())}};
+    }
+
     void add_objects(json& file) {
         json meshes = json::array(), objects = json::array();
-        std::optional<std::size_t> sphere_mesh; // one mesh shared by all spheres
-        double sphere_radius = 1;
         for (const Object& o : scene_.objects) {
-            json object = {{"name", o.name}, {"materials", o.materials}};
-            Mat4d matrix;
-            if (const auto* sphere = std::get_if<Sphere>(&scene_.shapes[o.shape])) {
-                if (!sphere_mesh) {
-                    const int rings = sphere_rings(count_spheres());
-                    notes_.insert(message("spheres are meshes of ", sphere_triangle_count(rings),
-                                          " triangles, of a sphere's area"));
-                    sphere_mesh = meshes.size();
-                    const TriangleSoup soup = sphere_triangles(rings);
-                    sphere_radius = std::sqrt(4 * kPiDouble / area(soup));
-                    meshes.push_back(mesh_json("sphere", soup));
-                }
-                const double r = sphere_radius * static_cast<double>(sphere->radius);
-                matrix = Mat4d(world_transform(o)) * translation(Vec3d(sphere->center)) * scaling(Vec3d(r, r, r));
-                object["mesh"] = *sphere_mesh;
-            } else {
-                object["mesh"] = meshes.size();
-                const TriangleSoup soup = world_triangles(scene_.shapes[o.shape], world_transform(o));
-                if (!soup.normals.empty())
-                    notes_.insert("smooth normals: the peer bends directions at their horizon in its own way");
-                meshes.push_back(mesh_json(o.name, soup));
-            }
-            object["matrix"] = matrix_json(matrix);
+            const auto* sphere = std::get_if<Sphere>(&scene_.shapes[o.shape]);
+            json object = sphere != nullptr ? add_sphere(o, *sphere, meshes) : add_triangles(o, meshes);
+            object["name"] = o.name, object["materials"] = o.materials;
             objects.push_back(std::move(object));
         }
         file["meshes"] = std::move(meshes);
@@ -318,6 +329,11 @@ private:
     const ExportSettings& settings_;
     std::ofstream geometry_;
     std::set<std::string> notes_;
+    struct SharedMesh {
+        std::size_t index;
+        double radius; ///< of a unit sphere whose mesh has a sphere's area
+    };
+    std::optional<SharedMesh> sphere_mesh_;
 };
 
 } // namespace

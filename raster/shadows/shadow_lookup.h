@@ -17,7 +17,7 @@ public:
     /// Returns whether visibility() is a noisy estimate, to be averaged over the blocks of 4 × 4 pixels whose estimates
     /// differ.
     virtual bool noisy(std::size_t source) const = 0;
-    /// Returns the visible fraction, in [0, 1], of a source at points relative to the eye, whose unit normals are on the
+    /// Returns the visible fraction, in [0, 1], of a source at points relative to the eye with unit normals on the
     /// viewer's side. The batch starts at column x of row y. The result is unspecified in lanes that `mask` leaves out.
     virtual Floats visibility(std::size_t source, const Vec3T<Floats>& p, const Vec3T<Floats>& n, int x, int y,
                               const xsimd::batch_bool<float>& mask) const = 0;

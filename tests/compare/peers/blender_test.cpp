@@ -83,6 +83,22 @@ TEST_SUITE("image") {
         CHECK(check.detectable < 0.02);
     }
 
+    TEST_CASE("EEVEE draws the Cornell box, as bright as the path tracer within a third, and says its time") {
+        if (!blender_is_installed() || std::system("command -v xvfb-run >/dev/null 2>&1") != 0) return;
+        const Scene scene = load_scene(fs::path(DUET_SOURCE_DIR) / "models" / "cornell.json");
+        const View view{scene.camera, 64, 64};
+        BlenderPeer peer(BlenderEngine::kEevee, scene, view, {64, 2});
+        Control control;
+        const TimedImage found = peer.render({4, 0, false}, control);
+        CHECK(found.seconds > 0);
+        const ScratchFolder scratch;
+        const CachedReference truth = reference_by("path", scene, view, {scratch.path(), 64, 64, 2}, control);
+        double sum = 0, expected = 0;
+        for (const Rgb& c : found.image) sum += static_cast<double>(average(c));
+        for (const Rgb& c : truth.reference.mean) expected += static_cast<double>(average(c));
+        CHECK(sum == doctest::Approx(expected).epsilon(0.33));
+    }
+
     TEST_CASE("Blender's time is its render's, and a stop ends it") {
         if (!blender_is_installed()) return;
         const Scene scene = load_scene(fs::path(DUET_SOURCE_DIR) / "models" / "cornell.json");

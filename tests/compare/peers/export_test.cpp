@@ -99,6 +99,36 @@ TEST_SUITE("unit") {
         }
     }
 
+    TEST_CASE("the mesh of a large sphere: closed, outwards, near the viewer within 2e-4 of the distance") {
+        for (const double height : {1e-4, 2e-3, 0.5}) {
+            const Vec3d pole = normalize(Vec3d(1, 2, -2)), eye = pole * (1 + height);
+            const TriangleSoup soup = sphere_triangles_near(pole, height);
+            CHECK(faces_outwards(soup));
+            CHECK(area(soup) == doctest::Approx(4 * kPiDouble).epsilon(2e-3));
+            for (std::size_t t = 0; t < soup.triangles.size(); t += 3) {
+                const auto p = [&](std::size_t k) {
+                    return Vec3d(soup.positions[static_cast<std::size_t>(soup.triangles[t + k])]);
+                };
+                const Vec3d middle = (p(0) + p(1) + p(2)) * (1.0 / 3);
+                CHECK(1 - length(middle) < 2e-4 * length(middle - eye) + 1e-7);
+            }
+        }
+    }
+
+    TEST_CASE("a ground that is a huge sphere has a mesh of its own, of the sphere's radius") {
+        const ScratchFolder scratch;
+        SceneBuilder builder;
+        const std::uint32_t grey = builder.material(Diffuse{});
+        builder.add(Sphere{{0, -1000, 0}, 1000}, grey);
+        builder.add(Sphere{{0, 0.5f, 0}, 0.5f}, grey);
+        Scene scene = builder.finish();
+        scene.camera.eye = {0, 2, 10};
+        const json file = exported(scratch, scene);
+        CHECK(file["meshes"].size() == 2);
+        CHECK(file["objects"][0]["matrix"][0][0] == 1000.0);
+        CHECK(file["objects"][1]["matrix"][0][0].get<double>() > 0.5);
+    }
+
     TEST_CASE("cornell.json: objects, materials, camera and settings as the path tracer has them") {
         const ScratchFolder scratch;
         ExportNotes notes;
