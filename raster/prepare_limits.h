@@ -10,7 +10,8 @@
 
 namespace duet::raster {
 
-/// Limits by the number of pixels of the scene's image. An image of 256 × 256 pixels or more has none of them.
+/// Limits by the number of pixels of the scene's image. An image of 256 × 256 pixels or more has none of them, but for
+/// the largest radiance maps.
 struct PrepareLimits {
     explicit PrepareLimits(const Scene& scene)
         : pixels_(static_cast<std::int64_t>(scene.width) * scene.height) {}
@@ -18,7 +19,7 @@ struct PrepareLimits {
     /// Shadow maps have at most 64 texels for a pixel of the image.
     int shadow_map_side(int finest) const { return std::min(finest, power_of_two(8)); }
     /// Radiance maps of reflections, and the shapes of glass objects, have at most 16 texels for a pixel; above a side
-    /// of 256 at most one, because balls, which show a whole map, would show single texels of it.
+    /// of 256 at most one, because a ball of few pixels shows a whole map, and would skip most of its texels.
     int radiance_map_side(int finest) const {
         return std::min({finest, power_of_two(4), std::max(256, power_of_two(1))});
     }

@@ -11,7 +11,7 @@ using namespace duet;
 struct Options {
     std::string shading = "lit";
     bool no_environment = false, no_culling = false;
-    raster::RasterSettings settings; // all that an option sets as it is
+    raster::RasterSettings settings; // Options that need no conversion write here.
 };
 
 void add_options(CommandLine& command_line, Options& options) {

@@ -18,7 +18,7 @@ struct Options {
     std::string integrator = "path", sampler = "sobol", filter = "box", film, samples, pixel;
     bool no_environment = false;
     std::optional<bool> adaptive;
-    raytrace::PathTracerSettings settings; // all that an option sets as it is
+    raytrace::PathTracerSettings settings; // Options that need no conversion write here.
 };
 
 void add_options(CommandLine& command_line, Options& options) {

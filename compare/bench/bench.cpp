@@ -25,11 +25,16 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+BlenderEngine engine_of(const BenchOptions& options) {
+    return options.peer == "eevee" ? BlenderEngine::kEevee : BlenderEngine::kCycles;
+}
+
 /// Checks options before the long renders.
 void check(const BenchOptions& options) {
     check_renderer_choice(options.choice);
     if (!options.peer.empty() && options.peer != "cycles" && options.peer != "eevee")
         throw Error(message("--peer: found ", options.peer, ", expected cycles or eevee"));
+    if (!options.peer.empty()) check_blender(engine_of(options));
     if (!options.folder.empty()) make_folder(options.folder);
     check_json_path(options.stats);
 }
@@ -61,9 +66,8 @@ public:
         result_.width = view_.width;
         result_.height = view_.height;
         if (!options.peer.empty())
-            peer_ = std::make_shared<BlenderPeer>(
-                options.peer == "eevee" ? BlenderEngine::kEevee : BlenderEngine::kCycles, scene_, view_,
-                ExportSettings{options.choice.depth, threads_of(options)});
+            peer_ = std::make_shared<BlenderPeer>(engine_of(options), scene_, view_,
+                                                  ExportSettings{options.choice.depth, threads_of(options)});
     }
 
     /// Returns nothing after an interrupt signal.

@@ -2,6 +2,7 @@
 #include "compare/frames/gl.h"
 
 #include "common/system/error.h"
+#include "compare/peers/llvmpipe_environment.h"
 
 #include <EGL/eglext.h>
 #include <cstdlib>
@@ -13,19 +14,10 @@ namespace {
     throw Error(message("llvmpipe: ", what, " (EGL error ", eglGetError(), ')'));
 }
 
-/// Selects llvmpipe by environment variables, which Mesa reads when a display is initialized.
-void choose_llvmpipe(int threads) {
-    setenv("GALLIUM_DRIVER", "llvmpipe", 1);
-    setenv("LIBGL_ALWAYS_SOFTWARE", "1", 1);
-    // With one thread, the calling thread does the work itself. This avoids handing over to a thread on the
-    // same processor.
-    setenv("LP_NUM_THREADS", std::to_string(threads > 1 ? threads : 0).c_str(), 1);
-}
-
 } // namespace
 
 GlContext::GlContext(int threads) {
-    choose_llvmpipe(threads);
+    for (const auto& [name, value] : llvmpipe_environment(threads)) setenv(name.c_str(), value.c_str(), 1);
     display_ = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
     if (display_ == EGL_NO_DISPLAY || !eglInitialize(display_, nullptr, nullptr)) fail("no surfaceless EGL display");
     if (!eglBindAPI(EGL_OPENGL_API)) fail("EGL has no desktop OpenGL");

@@ -2,6 +2,7 @@
 
 #include "common/image/image_file.h"
 #include "common/system/file.h"
+#include "compare/peers/llvmpipe_environment.h"
 #include "compare/peers/subprocess.h"
 #include "compare/peers/temporary_folder.h"
 
@@ -32,7 +33,8 @@ std::optional<double> number_after(const std::string& line, std::string_view lab
 class BlenderPeer::Process {
 public:
     Process(BlenderEngine engine, const Scene& scene, const View& view, const ExportSettings& settings)
-        : notes_(export_scene(folder_.path(), scene, view, settings)), blender_(command(engine, folder_.path())) {}
+        : notes_(export_scene(folder_.path(), scene, view, settings)),
+          blender_(command(engine, folder_.path(), settings.threads)) {}
 
     const ExportNotes& notes() const { return notes_; }
     const std::string& program() const { return program_; } ///< known once the script is ready
@@ -63,18 +65,19 @@ public:
     }
 
 private:
-    static std::vector<std::string> command(BlenderEngine engine, const fs::path& folder) {
+    static std::vector<std::string> command(BlenderEngine engine, const fs::path& folder, int threads) {
         const fs::path script = folder / "blender.py";
         write_file(script, kBlenderScript);
         const bool eevee = engine == BlenderEngine::kEevee;
         std::vector<std::string> all;
-        if (eevee) all = {"env", "LIBGL_ALWAYS_SOFTWARE=1", "xvfb-run", "--auto-servernum"};
-        for (const char* const word : {"blender", "-b", "--factory-startup", "-noaudio", "--debug-cycles",
-                                       "--python-exit-code", "3", "--python"})
-            all.emplace_back(word);
-        for (const std::string& word : {script.string(), std::string("--"), folder.string(),
-                                        std::string(eevee ? "eevee" : "cycles")})
-            all.push_back(word);
+        if (eevee) {
+            all = {"xvfb-run", "--auto-servernum", "env"};
+            for (const auto& [name, value] : llvmpipe_environment(threads)) all.push_back(name + "=" + value);
+        }
+        const std::vector<std::string> blender{
+            "blender", "-b", "--factory-startup", "-noaudio", "--debug-cycles", "--python-exit-code", "3", "--python",
+            script.string(), "--", folder.string(), eevee ? "eevee" : "cycles"};
+        all.insert(all.end(), blender.begin(), blender.end());
         return all;
     }
 
@@ -91,6 +94,13 @@ private:
     static constexpr std::string_view kVersionPrefix = "duet: ";
     std::string program_;
 };
+
+void check_blender(BlenderEngine engine) {
+    for (const char* const program : {"blender", "xvfb-run"})
+        if ((engine == BlenderEngine::kEevee || program == std::string_view("blender")) && !is_installed(program))
+            throw Error(message("--peer: ", program, " is not in PATH; install it (Debian, Ubuntu: apt-get install ",
+                                program == std::string_view("blender") ? "blender" : "xvfb", ")"));
+}
 
 BlenderPeer::BlenderPeer(BlenderEngine engine, const Scene& scene, const View& view, const ExportSettings& settings)
     : engine_(engine), process_(std::make_unique<Process>(engine, scene, view, settings)) {}
@@ -131,14 +141,17 @@ ImageRgb BlenderPeer::unbiased_image(int spp, std::uint64_t seed, Control& contr
 }
 
 std::vector<BenchRenderer> blender_renderers(const std::shared_ptr<BlenderPeer>& peer, const std::vector<int>& spps) {
-    const auto renderer = [&](const char* technique, const char* sampler, const char* note, bool adaptive) {
+    const auto renderer = [&](const char* technique, const char* sampler, const std::string& note, bool adaptive) {
         return BenchRenderer{technique, sampler, note, spps,
                              [peer, adaptive](int spp, std::uint64_t seed, Control& control) {
                                  return peer->render({spp, seed, adaptive}, control);
                              }};
     };
-    if (peer->engine() == BlenderEngine::kEevee)
-        return {renderer("eevee", "", "EEVEE rasterizes: shadow maps, light probes and what the screen shows.", false)};
+    if (peer->engine() == BlenderEngine::kEevee) {
+        std::string note = "EEVEE rasterizes: shadow maps, light probes and what the screen shows.";
+        for (const std::string& approximation : peer->notes()) note += " Its scene: " + approximation + ".";
+        return {renderer("eevee", "", note, false)};
+    }
     return {renderer("cycles", "fixed", "", false), renderer("cycles", "adaptive", "", true)};
 }
 

@@ -11,12 +11,15 @@ namespace duet::compare {
 
 enum class BlenderEngine { kCycles, kEevee };
 
+/// Throws Error unless the programs are in PATH: blender, and xvfb-run for EEVEE, which draws by OpenGL and so needs a
+/// display, a virtual one.
+void check_blender(BlenderEngine engine);
+
 /// This is one Blender process with one scene. Its renders run one at a time, and never at the same time as Duet's.
 class BlenderPeer {
 public:
-    /// Exports the scene to a temporary folder and starts Blender, which must be in PATH, with it. EEVEE draws by
-    /// OpenGL, so it also needs a display: a virtual one (xvfb-run in PATH), where Mesa's llvmpipe draws on the CPU.
-    /// Throws Error if a program is not installed or the scene cannot be exported (see export_scene).
+    /// Exports the scene to a temporary folder and starts Blender with it (see check_blender). EEVEE draws with Mesa's
+    /// llvmpipe, on the CPU. Throws Error if the scene cannot be exported (see export_scene).
     BlenderPeer(BlenderEngine engine, const Scene& scene, const View& view, const ExportSettings& settings);
     ~BlenderPeer();
     BlenderPeer(const BlenderPeer&) = delete;
@@ -27,11 +30,10 @@ public:
         std::uint64_t seed = 0; ///< unused by EEVEE
         bool adaptive = false; ///< Cycles' own adaptive sampling, at its default threshold; spp is then the maximum
     };
-    /// Renders one image. The returned `seconds` is what Cycles logs as "render time (without
-    /// synchronization)", or how long EEVEE's render command takes. It excludes start-up, scene loading, the BVH
-    /// build, light probes, the compilation of shaders, and file output. Throws Error (exit code 1) with Blender's
-    /// last lines if Blender fails. Returns an empty image if `control` was stopped; the process cannot be used
-    /// afterwards.
+    /// Renders one image. The returned `seconds` is what Cycles logs as "render time (without synchronization)", or how
+    /// long EEVEE's render command takes, which may transfer the scene. It excludes start-up, scene loading, the BVH
+    /// build, light probes, the compilation of shaders, and file output. Throws Error (exit code 1) with Blender's last
+    /// lines if Blender fails. Returns an empty image if `control` was stopped; the process cannot be used afterwards.
     TimedImage render(const Job& job, Control& control);
 
     /// Renders an image without a small bias of Cycles. Cycles takes the first sample of each pixel through the

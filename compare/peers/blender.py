@@ -2,12 +2,13 @@
 # Blender's path tracer, or with EEVEE, its rasterizer.
 # Run by compare/peers/blender.cpp: blender -b --factory-startup --debug-cycles --python blender.py -- FOLDER ENGINE
 # The scene's coordinates are used in Blender without rotation, with y up.
-# The script supports Blender 3.x and 4.x. Where their names differ, a tuple lists the alternatives, and the first that
-# exists is used.
+# The script supports Blender 3.x and 4.x, and EEVEE up to 4.0. Where their names differ, a tuple lists the
+# alternatives, and the first that exists is used.
 import array
 import json
 import math
 import os
+import statistics
 import sys
 import time
 
@@ -245,12 +246,15 @@ def make_mesh(name, part):
 
 
 def make_objects(scene, materials):
+    """Returns Blender's objects, in the order of the scene's."""
     meshes = [make_mesh(part["name"], part) for part in scene["meshes"]]
+    things = []
     for o in scene["objects"]:
         mesh = meshes[o["mesh"]]
         while len(mesh.materials) < len(o["materials"]):
             mesh.materials.append(None)
         thing = bpy.data.objects.new(o["name"], mesh)
+        things.append(thing)
         bpy.context.collection.objects.link(thing)
         for i, index in enumerate(o["materials"]):
             thing.material_slots[i].link = "OBJECT"
@@ -259,6 +263,7 @@ def make_objects(scene, materials):
         set_where_known(0.0, "shadow_terminator_offset", thing.cycles)
         set_where_known(0.0, "shadow_terminator_normal_offset", thing)
         set_where_known(0.0, "shadow_terminator_geometry_offset", thing.cycles, thing)
+    return things
 
 
 def undo_spot_cosine(data, direction):
@@ -344,21 +349,24 @@ def add_lamp(name, shape, radiance, area, place, settings):
     thing.matrix_world = place
 
 
-def add_lamps(scene):
-    """Puts a rectangle in front of each flat emissive mesh, and a ball into each other."""
-    for o in scene["objects"]:
+def add_lamps(scene, things):
+    """Puts a rectangle in front of each flat emissive mesh, and a ball into each other. Returns the meshes, which light
+    probes must not see: they would give the same light once more."""
+    emissive = bpy.data.collections.new("emissive")
+    bpy.context.scene.collection.children.link(emissive)
+    for o, thing in zip(scene["objects"], things):
         used = [scene["materials"][i] for i in o["materials"]]
-        if not used or any(m["type"] != "emissive" for m in used) or max(used[0]["radiance"]) == 0.0:
+        if any(m["type"] != "emissive" for m in used) or max(used[0]["radiance"]) == 0.0:
             continue
-        matrix, mesh = Matrix(o["matrix"]), bpy.data.objects[o["name"]].data
-        points = [matrix @ v.co for v in mesh.vertices]
-        corners = [[points[v] for v in polygon.vertices] for polygon in mesh.polygons]
+        emissive.objects.link(thing)
+        points = [thing.matrix_world @ v.co for v in thing.data.vertices]
+        corners = [[points[v] for v in polygon.vertices] for polygon in thing.data.polygons]
         scaled = [(b - a).cross(c - a) / 2 for a, b, c in corners]
         area = sum(n.length for n in scaled)
-        middle = [(min(p[i] for p in points) + max(p[i] for p in points)) / 2 for i in range(3)]
         normal = sum(scaled, Vector())
         if normal.length < 0.999 * area:  # not flat
-            radius = max((p - Vector(middle)).length for p in points)
+            middle = (least(points) + most(points)) / 2
+            radius = max((p - middle).length for p in points)
             add_lamp(o["name"], "POINT", used[0]["radiance"], area, Matrix.Translation(middle),
                      {"shadow_soft_size": radius})
             continue
@@ -369,13 +377,38 @@ def add_lamps(scene):
         center = along * (low[0] + high[0]) / 2 + across * (low[1] + high[1]) / 2 + normal * normal.dot(points[0])
         size = {"shape": "RECTANGLE", "size": high[0] - low[0], "size_y": high[1] - low[1]}
         for side in (1.0, -1.0) if used[0]["two_sided"] else (1.0,):
-            turn = Matrix((along * side, across, normal * -side)).transposed().inverted().transposed().to_4x4()
+            turn = Matrix((along, across * -side, normal * -side)).transposed().to_4x4()  # it shines along its -z
             offset = normal * (side * 1e-3 * max(size["size"], size["size_y"]))
             add_lamp(o["name"], "AREA", used[0]["radiance"], area, Matrix.Translation(center + offset) @ turn, size)
+    return emissive
 
 
-def set_up_eevee(scene, description):
+def least(points):
+    return Vector([min(p[i] for p in points) for i in range(3)])
+
+
+def most(points):
+    return Vector([max(p[i] for p in points) for i in range(3)])
+
+
+def add_irradiance_grid(boxes, hidden):
+    """Puts irradiance probes around all objects but a ground much larger than most; boxes are their corners."""
+    sizes = [(most(box) - least(box)).length for box in boxes]
+    usual = statistics.median_low(sizes)
+    corners = [p for box, size in zip(boxes, sizes) if size <= 20 * usual for p in box]
+    probe = bpy.data.lightprobes.new("irradiance", "GRID")
+    probe.grid_resolution_x = probe.grid_resolution_y = probe.grid_resolution_z = 6
+    probe.visibility_collection, probe.invert_visibility_collection = hidden, True
+    thing = bpy.data.objects.new("irradiance", probe)
+    bpy.context.collection.objects.link(thing)
+    half = (most(corners) - least(corners)) / 2 + Vector((1e-3, 1e-3, 1e-3)) * usual
+    thing.matrix_world = Matrix.Translation((least(corners) + most(corners)) / 2) @ Matrix.Diagonal((*half, 1.0))
+
+
+def set_up_eevee(scene, description, things):
     """Switches on what EEVEE has: screen-space reflection, refraction and occlusion, soft shadows, and light probes."""
+    if bpy.app.version >= (4, 1, 0):
+        raise RuntimeError(f"EEVEE of Blender {bpy.app.version_string}: expected one of 3.x or 4.0")
     eevee = scene.eevee
     scene.render.engine = "BLENDER_EEVEE"
     eevee.use_ssr = eevee.use_ssr_refraction = eevee.use_gtao = eevee.use_soft_shadows = True
@@ -383,26 +416,19 @@ def set_up_eevee(scene, description):
     eevee.shadow_cube_size = eevee.shadow_cascade_size = "2048"
     eevee.light_threshold = 0.0
     eevee.gi_cubemap_resolution = "64"  # llvmpipe bakes with more than this for minutes
-    corners = [thing.matrix_world @ Vector(c) for thing in bpy.data.objects if thing.type == "MESH"
-               for c in thing.bound_box]
-    low, high = (Vector([f(c[i] for c in corners) for i in range(3)]) for f in (min, max))
-    reach = (high - low).length + max((scene.camera.matrix_world.translation - c).length for c in corners)
+    boxes = [[thing.matrix_world @ Vector(corner) for corner in thing.bound_box] for thing in things]
+    corners = [p for box in boxes for p in box]
+    reach = (most(corners) - least(corners)).length + max((scene.camera.matrix_world.translation - p).length
+                                                          for p in corners)
     data = scene.camera.data
     data.clip_start, data.clip_end = max(data.clip_start, 1e-4 * reach), reach  # its depths have 24 bits
-    probe = bpy.data.lightprobes.new("irradiance", "GRID")
-    probe.grid_resolution_x = probe.grid_resolution_y = probe.grid_resolution_z = 6
-    thing = bpy.data.objects.new("irradiance", probe)
-    bpy.context.collection.objects.link(thing)
-    half = (high - low) / 2 + Vector((1e-3, 1e-3, 1e-3)) * reach
-    thing.matrix_world = Matrix.Translation((low + high) / 2) @ Matrix.Diagonal((*half, 1.0))
-    add_lamps(description)
+    add_irradiance_grid(boxes, add_lamps(description, things))
     bpy.ops.scene.light_cache_bake()
 
 
 def set_up_cycles(scene, settings):
     cycles = scene.cycles
     scene.render.engine = "CYCLES"
-    scene.render.use_persistent_data = True  # the BVH is built once, as in Duet
     cycles.device = "CPU"
     cycles.pixel_filter_type = "BOX"
     # This pattern is as efficient as the default but scrambled per pixel, so that pixels are independent, as the bias
@@ -423,6 +449,7 @@ def set_up_render(scene, settings):
     render = scene.render
     render.resolution_x, render.resolution_y, render.resolution_percentage = settings["width"], settings["height"], 100
     render.threads_mode, render.threads = "FIXED", settings["threads"]
+    render.use_persistent_data = True  # the BVH is built once, as in Duet
     render.use_compositing = render.use_sequencer = render.use_motion_blur = False
     render.image_settings.file_format, render.image_settings.color_depth = "OPEN_EXR", "32"
     render.image_settings.color_mode = "RGB"
@@ -458,7 +485,7 @@ def main():
         description = json.load(file)
     for thing in list(bpy.data.objects):
         bpy.data.objects.remove(thing)
-    make_objects(description, [make_material(m) for m in description["materials"]])
+    things = make_objects(description, [make_material(m) for m in description["materials"]])
     for number, light in enumerate(description["lights"]):
         make_light(light, number)
     make_environment(description["environment"])
@@ -466,7 +493,7 @@ def main():
     scene = bpy.context.scene
     set_up_render(scene, description["render"])
     if EEVEE:
-        set_up_eevee(scene, description)
+        set_up_eevee(scene, description, things)
     else:
         set_up_cycles(scene, description["render"])
     serve(scene)

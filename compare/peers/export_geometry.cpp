@@ -112,9 +112,12 @@ TriangleSoup sphere_triangles(int rings) {
 TriangleSoup sphere_triangles_near(Vec3d pole, double height) {
     constexpr double kStep = 0.028; // √(8e-4): a chord of that many radians is 1e-4 of the radius below its arc
     constexpr int kSectors = 224; // 2π / kStep
+    constexpr double kLeastHeight = 1e-6; // smaller facets would be lost in the rounding of their corners
     std::vector<double> angles{0}; // of the rings, from the pole
-    while (angles.back() < kPiDouble)
-        angles.push_back(min(angles.back() + kStep * std::sqrt(max(height, angles.back())), kPiDouble));
+    while (angles.back() < kPiDouble) {
+        const double step = kStep * std::sqrt(max(max(height, kLeastHeight), angles.back()));
+        angles.push_back(min(angles.back() + step, kPiDouble));
+    }
     SoupBuilder builder{Mat4()};
     const FrameT<double> frame = frame_from_normal(pole);
     builder.add_rings(static_cast<int>(angles.size()) - 1, kSectors, [&](int i, int j) -> SoupBuilder::Corner {

@@ -284,18 +284,18 @@ private:
         const auto radius = static_cast<double>(sphere.radius);
         const Vec3d eye = transform_point(inverse_affine(place), view_.camera.eye);
         const double height = std::abs(length(eye) / radius - 1); // above the surface, in radii
-        const int rings = sphere_rings(count_spheres());
         constexpr double kLargestError = 2e-3; // of facets, over their distance
         const bool emits = emitter(scene_.materials[o.materials.front()]) != nullptr; // with a sphere's area, below
-        if (!emits && 1 - std::cos(kPiDouble / (2 * rings)) > kLargestError * height && length(eye) > 0) {
+        if (!emits && 1 - std::cos(kPiDouble / (2 * rings_)) > kLargestError * height && length(eye) > 0) {
+            notes_.insert("near spheres are meshes, off by at most 2e-4 of their distance; their textures have a seam");
             meshes.push_back(mesh_json(o.name, sphere_triangles_near(normalize(eye), height)));
             return {{"mesh", meshes.size() - 1},
                     {"matrix", matrix_json(place * scaling(Vec3d(radius, radius, radius)))}};
         }
         if (!sphere_mesh_) {
-            notes_.insert(message("spheres are meshes of ", sphere_triangle_count(rings),
+            notes_.insert(message("spheres are meshes of ", sphere_triangle_count(rings_),
                                   " triangles, of a sphere's area"));
-            const TriangleSoup soup = sphere_triangles(rings);
+            const TriangleSoup soup = sphere_triangles(rings_);
             sphere_mesh_ = {meshes.size(), std::sqrt(4 * kPiDouble / area(soup))};
             meshes.push_back(mesh_json("sphere", soup));
         }
@@ -334,6 +334,7 @@ private:
         double radius; ///< of a unit sphere whose mesh has a sphere's area
     };
     std::optional<SharedMesh> sphere_mesh_;
+    const int rings_ = sphere_rings(count_spheres()); ///< of the shared mesh
 };
 
 } // namespace

@@ -5,8 +5,10 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
+#include <filesystem>
 #include <poll.h>
 #include <spawn.h>
 #include <sys/socket.h>
@@ -49,7 +51,11 @@ Subprocess::Subprocess(const std::vector<std::string>& command) {
     for (const std::string& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
     arguments.push_back(nullptr);
     const FileActions actions(in[1], out[1]);
-    const int error = ::posix_spawnp(&pid_, arguments[0], actions.get(), nullptr, arguments.data(), environ);
+    posix_spawnattr_t group{}; // of its own, so that it ends with the processes that it starts
+    ::posix_spawnattr_init(&group);
+    ::posix_spawnattr_setflags(&group, POSIX_SPAWN_SETPGROUP);
+    const int error = ::posix_spawnp(&pid_, arguments[0], actions.get(), &group, arguments.data(), environ);
+    ::posix_spawnattr_destroy(&group);
     ::close(in[1]);
     ::close(out[1]);
     to_ = in[0];
@@ -63,13 +69,30 @@ Subprocess::Subprocess(const std::vector<std::string>& command) {
 Subprocess::~Subprocess() {
     ::close(to_);
     ::close(from_);
-    ::kill(pid_, SIGTERM);
-    for (int i = 0; i < 200; ++i) {
-        if (::waitpid(pid_, nullptr, WNOHANG) != 0) return;
-        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    const auto ends = [&] {
+        for (int i = 0; i < 200; ++i) {
+            if (::waitpid(pid_, nullptr, WNOHANG) != 0) return true;
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+        return false;
+    };
+    // A shell such as xvfb-run clears up after the program that it runs, unless a signal ends the shell.
+    if (!ends()) {
+        ::kill(-pid_, SIGTERM);
+        if (!ends()) ::kill(-pid_, SIGKILL), ::waitpid(pid_, nullptr, 0);
     }
-    ::kill(pid_, SIGKILL);
-    ::waitpid(pid_, nullptr, 0);
+    ::kill(-pid_, SIGTERM); // what it left behind
+}
+
+bool is_installed(const std::string& program) {
+    const char* const variable = std::getenv("PATH");
+    std::string_view folders = variable != nullptr ? variable : "";
+    while (!folders.empty()) {
+        const std::string_view folder = folders.substr(0, folders.find(':'));
+        folders.remove_prefix(std::min(folders.size(), folder.size() + 1));
+        if (::access((std::filesystem::path(folder) / program).c_str(), X_OK) == 0) return true;
+    }
+    return false;
 }
 
 bool Subprocess::write_line(const std::string& line) {

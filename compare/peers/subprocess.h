@@ -9,8 +9,11 @@
 
 namespace duet::compare {
 
-/// A process that runs during the object's lifetime. The destructor ends it with SIGTERM, and after two seconds
-/// with SIGKILL.
+/// Returns whether a program is in PATH.
+bool is_installed(const std::string& program);
+
+/// A process that runs during the object's lifetime, with those that it starts. The destructor closes its input, ends
+/// it after two seconds with SIGTERM, and after two more with SIGKILL.
 class Subprocess {
 public:
     /// Starts the program, which must be in PATH. Its standard error is merged into its standard output. Throws

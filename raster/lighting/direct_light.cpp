@@ -45,12 +45,14 @@ private:
         void add(const Sum& other) {
             exact += other.exact, unshadowed += other.unshadowed, shadowed += other.shadowed;
         }
-        /// Returns the fraction of each channel that arrives, as DirectLight stores it.
+        /// Returns the fraction of each channel that arrives, as DirectLight stores it. A channel that the surface does
+        /// not reflect has that of all channels: its neighbors may reflect it.
         RgbT<Floats> lit() const {
-            const xsimd::batch_bool<float> none = max_component(unshadowed) <= Floats(0.0f);
-            const auto fraction = [&](const Floats& all, const Floats& part) {
-                const Floats found = xsimd::select(all > Floats(0.0f), part / all, Floats(1.0f));
-                return xsimd::select(none, Floats(DirectLight::kNoLight), found);
+            const Floats zero(0.0f), all = unshadowed.r + unshadowed.g + unshadowed.b;
+            const Floats of_all = xsimd::select(all > zero, (shadowed.r + shadowed.g + shadowed.b) / all,
+                                                Floats(DirectLight::kNoLight));
+            const auto fraction = [&](const Floats& whole, const Floats& part) {
+                return xsimd::select(whole > zero, part / whole, of_all);
             };
             return {fraction(unshadowed.r, shadowed.r), fraction(unshadowed.g, shadowed.g),
                     fraction(unshadowed.b, shadowed.b)};
@@ -61,10 +63,11 @@ private:
     struct SourceLight {
         std::size_t source = ShadowLookup::kUnshadowed;
         RgbT<Floats> reflected{Floats(0.0f)};
-        Vec3T<Floats> direction{Floats(0.0f), Floats(0.0f), Floats(0.0f)}; ///< to the lights: a mean, not unit
+        Vec3T<Floats> direction{Floats(0.0f), Floats(0.0f), Floats(0.0f)}; ///< sum of unit vectors to lights that reach
 
         void add(const RgbT<Floats>& light, const Vec3T<Floats>& wi) {
-            reflected += light, direction += wi * max_component(light);
+            reflected += light;
+            direction += wi * xsimd::select(max_component(light) > Floats(0.0f), Floats(1.0f), Floats(0.0f));
         }
     };
 
@@ -154,7 +157,7 @@ private:
         const xsimd::batch_bool<float> lit = max_component(light.reflected) > Floats(0.0f);
         if (light.source == ShadowLookup::kUnshadowed || lane_bits(lit) == 0) return;
         const Vec3T<Floats>& to = light.direction;
-        const Vec3T<Floats> wi = to * inverse_sqrt(max(dot(to, to), Floats(1e-30f)));
+        const Vec3T<Floats> wi = to * inverse_sqrt(max(dot(to, to), Floats(1e-20f)));
         const Floats visible = shadows_->visibility(light.source, receiver(batch, wi, x, y),
                                                     receiving_normal(batch, wi, facet), x, y, lit);
         const RgbT<Floats> seen = light.reflected * xsimd::select(lit, visible, Floats(0.0f));

@@ -18,7 +18,7 @@ enum class Shade : std::uint8_t { kLit, kDark, kMixed };
 
 Shade shade_of(const RgbT<Floats>& lit) {
     const Floats zero(0.0f), one(1.0f);
-    const Mask none = lit.r < zero; // of no account
+    const Mask none = lit.r < zero; // no light could arrive
     if (xsimd::all(none | ((lit.r == one) & (lit.g == one) & (lit.b == one)))) return Shade::kLit;
     return xsimd::all(none | (max_component(lit) == zero)) ? Shade::kDark : Shade::kMixed;
 }

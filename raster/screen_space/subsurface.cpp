@@ -153,6 +153,7 @@ void blur_solid_light(const SolidMaterials& materials, const GBuffer& gbuffer, i
     PlaneFloat fractions(gbuffer.width(), gbuffer.height());
     for_each_batch(gbuffer.width(), gbuffer.height(), threads,
                    [&](int x, int y) { store(fractions, x, y, look_up(materials.fraction, gbuffer.material, x, y)); });
+    // Rows come second: bright tops of solids, seen at a flat angle, leave streaks along columns, which rows blur.
     for (const Axis axis : {Axis::kColumns, Axis::kRows}) {
         const Blur blur(materials, fractions, gbuffer, axis, light);
         for_each_batch(gbuffer.width(), gbuffer.height(), threads,

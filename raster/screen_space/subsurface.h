@@ -1,5 +1,5 @@
 // Subsurface scattering in screen space: the diffuse light of solids is blurred over the distance that light comes
-// inside, along rows and then along columns (Jimenez et al. 2015, "Separable Subsurface Scattering", with the
+// inside, along columns and then along rows (Jimenez et al. 2015, "Separable Subsurface Scattering", with the
 // pre-integrated kernel of §5.1). It is exact where the light varies along one of the axes only, on a plane. Light that
 // comes through thin parts is missing, because the image does not show its other side.
 #pragma once

@@ -19,6 +19,7 @@
 
 #include <doctest/doctest.h>
 
+#include <atomic>
 #include <cstring>
 
 using namespace duet;
@@ -162,6 +163,19 @@ struct HalfShadows final : ShadowLookup {
     Floats visibility(std::size_t, const Vec3T<Floats>&, const Vec3T<Floats>&, int, int,
                       const xsimd::batch_bool<float>&) const override {
         return Floats(0.5f);
+    }
+};
+
+/// Takes all lights for one source, and counts how often its shadows are looked up.
+struct OneSource final : ShadowLookup {
+    mutable std::atomic<int> looks = 0;
+
+    std::size_t source(std::size_t) const override { return 0; }
+    bool noisy(std::size_t) const override { return true; }
+    Floats visibility(std::size_t, const Vec3T<Floats>&, const Vec3T<Floats>&, int, int,
+                      const xsimd::batch_bool<float>&) const override {
+        ++looks;
+        return Floats(0.25f);
     }
 };
 
@@ -416,6 +430,20 @@ TEST_SUITE("unit") {
                 const bool any = !is_black(one.exact.color_at(x, y));
                 CHECK(half.lit.x(x, y) == doctest::Approx(any ? 0.5f : DirectLight::kNoLight));
             }
+    }
+
+    TEST_CASE("the lights of one source share one look at its shadows, and are shadowed alike") {
+        Frame1 view(model("everything.json"), 200, 120);
+        const OneSource shadows;
+        const DirectLight found = view.light(2, &shadows), open = view.light(1);
+        CHECK(bitwise_equal(found.unshadowed, open.exact));
+        constexpr int kBatch = static_cast<int>(Floats::size), batches = (200 + kBatch - 1) / kBatch * 120;
+        CHECK(shadows.looks > batches / 2);
+        CHECK(shadows.looks <= batches);
+        for (int y = 0; y < 120; ++y)
+            for (int x = 0; x < 200; ++x)
+                CHECK(found.lit.z(x, y) ==
+                      doctest::Approx(is_black(open.exact.color_at(x, y)) ? DirectLight::kNoLight : 0.25f));
     }
 
     TEST_CASE("all pixels of an earlier frame's images are overwritten, by few lights and by many") {

@@ -20,7 +20,9 @@ PrepareLimits limits(int width, int height) {
 
 TEST_SUITE("unit") {
 
-    TEST_CASE("limits: none from 256 x 256 pixels on, less for smaller images, never nothing") {
+    TEST_CASE("limits: none from 256 x 256 pixels on but for large maps, less for smaller images, never nothing") {
+        CHECK(limits(480, 480).radiance_map_side(512) == 256);
+        CHECK(limits(512, 512).radiance_map_side(512) == 512);
         for (const auto& large : {limits(256, 256), limits(640, 480), limits(16384, 16384)}) {
             CHECK(large.shadow_map_side(2048) == 2048);
             CHECK(large.radiance_map_side(256) == 256);

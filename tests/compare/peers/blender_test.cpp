@@ -1,6 +1,8 @@
-// These tests compare our images with those of Cycles. They are skipped if Blender is not installed.
+// These tests compare our images with those of Blender's Cycles and EEVEE. They are skipped without Blender, and those
+// of EEVEE without xvfb-run.
 #include "compare/peers/blender.h"
 
+#include "common/system/error.h"
 #include "common/system/file.h"
 #include "compare/bench/bias_check.h"
 #include "compare/bench/render_reference.h"
@@ -9,7 +11,6 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
-#include <cstdlib>
 
 using namespace duet;
 using namespace duet::compare;
@@ -20,10 +21,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool blender_is_installed() {
-    const bool found = std::system("command -v blender >/dev/null 2>&1") == 0;
-    if (!found) MESSAGE("skipped: Blender is not installed");
-    return found;
+/// Returns whether the programs are in PATH that an engine needs, and says so if not.
+bool can_run(BlenderEngine engine) {
+    try {
+        check_blender(engine);
+    } catch (const Error& error) {
+        MESSAGE("skipped: ", error.what());
+        return false;
+    }
+    return true;
 }
 
 /// Returns the z-test of the block means of both renderers' images.
@@ -63,7 +69,7 @@ TEST_SUITE("image") {
 
     // A false alarm has odds of 1 in 1000 (BiasCheck::kSignificance); the seeds are fixed.
     TEST_CASE("the Cornell box: both images agree within their noise") {
-        if (!blender_is_installed()) return;
+        if (!can_run(BlenderEngine::kCycles)) return;
         const BiasCheck check = against_cycles(fs::path(DUET_SOURCE_DIR) / "models" / "cornell.json", 48, 48, 512);
         CHECK(check.consistent());
         CHECK(check.detectable < 0.01);
@@ -72,7 +78,7 @@ TEST_SUITE("image") {
     // The scene has all materials and lights, all textures except noise, an environment image, a thin lens, and
     // mirrored and instanced meshes.
     TEST_CASE("everything that can be exported: both images agree within their noise") {
-        if (!blender_is_installed()) return;
+        if (!can_run(BlenderEngine::kCycles)) return;
         const ScratchFolder scratch;
         const fs::path models = fs::path(DUET_SOURCE_DIR) / "models";
         json scene = json::parse(read_file(models / "everything.json"));
@@ -84,7 +90,7 @@ TEST_SUITE("image") {
     }
 
     TEST_CASE("EEVEE draws the Cornell box, as bright as the path tracer within a third, and says its time") {
-        if (!blender_is_installed() || std::system("command -v xvfb-run >/dev/null 2>&1") != 0) return;
+        if (!can_run(BlenderEngine::kEevee)) return;
         const Scene scene = load_scene(fs::path(DUET_SOURCE_DIR) / "models" / "cornell.json");
         const View view{scene.camera, 64, 64};
         BlenderPeer peer(BlenderEngine::kEevee, scene, view, {64, 2});
@@ -100,7 +106,7 @@ TEST_SUITE("image") {
     }
 
     TEST_CASE("Blender's time is its render's, and a stop ends it") {
-        if (!blender_is_installed()) return;
+        if (!can_run(BlenderEngine::kCycles)) return;
         const Scene scene = load_scene(fs::path(DUET_SOURCE_DIR) / "models" / "cornell.json");
         BlenderPeer peer(BlenderEngine::kCycles, scene, {scene.camera, 32, 32}, {8, 1});
         Control control;
