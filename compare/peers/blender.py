@@ -391,13 +391,13 @@ def most(points):
     return Vector([max(p[i] for p in points) for i in range(3)])
 
 
-def add_irradiance_grid(boxes, hidden):
-    """Puts irradiance probes around all objects but a ground much larger than most; boxes are their corners."""
+def add_irradiance_grid(boxes, side, hidden):
+    """Puts side ** 3 irradiance probes around all objects but a ground much larger than most; boxes are their corners."""
     sizes = [(most(box) - least(box)).length for box in boxes]
     usual = statistics.median_low(sizes)
     corners = [p for box, size in zip(boxes, sizes) if size <= 20 * usual for p in box]
     probe = bpy.data.lightprobes.new("irradiance", "GRID")
-    probe.grid_resolution_x = probe.grid_resolution_y = probe.grid_resolution_z = 6
+    probe.grid_resolution_x = probe.grid_resolution_y = probe.grid_resolution_z = side
     probe.visibility_collection, probe.invert_visibility_collection = hidden, True
     thing = bpy.data.objects.new("irradiance", probe)
     bpy.context.collection.objects.link(thing)
@@ -415,14 +415,16 @@ def set_up_eevee(scene, description, things):
     eevee.use_ssr_halfres = False
     eevee.shadow_cube_size = eevee.shadow_cascade_size = "2048"
     eevee.light_threshold = 0.0
-    eevee.gi_cubemap_resolution = "64"  # llvmpipe bakes with more than this for minutes
+    # With more than this llvmpipe bakes light probes for minutes.
+    many = sum(len(thing.data.polygons) for thing in things) > 500_000
+    eevee.gi_cubemap_resolution, eevee.gi_diffuse_bounces = "64", 1 if many else 3
     boxes = [[thing.matrix_world @ Vector(corner) for corner in thing.bound_box] for thing in things]
     corners = [p for box in boxes for p in box]
     reach = (most(corners) - least(corners)).length + max((scene.camera.matrix_world.translation - p).length
                                                           for p in corners)
     data = scene.camera.data
     data.clip_start, data.clip_end = max(data.clip_start, 1e-4 * reach), reach  # its depths have 24 bits
-    add_irradiance_grid(boxes, add_lamps(description, things))
+    add_irradiance_grid(boxes, 2 if many else 4, add_lamps(description, things))
     bpy.ops.scene.light_cache_bake()
 
 
