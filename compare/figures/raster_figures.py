@@ -155,7 +155,7 @@ def eevee(run):
     rows = []
     for name in ("cornell", "glass", "open-sky", "spheres"):
         result = run("compare", "bench", scene(name), "--techniques", "raster", "--spp", 1, "--peer", "eevee",
-                     output="").data["scenes"][0]
+                     "--reference-spp", 1024, output="").data["scenes"][0]
         theirs, ours = ({key: row[key]["value"] for key in ("seconds", "relmse")}
                         for technique in ("eevee", "raster") for row in result["rows"]
                         if row["technique"] == technique)

@@ -392,7 +392,7 @@ def most(points):
 
 
 def add_irradiance_grid(boxes, side, hidden):
-    """Puts side ** 3 irradiance probes around all objects but a ground much larger than most; boxes are their corners."""
+    """Puts side³ irradiance probes around all objects but a ground much larger than most; boxes are their corners."""
     sizes = [(most(box) - least(box)).length for box in boxes]
     usual = statistics.median_low(sizes)
     corners = [p for box, size in zip(boxes, sizes) if size <= 20 * usual for p in box]

@@ -300,7 +300,7 @@ TEST_SUITE("unit") {
     TEST_CASE("a soft shadow on white is gray beside green and black, whose pixels the filter averages, too") {
         Scene scene;
         for (const auto& [left, color] : {std::pair(-1.0f, Rgb(1.0f)), std::pair(0.0f, Rgb(0, 0.5f, 0))})
-            add(scene, QuadList{{{Vec3(left, 0, 1), Vec3(1, 0, 0), Vec3(0, 0, -2)}}}, Mat4(), Diffuse{color});
+            add(scene, QuadList{{{Vec3(left, 0, 1), Vec3(1, 0, 0), Vec3(0, 0, -2)}}}, Mat4(), Diffuse{{color}});
         add(scene, QuadList{{{Vec3(-1, 0.4f, 0), Vec3(2, 0, 0), Vec3(0, 0, -1)}}});
         add(scene, QuadList{{{Vec3(-0.35f, 1.98f, -0.35f), Vec3(0.7f, 0, 0), Vec3(0, 0, 0.7f)}}}, Mat4(),
             Emissive{Rgb(5)});
