@@ -149,7 +149,7 @@ def equal_error(run):
             "error](gallery/equal-error.svg)", {"gallery/equal-error.svg": plot})
 
 
-@figure("eevee", 4)
+@figure("eevee", 6)
 def eevee(run):
     """the rasterizer beside Blender's"""
     rows = []
