@@ -95,7 +95,6 @@ int kernels(const KernelsOptions& options) {
     if (settings.threads == 0) settings.threads = available_threads();
     const std::vector<Case> cases = cases_of(options);
     const bool table_wanted = !options.quiet && options.stats != "-";
-    if (!options.quiet && embree_version().empty()) std::cerr << "compare: " << kEmbreeMissing << '\n';
 
     const InterruptFlag interrupt;
     std::vector<KernelResults> tables;
@@ -109,6 +108,7 @@ int kernels(const KernelsOptions& options) {
         if (table_wanted) print_table(std::cout, tables.back());
         std::cout.flush();
     }
+    if (!options.quiet && embree_version().empty()) std::cerr << "compare: " << kEmbreeMissing << '\n';
     if (!options.stats.empty()) write_json(options.stats, report_json(settings, tables));
     int code = kExitOk;
     for (const KernelResults& table : tables)

@@ -28,7 +28,7 @@ for text in "pear, alone" "pear, room" "pear, clutter" "pear, instances" "cornel
     "shadow" "build" "memory" \
     "rays aimed at points, edges and vertices" "judged in double precision: 0 wrong, 0 edge faults" \
         "duet bulk  *0  *0  *0" \
-    "camera \*" "too few" "repeats"; do
+    "camera \*" "repeats"; do
     grep -q "$text" "$scratch/stdout" || fail "the table lacks «$text»"
 done
 for key in rows mesh scene triangles work threads ours peer peer_name ratio best repeats watertight misses judged \
@@ -37,6 +37,7 @@ for key in rows mesh scene triangles work threads ours peer peer_name ratio best
     grep -q "\"$key\":" "$scratch/all.json" || fail "--stats lacks $key"
 done
 if grep -q '"peer": "embree' "$scratch/all.json"; then
+    grep -q "too few" "$scratch/stdout" || fail "the table does not say that one repeat is too few for a range"
     for text in '"peer_name": "embree.* medium"' '"peer_name": "embree.* high-robust packets 16"' '"unexplained": 0' \
         '"ours_edge_faults": 0'; do
         grep -q "$text" "$scratch/all.json" || fail "--stats lacks $text"
