@@ -96,10 +96,13 @@ private:
 };
 
 void check_blender(BlenderEngine engine) {
-    for (const char* const program : {"blender", "xvfb-run"})
-        if ((engine == BlenderEngine::kEevee || program == std::string_view("blender")) && !is_installed(program))
+    const auto check = [](const char* program, const char* package) {
+        if (!is_installed(program))
             throw Error(message("--peer: ", program, " is not in PATH; install it (Debian, Ubuntu: apt-get install ",
-                                program == std::string_view("blender") ? "blender" : "xvfb", ")"));
+                                package, ")"));
+    };
+    check("blender", "blender");
+    if (engine == BlenderEngine::kEevee) check("xvfb-run", "xvfb");
 }
 
 BlenderPeer::BlenderPeer(BlenderEngine engine, const Scene& scene, const View& view, const ExportSettings& settings)
