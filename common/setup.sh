@@ -1,7 +1,6 @@
 #!/bin/sh
 # Installs what Duet needs and is missing, from the system's packages (Debian 12, Ubuntu 24.04), then configures a
-# preset:
-# build/PRESET is ready for `cmake --build`. It builds nothing: a lesson or a program builds what it needs.
+# preset: build/PRESET is ready for `cmake --build`. It builds nothing: a lesson or a program builds what it needs.
 # Called by compare/demo.sh and tests/run.sh.
 # usage: common/setup.sh [PRESET [PACKAGE…]]        (default: release; PACKAGE: a package that the caller needs besides)
 set -eu
@@ -35,4 +34,9 @@ if [ -n "$missing" ]; then
     $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >/dev/null
 fi
 
-[ -f "build/$preset/build.ninja" ] || cmake --preset "$preset"
+# A build folder is configured again, because what is installed now may not have been there the last time.
+if [ -f "build/$preset/build.ninja" ]; then
+    cmake "build/$preset" >/dev/null
+else
+    cmake --preset "$preset"
+fi
