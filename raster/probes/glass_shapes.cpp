@@ -8,6 +8,7 @@
 #include "common/system/parallel.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace duet::raster {
 namespace {
@@ -42,11 +43,14 @@ bool is_sphere(const Scene& scene, std::uint32_t index) {
     return sphere != nullptr && !object.moving && transformed(*sphere, object.to_world);
 }
 
-/// Returns the radius of a tube with the volume and the surface of an object, 2·volume/area, in meters.
-float tube_radius(const RasterSceneData& data, std::uint32_t index) {
+/// Returns the radius of the balls that take an object's place, in meters: of an ellipsoid's or moving ball's volume, or
+/// of a tube with the volume and the surface of a mesh, 2·volume/area.
+float local_radius(const RasterSceneData& data, std::uint32_t index) {
     const Object& object = data.scene.objects[index];
     const Shape& shape = data.scene.shapes[object.shape];
     const Mat4d to_world(object.to_world);
+    if (const auto* sphere = std::get_if<Sphere>(&shape))
+        return sphere->radius * static_cast<float>(std::cbrt(abs(determinant3(to_world))));
     const Vec3d center(data.objects[index].bounds.center());
     double volume = 0, area = 0; // six times the one, twice the other
     for (std::uint32_t i = 0; i < primitive_count(shape); ++i) {
@@ -84,7 +88,7 @@ GlassShapes::GlassShapes(const RasterSceneData& data, const RasterSettings& sett
         if (is_inside(data, objects[i], shape.center))
             shape.map = shape_of(data, settings, objects[i], shape.center);
         else
-            shape.local_radius = tube_radius(data, objects[i]);
+            shape.local_radius = local_radius(data, objects[i]);
     });
     for (std::size_t i = 0; i < objects.size(); ++i) of_object_[objects[i]] = i;
 }

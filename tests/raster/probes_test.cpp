@@ -249,6 +249,20 @@ TEST_SUITE("unit") {
             }
     }
 
+    TEST_CASE("a glass ball that moves far away is shown where it is when the shutter opens") {
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-50, 0, 50), Vec3(100, 0, 0), Vec3(0, 0, -100)}}}, Mat4(), Diffuse{{Rgb(0.02f)}});
+        add(scene, Sphere{Vec3(0, 3, 0), 0.8f}, Mat4(), Dielectric{1.5f});
+        scene.objects.back().place(Mat4(), Mat4(translation(Vec3(30, 0, 0))));
+        scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        scene.camera = look({0, 3, 12}, {0, 3, 0}, 20);
+        scene.camera.shutter_close = 0;
+        finish_scene(scene);
+        const ImageRgb image = render(scene, {scene.camera, 120, 120}, {}).radiance;
+        CHECK(image(60, 70).g > 0.8f); // the sky, below the horizon
+        CHECK(image(60, 50).g < 0.2f);
+    }
+
     TEST_CASE("a glass ring, whose center lies outside of it, shows a third of the sky that it should") {
         Scene scene;
         add(scene, QuadList{{{Vec3(-50, 0, 50), Vec3(100, 0, 0), Vec3(0, 0, -100)}}}, Mat4(), Diffuse{{Rgb(0.02f)}});
