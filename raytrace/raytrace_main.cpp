@@ -29,7 +29,8 @@ void add_options(CommandLine& command_line, Options& options) {
     command_line.add("--integrator", options.integrator,
                      "path (default), naive (no light sampling), bidirectional (paths from the camera and from the"
                      " lights, connected), vcm (the same, also merged where they nearly meet), photons "
-                     "(progressive photon mapping), whitted (mirrors, glass and hard shadows), direct, "
+                     "(progressive photon mapping), metropolis (chains of connected paths that are like each other), "
+                     "whitted (mirrors, glass and hard shadows), direct, "
                      "unshadowed (direct light without visibility), lights "
                      "(emission and direct light of lights), environment"
                      " (its light on diffuse surfaces), reflection (what is seen by way of metal and glass), "

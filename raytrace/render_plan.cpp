@@ -21,6 +21,7 @@ int depth(const PathTracerSettings& settings) {
     case Integrator::kBidirectional:
     case Integrator::kVcm:
     case Integrator::kPhotons:
+    case Integrator::kMetropolis:
     case Integrator::kWhitted:
     case Integrator::kReflection:
         return requested;

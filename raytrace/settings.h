@@ -22,6 +22,7 @@ enum class Integrator {
     kBidirectional, ///< paths from the camera and from the lights, joined: Veach 1997, §10
     kVcm,           ///< the same, and paths that nearly meet are merged: Georgiev et al. 2012
     kPhotons,       ///< progressive photon mapping: Hachisuka and Jensen 2009
+    kMetropolis,    ///< Markov chains of such joined paths: Veach and Guibas 1997, Kelemen et al. 2002
     kWhitted,       ///< mirrors, glass and hard shadows, without light between surfaces: Whitted 1980
     kDirect,        ///< emission and direct light: paths of at most one scattering event
     kUnshadowed,    ///< direct light by light sampling without visibility: the rasterizer's quantity
@@ -31,15 +32,15 @@ enum class Integrator {
     kNormal,        ///< the shading normal as a color: (n + 1)/2
     kAlbedo,        ///< base colors
 };
-/// Returns the integrator named "path", "naive", "bidirectional", "vcm", "photons", "whitted", "direct", "unshadowed",
-/// "lights", "environment", "reflection", "normal" or "albedo". Throws Error for any other name.
+/// Returns the integrator named "path", "naive", "bidirectional", "vcm", "photons", "metropolis", "whitted", "direct",
+/// "unshadowed", "lights", "environment", "reflection", "normal" or "albedo". Throws Error for any other name.
 Integrator integrator(std::string_view name);
 /// Returns the name that integrator() reads.
 std::string_view integrator_name(Integrator integrator);
 /// Returns whether paths start at the lights, too, so that a sample reaches other pixels than its own.
 inline bool traces_light_paths(Integrator integrator) {
     return integrator == Integrator::kBidirectional || integrator == Integrator::kVcm ||
-           integrator == Integrator::kPhotons;
+           integrator == Integrator::kPhotons || integrator == Integrator::kMetropolis;
 }
 /// Returns whether paths from the camera and from the lights merge where they nearly meet.
 inline bool merges(Integrator integrator) {
@@ -47,7 +48,8 @@ inline bool merges(Integrator integrator) {
 }
 /// Returns whether vertices of paths from the camera and from the lights are connected.
 inline bool connects(Integrator integrator) {
-    return integrator == Integrator::kBidirectional || integrator == Integrator::kVcm;
+    return integrator == Integrator::kBidirectional || integrator == Integrator::kVcm ||
+           integrator == Integrator::kMetropolis;
 }
 
 /// Holds the settings of the path tracer.

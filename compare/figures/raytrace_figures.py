@@ -127,13 +127,14 @@ def embree(run):
             table(["triangles", "kernel", "lost of a million rays that are aimed at edges and vertices"], lost))
 
 
-@figure("integrators", 4)
+@figure("integrators", 6)
 def integrators(run):
     """relMSE of the integrators at equal time"""
-    names = ("path", "bidirectional", "vcm", "photons")
+    names = ("path", "bidirectional", "vcm", "photons", "metropolis")
     rows = []
     for name, size, judge in (("caustics", "160x120", "vcm"), ("cornell", "128x128", "path"),
-                              ("glass", "128x128", "path"), ("spheres", "160x90", "path")):
+                              ("glass", "128x128", "path"), ("spheres", "160x90", "path"),
+                              ("door", "160x120", "bidirectional")):
         render = ("raytrace", scene(name), "--size", size, "--no-adaptive", "--quiet")
         reference = run(*render, "--integrator", judge, "--time", 40, "--seed", 1000, output=".exr")
         line = [f"`{name}`"]

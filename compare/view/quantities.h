@@ -15,7 +15,8 @@ inline constexpr const char* kWholeImage = "everything";
 /// The path tracer's integrators that can be chosen for the whole image.
 inline constexpr std::array kIntegrators{raytrace::Integrator::kPath,    raytrace::Integrator::kNaive,
                                          raytrace::Integrator::kWhitted, raytrace::Integrator::kBidirectional,
-                                         raytrace::Integrator::kVcm,     raytrace::Integrator::kPhotons};
+                                         raytrace::Integrator::kVcm,     raytrace::Integrator::kPhotons,
+                                         raytrace::Integrator::kMetropolis};
 
 /// Returns all quantities of plan_rungs() that are colors. They do not depend on the shading and the integrator that
 /// the pair's settings choose for the whole image.

@@ -43,8 +43,8 @@ bool is_sphere(const Scene& scene, std::uint32_t index) {
     return sphere != nullptr && !object.moving && transformed(*sphere, object.to_world);
 }
 
-/// Returns the radius of the balls that take an object's place, in meters: of an ellipsoid's or moving ball's volume, or
-/// of a tube with the volume and the surface of a mesh, 2·volume/area.
+/// Returns the radius of the balls that take an object's place, in meters: one of the volume of an ellipsoid or moving
+/// ball, or that of a tube with the volume and the surface of a mesh, 2·volume/area.
 float local_radius(const RasterSceneData& data, std::uint32_t index) {
     const Object& object = data.scene.objects[index];
     const Shape& shape = data.scene.shapes[object.shape];

@@ -1,6 +1,7 @@
 #include "raytrace/bidirectional/bidirectional.h"
 
 #include "common/vec/robust.h"
+#include "raytrace/sampling/primary_sample.h"
 
 #include <cmath>
 
@@ -24,7 +25,7 @@ Ray importance_ray(const SubpathVertex& at, Vec3 w) {
     return ray;
 }
 
-EmissionRandomSamples emission_samples(const RenderPlan& plan, Sampler& sampler) {
+template <typename S> EmissionRandomSamples emission_samples(const RenderPlan& plan, S& sampler) {
     sampler.set_dimension(vertex_dimension(light_subpath_depth(plan, 0)));
     const Sampler::Block u = sampler.get_block();
     return {u[4], {u[0], u[1]}, {u[2], u[3]}};
@@ -54,7 +55,7 @@ BidirectionalTracer::BidirectionalTracer(const RenderPlan& plan, const LightEmis
     : plan_(plan), emission_(emission), view_(view), connects_(connects(integrator)),
       merging_(path_count() * kPiDouble * sqr(static_cast<double>(radius))), counts_(counts) {}
 
-void BidirectionalTracer::trace_light_subpath(float time, Sampler& sampler) {
+template <typename S> void BidirectionalTracer::trace_light_subpath(float time, S& sampler) {
     light_subpath_.clear();
     if (emission_.empty()) return;
     const std::optional<EmittedRay> emitted = emission_.sample(emission_samples(plan_, sampler), time);
@@ -135,7 +136,8 @@ std::optional<Splat> BidirectionalTracer::connection_to_camera(const SubpathVert
     return Splat{pixel, at.throughput * scattered * factor};
 }
 
-Rgb BidirectionalTracer::trace_camera_subpath(Ray ray, Hit hit, const Pinhole& pinhole, Sampler& sampler,
+template <typename S>
+Rgb BidirectionalTracer::trace_camera_subpath(Ray ray, Hit hit, const Pinhole& pinhole, S& sampler,
                                               const PhotonMap* photons) {
     Rgb sum;
     PathThroughputT<float> path;
@@ -289,5 +291,10 @@ Rgb BidirectionalTracer::merged_light(const SubpathVertex& at, const PhotonMap& 
     });
     return at.throughput * sum * static_cast<float>(1 / merging_);
 }
+
+template void BidirectionalTracer::trace_light_subpath(float, Sampler&);
+template void BidirectionalTracer::trace_light_subpath(float, PrimarySample&);
+template Rgb BidirectionalTracer::trace_camera_subpath(Ray, Hit, const Pinhole&, Sampler&, const PhotonMap*);
+template Rgb BidirectionalTracer::trace_camera_subpath(Ray, Hit, const Pinhole&, PrimarySample&, const PhotonMap*);
 
 } // namespace duet::raytrace

@@ -22,7 +22,7 @@ struct Splat {
 };
 
 /// Traces pairs of a camera subpath and a light subpath, one pair after the other. There is one light subpath per pixel
-/// of the image, and their light is weighted for that.
+/// of the image, and their light is weighted for that. Random samples come from S, a Sampler or a PrimarySample.
 class BidirectionalTracer {
 public:
     /// Refers to all arguments. `radius` is that of merging; 0: subpaths do not merge.
@@ -30,14 +30,15 @@ public:
                         float radius, RayCounts& counts);
 
     /// Traces the light subpath of a sample, in place of the one before. `time` is that of its camera ray.
-    void trace_light_subpath(float time, Sampler& sampler);
+    template <typename S> void trace_light_subpath(float time, S& sampler);
     /// Appends the light that the light subpath sends to pixels. `pinhole` is the view through the sample's lens point.
     void connect_to_camera(const Pinhole& pinhole, std::vector<Splat>& splats);
     /// Appends the photons of the light subpath. There is none at its first hit, where light samples find direct light.
     void add_photons(std::vector<Photon>& photons) const;
     /// Returns the light that the camera ray brings, whose first hit is given and may be invalid: of the light subpath,
     /// and of all photons that are near, if any are given. In photon mapping it needs no light subpath.
-    Rgb trace_camera_subpath(Ray ray, Hit hit, const Pinhole& pinhole, Sampler& sampler, const PhotonMap* photons);
+    template <typename S>
+    Rgb trace_camera_subpath(Ray ray, Hit hit, const Pinhole& pinhole, S& sampler, const PhotonMap* photons);
 
 private:
     std::optional<Splat> connection_to_camera(const SubpathVertex& at, const Pinhole& pinhole);

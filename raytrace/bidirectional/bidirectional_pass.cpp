@@ -3,6 +3,7 @@
 #include "common/system/error.h"
 #include "common/system/parallel.h"
 #include "raytrace/bidirectional/bidirectional.h"
+#include "raytrace/bidirectional/metropolis.h"
 
 #include <algorithm>
 #include <cmath>
@@ -71,23 +72,16 @@ public:
           radius_(static_cast<float>(first_radius * std::pow(index + 1.0, -0.125))),
           sums_(context.view.width, context.view.height) {}
 
-    // Returns false if it was stopped. Where subpaths merge, all light subpaths are traced before the camera subpaths.
-    // To be connected, they are traced once more beside their camera subpaths, because keeping their vertices would
-    // take gigabytes.
-    bool render() {
-        if (radius_ == 0) return render_rows(true, true);
-        if (!render_rows(true, false)) return false;
-        photon_map_.emplace(std::move(photons_), radius_, context_.settings.threads);
-        return render_rows(false, true);
-    }
-
-    void add_to_film() {
-        Sampler sampler = context_.settings.make_sampler();
-        sampler.start(0, 0, index_);
-        for (int y = 0; y < sums_.height(); ++y)
-            for (int x = 0; x < sums_.width(); ++x)
-                if (!context_.checkpoint.film().add(x, y, sampler.replicate(), Rgb(sums_(x, y))))
-                    context_.first_invalid = earlier_sample(context_.first_invalid, InvalidSample{index_, y, x});
+    // Returns the radiance of all pixels, or nothing if it was stopped. Where subpaths merge, all light subpaths are
+    // traced before the camera subpaths. To be connected, they are traced once more beside their camera subpaths,
+    // because keeping their vertices would take gigabytes.
+    std::optional<Image<Rgbd>> render() {
+        bool complete = render_rows(true, radius_ == 0);
+        if (complete && radius_ > 0) {
+            photon_map_.emplace(std::move(photons_), radius_, context_.settings.threads);
+            complete = render_rows(false, true);
+        }
+        return complete ? std::optional(std::move(sums_)) : std::nullopt;
     }
 
 private:
@@ -160,17 +154,30 @@ private:
     std::mutex mutex_; // guards the counts
 };
 
+void add_to_film(const PassContext& context, const Image<Rgbd>& sample, std::uint32_t index) {
+    Sampler sampler = context.settings.make_sampler();
+    sampler.start(0, 0, index);
+    for (int y = 0; y < sample.height(); ++y)
+        for (int x = 0; x < sample.width(); ++x)
+            if (!context.checkpoint.film().add(x, y, sampler.replicate(), Rgb(sample(x, y))))
+                context.first_invalid = earlier_sample(context.first_invalid, InvalidSample{index, y, x});
+}
+
 } // namespace
 
 bool render_bidirectional_pass(const PassContext& context, double begin, double end) {
     const LightEmission emission(context.plan);
     const double radius = merges(context.settings.integrator) ? first_radius(context.plan, context.view) : 0;
+    std::optional<Metropolis> metropolis;
+    if (context.settings.integrator == Integrator::kMetropolis) metropolis.emplace(context, emission);
     const Film& film = context.checkpoint.film();
     const std::uint32_t from = film.min_samples_taken(), to = film.pixels()(0, 0).target;
     for (std::uint32_t i = from; i < to; ++i) {
-        SampleOfAllPixels sample(context, emission, radius, context.settings.first_sample + i);
-        if (!sample.render()) return false;
-        context.checkpoint.add([&] { sample.add_to_film(); });
+        const std::uint32_t index = context.settings.first_sample + i;
+        const std::optional<Image<Rgbd>> sample =
+            metropolis ? metropolis->sample(index) : SampleOfAllPixels(context, emission, radius, index).render();
+        if (!sample) return false;
+        context.checkpoint.add([&] { add_to_film(context, *sample, index); });
         context.control.report(lerp(begin, end, static_cast<double>(i + 1 - from) / static_cast<double>(to - from)));
     }
     return true;

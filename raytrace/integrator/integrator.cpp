@@ -10,13 +10,14 @@ namespace duet::raytrace {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, Integrator>, 13> kNames{{{"path", Integrator::kPath},
+constexpr std::array<std::pair<std::string_view, Integrator>, 14> kNames{{{"path", Integrator::kPath},
                                                                           {"naive", Integrator::kNaive},
                                                                           {"bidirectional", Integrator::kBidirectional},
                                                                           {"vcm", Integrator::kVcm},
                                                                           {"photons", Integrator::kPhotons},
+                                                                          {"metropolis", Integrator::kMetropolis},
                                                                           {"whitted", Integrator::kWhitted},
-                                                                         {"direct", Integrator::kDirect},
+                                                                          {"direct", Integrator::kDirect},
                                                                           {"unshadowed", Integrator::kUnshadowed},
                                                                           {"lights", Integrator::kLights},
                                                                           {"environment", Integrator::kEnvironment},
@@ -30,8 +31,8 @@ Integrator integrator(std::string_view name) {
     for (const auto& [known, value] : kNames)
         if (known == name) return value;
     throw Error(message("unknown integrator '", name,
-                        "': expected path, naive, bidirectional, vcm, photons, whitted, direct, unshadowed, "
-                        "lights, environment, reflection, normal or albedo"));
+                        "': expected path, naive, bidirectional, vcm, photons, metropolis, whitted, direct, "
+                        "unshadowed, lights, environment, reflection, normal or albedo"));
 }
 
 std::string_view integrator_name(Integrator integrator) {
@@ -62,7 +63,8 @@ RadianceFunction radiance_function(Integrator integrator) {
         return path_radiance;
     case Integrator::kBidirectional:
     case Integrator::kVcm:
-    case Integrator::kPhotons: // light paths reach other pixels: render_bidirectional_pass()
+    case Integrator::kPhotons:
+    case Integrator::kMetropolis: // light paths reach other pixels: render_bidirectional_pass()
         break;
     }
     throw Error(message("the integrator ", integrator_name(integrator),

@@ -38,8 +38,8 @@ using VertexRandomSamples = VertexRandomSamplesT<float>;
 inline std::uint32_t vertex_dimension(int depth) {
     return static_cast<std::uint32_t>(Sampler::kBlock) * static_cast<std::uint32_t>(depth + 1);
 }
-/// Returns the random samples of the vertex after `depth` scatterings.
-inline VertexRandomSamples vertex_random_samples(Sampler& sampler, int depth) {
+/// Returns the random samples of the vertex after `depth` scatterings. S is Sampler or PrimarySample.
+template <typename S> VertexRandomSamples vertex_random_samples(S& sampler, int depth) {
     sampler.set_dimension(vertex_dimension(depth));
     const Sampler::Block u = sampler.get_block();
     return {{u[0], u[1]}, {u[2], u[3]}, u[4], u[5], u[6], u[7]};

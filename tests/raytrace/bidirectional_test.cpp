@@ -165,7 +165,8 @@ PathTracerSettings bidirectional(int samples, Integrator integrator = Integrator
 
 TEST_SUITE("unit") {
     TEST_CASE("the bits do not depend on threads, and a continued film has those of one run") {
-        for (const Integrator integrator : {Integrator::kBidirectional, Integrator::kVcm, Integrator::kPhotons}) {
+        for (const Integrator integrator :
+             {Integrator::kBidirectional, Integrator::kVcm, Integrator::kPhotons, Integrator::kMetropolis}) {
             const Scene scene = glass_in_motion();
             PathTracerSettings settings = bidirectional(6, integrator);
             settings.threads = 1;
@@ -252,7 +253,8 @@ TEST_SUITE("unit") {
         builder.add(Sphere{{0, 1, 0}, 0.5f}, builder.material(wine));
         CHECK_THROWS_WITH_AS(check_bidirectional(builder.finish(), bidirectional(4)), doctest::Contains("absorbs"),
                              Error);
-        for (const Integrator integrator : {Integrator::kBidirectional, Integrator::kVcm, Integrator::kPhotons})
+        for (const Integrator integrator :
+             {Integrator::kBidirectional, Integrator::kVcm, Integrator::kPhotons, Integrator::kMetropolis})
             CHECK_THROWS_WITH_AS(radiance_function(integrator), doctest::Contains("whole images"), Error);
     }
 

@@ -28,7 +28,8 @@ TEST_SUITE("unit") {
         const Scene scene = room();
         const View view{scene.camera, 40, 30};
         for (const Integrator integrator :
-             {Integrator::kPath, Integrator::kBidirectional, Integrator::kVcm, Integrator::kNormal})
+             {Integrator::kPath, Integrator::kBidirectional, Integrator::kVcm, Integrator::kMetropolis,
+              Integrator::kNormal})
             for (const bool variance : {false, true}) {
                 CAPTURE(integrator_name(integrator));
                 PathTracerSettings settings;

@@ -1,0 +1,276 @@
+#include "raytrace/bidirectional/metropolis.h"
+
+#include "common/sampling/hash.h"
+#include "common/system/parallel.h"
+#include "raytrace/sampling/primary_sample.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <numeric>
+
+namespace duet::raytrace {
+
+namespace {
+
+constexpr std::size_t kStepsPerChain = 128;
+constexpr int kMostTiles = 16;       ///< of the pilot, per axis
+constexpr double kPathsPerTile = 64; ///< of the pilot, at least
+constexpr int kPilotPaths = 16384;   ///< at most; fewer in images of fewer pixels
+/// A tile is taken to be at least this bright, relative to the mean of the image, so that chains also leave dark tiles.
+constexpr double kLeastBrightness = 0.02;
+
+// Holds what a path sends to pixels.
+struct Contribution {
+    std::vector<Splat> splats;
+    double importance = 0; ///< chains stay in proportion to it; see MetropolisPilot
+};
+
+// The first block of random numbers: position in the image, point on the lens, time.
+using FirstBlock = Sampler::Block;
+
+// Traces one pair of subpaths after the other.
+class PairTracer {
+public:
+    PairTracer(const PassContext& context, const LightEmission& emission)
+        : context_(context), camera_(context.view),
+          tracer_(context.plan, emission, context.view, context.settings.integrator, 0, counts_) {}
+
+    // Returns what the camera ray of these random numbers hits.
+    std::pair<Ray, Hit> camera_hit(const FirstBlock& u) {
+        ++counts_.camera;
+        const Ray ray = camera_.ray(pixel(u), lens(u), static_cast<double>(context_.plan.motion ? u[4] : 0));
+        return {ray, context_.plan.prepared.accelerator.closest(ray)};
+    }
+
+    // Finds what the path with this camera ray sends. S is Sampler or PrimarySample.
+    template <typename S>
+    void trace(const FirstBlock& u, const std::pair<Ray, Hit>& seen, S& sample, std::vector<Splat>& splats) {
+        const auto& [ray, hit] = seen;
+        const Pinhole pinhole = camera_.pinhole(lens(u));
+        splats.clear();
+        tracer_.trace_light_subpath(ray.time, sample);
+        tracer_.connect_to_camera(pinhole, splats);
+        const Vec2d at = pixel(u);
+        const auto index = static_cast<std::uint32_t>(at.y) * static_cast<std::uint32_t>(context_.view.width) +
+                           static_cast<std::uint32_t>(at.x);
+        splats.push_back({index, tracer_.trace_camera_subpath(ray, hit, pinhole, sample, nullptr)});
+    }
+
+    const RayCounts& counts() const { return counts_; }
+
+private:
+    Vec2d pixel(const FirstBlock& u) const {
+        return {static_cast<double>(u[0]) * context_.view.width, static_cast<double>(u[1]) * context_.view.height};
+    }
+    Vec2d lens(const FirstBlock& u) const { return context_.plan.lens ? Vec2d(Vec2(u[2], u[3])) : Vec2d(0.5, 0.5); }
+
+    const PassContext& context_;
+    const CameraModel camera_;
+    RayCounts counts_;
+    BidirectionalTracer tracer_;
+};
+
+// Estimates the radiance of all pixels. The mean over the independent paths estimates the mean importance b of all
+// paths. A chain starts at one of them, chosen in proportion to its importance I. In the mean over all of these paths
+// it is in equilibrium from its first step on: what its paths send, times b / I, is an unbiased estimate (Veach 1997,
+// §11.3.1).
+class ChainedSample {
+public:
+    ChainedSample(const PassContext& context, const LightEmission& emission, const MetropolisPilot& pilot,
+                  std::uint32_t index)
+        : context_(context), emission_(emission), pilot_(pilot), index_(index),
+          seed_(hash_combine(hash_combine(0, context.settings.seed), index)),
+          sums_(context.view.width, context.view.height),
+          chains_((sums_.size() * Metropolis::kStepsPerPixel + kStepsPerChain - 1) / kStepsPerChain),
+          importances_(sums_.size()) {}
+
+    std::optional<Image<Rgbd>> render() {
+        const auto height = static_cast<std::size_t>(context_.view.height);
+        if (!for_groups(height, [&](std::size_t y, PairTracer& tracer, std::vector<Splat>& sent) {
+                trace_row(static_cast<int>(y), tracer, sent);
+            }))
+            return std::nullopt;
+        std::partial_sum(importances_.begin(), importances_.end(), importances_.begin());
+        if (importances_.back() > 0 &&
+            !for_groups(chains_, [&](std::size_t chain, PairTracer& tracer, std::vector<Splat>& sent) {
+                run_chain(chain, tracer, sent);
+            }))
+            return std::nullopt;
+        return std::move(sums_);
+    }
+
+private:
+    // Calls body(i, …) for all i below `count`, in groups. What bodies send is added in their order, so that the sum
+    // does not depend on threads; meanwhile it takes memory. Returns false if it was stopped.
+    template <typename Body> bool for_groups(std::size_t count, const Body& body) {
+        constexpr std::size_t kGroup = 64;
+        for (std::size_t first = 0; first < count; first += kGroup) {
+            std::vector<std::vector<Splat>> sent(std::min(kGroup, count - first));
+            parallel_for(sent.size(), context_.settings.threads, [&](std::size_t i) {
+                if (context_.control.stopped()) return;
+                PairTracer tracer(context_, emission_);
+                body(first + i, tracer, sent[i]);
+                const std::lock_guard lock(mutex_);
+                context_.counts += tracer.counts();
+            });
+            if (context_.control.stopped()) return false;
+            for (const std::vector<Splat>& splats : sent)
+                for (const Splat& splat : splats) sums_[splat.pixel] += Rgbd(splat.light);
+        }
+        return true;
+    }
+
+    // Returns the sampler at the independent path of a pixel, and the first block of its random numbers.
+    std::pair<Sampler, FirstBlock> independent_path(int x, int y) const {
+        std::pair<Sampler, FirstBlock> path{context_.settings.make_sampler(), {}};
+        auto& [sampler, u] = path;
+        sampler.start(x, y, index_);
+        u = sampler.get_block();
+        const auto place = [](int i, float offset, int count) {
+            return std::min((static_cast<float>(i) + offset) / static_cast<float>(count), kOneMinusEpsilon);
+        };
+        u[0] = place(x, u[0], sums_.width()), u[1] = place(y, u[1], sums_.height());
+        return path;
+    }
+
+    void trace_row(int y, PairTracer& tracer, std::vector<Splat>& sent) {
+        Contribution found;
+        for (int x = 0; x < sums_.width(); ++x) {
+            auto [sampler, u] = independent_path(x, y);
+            const std::pair<Ray, Hit> seen = tracer.camera_hit(u);
+            if (context_.aovs.any()) context_.aovs.add(x, y, index_, seen.first, seen.second);
+            tracer.trace(u, seen, sampler, found.splats);
+            set_importance(found);
+            const bool valid = std::isfinite(found.importance);
+            importances_[static_cast<std::size_t>(y) * static_cast<std::size_t>(sums_.width()) +
+                         static_cast<std::size_t>(x)] = valid ? found.importance : 0;
+            send(found, valid ? 1 - weight_of_steps(found.importance) : 1, sent); // the film reports invalid ones
+        }
+    }
+
+    void set_importance(Contribution& found) const {
+        found.importance = 0;
+        for (const Splat& splat : found.splats)
+            found.importance += static_cast<double>(luminance(splat.light)) * pilot_.importance(splat.pixel);
+    }
+
+    // Returns the weight of steps in multiple importance sampling, by the balance heuristic: a path has the density 1
+    // among independent paths, and I / b times as many among steps. Any constant in place of b gives an unbiased
+    // estimate, but not one that depends on the paths at which the chains start.
+    double weight_of_steps(double importance) const {
+        const double steps = Metropolis::kStepsPerPixel * importance;
+        return steps > 0 ? steps / (steps + pilot_.mean_importance()) : 0;
+    }
+
+    void run_chain(std::size_t chain, PairTracer& tracer, std::vector<Splat>& sent) const {
+        const std::uint64_t seed = hash_combine(seed_, chain);
+        const auto uniform = [&](std::size_t i) {
+            return static_cast<double>(unit_float(high_bits(stream_number(seed, i))));
+        };
+        const double u = (static_cast<double>(chain) + uniform(kStepsPerChain)) / static_cast<double>(chains_);
+        PrimarySample sample = start_at(u * importances_.back(), mix_bits(seed));
+        Contribution current, proposal;
+        trace(sample, tracer, current);
+        double stay = 0; // the probabilities with which the chain has been at the current path, summed over steps
+        for (std::size_t step = 0; step < kStepsPerChain; ++step) {
+            sample.propose();
+            trace(sample, tracer, proposal);
+            // Both paths count with the probabilities with which the chain goes on from them (Veach 1997, §11.3.2).
+            const bool valid = std::isfinite(proposal.importance);
+            const double acceptance = valid ? std::min(1.0, proposal.importance / current.importance) : 0;
+            stay += 1 - acceptance;
+            if (uniform(step) < acceptance) {
+                send_steps(current, stay, sent);
+                std::swap(current, proposal);
+                stay = acceptance;
+                sample.accept();
+            } else {
+                if (valid)
+                    send_steps(proposal, acceptance, sent);
+                else
+                    send(proposal, 1, sent);
+                sample.reject();
+            }
+        }
+        send_steps(current, stay, sent);
+    }
+
+    // Returns the independent path up to which the importances sum up to this.
+    PrimarySample start_at(double sum, std::uint64_t seed) const {
+        const auto found = std::upper_bound(importances_.begin(), importances_.end() - 1, sum);
+        const auto i = static_cast<int>(found - importances_.begin());
+        const auto [sampler, u] = independent_path(i % sums_.width(), i / sums_.width());
+        return {sampler, u, seed};
+    }
+
+    void trace(PrimarySample& sample, PairTracer& tracer, Contribution& found) const {
+        sample.set_dimension(0);
+        const FirstBlock u = sample.get_block();
+        tracer.trace(u, tracer.camera_hit(u), sample, found.splats);
+        set_importance(found);
+    }
+
+    void send_steps(const Contribution& contribution, double steps, std::vector<Splat>& sent) const {
+        if (steps == 0) return;
+        const double b = importances_.back() / static_cast<double>(sums_.size()), importance = contribution.importance;
+        const double pixels_per_step =
+            static_cast<double>(sums_.size()) / static_cast<double>(chains_ * kStepsPerChain);
+        send(contribution, weight_of_steps(importance) * steps * pixels_per_step * b / importance, sent);
+    }
+    static void send(const Contribution& found, double factor, std::vector<Splat>& sent) {
+        for (const Splat& splat : found.splats)
+            if (!is_black(splat.light)) sent.push_back({splat.pixel, Rgb(Rgbd(splat.light) * factor)});
+    }
+
+    const PassContext& context_;
+    const LightEmission& emission_;
+    const MetropolisPilot& pilot_;
+    const std::uint32_t index_;
+    const std::uint64_t seed_;
+    Image<Rgbd> sums_;
+    const std::size_t chains_;
+    std::vector<double> importances_; // of the independent paths; once all are traced, each plus all before it
+    std::mutex mutex_;                // guards the counts
+};
+
+} // namespace
+
+MetropolisPilot::MetropolisPilot(const PassContext& context, const LightEmission& emission)
+    : width_(context.view.width), height_(context.view.height) {
+    const std::size_t pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+    const auto paths = static_cast<int>(std::min<std::size_t>(pixels, kPilotPaths));
+    tiles_ = std::clamp(static_cast<int>(std::sqrt(paths / kPathsPerTile)), 1, kMostTiles);
+    importances_.assign(static_cast<std::size_t>(tiles_ * tiles_), 1);
+    std::vector<double> light(importances_.size()), parts(importances_.size()); // parts of the light and of the pixels
+    for (std::size_t i = 0; i < pixels; ++i)
+        parts[tile(static_cast<std::uint32_t>(i))] += 1 / static_cast<double>(pixels);
+    PairTracer tracer(context, emission);
+    Sampler sampler(SamplerKind::kIndependent, context.settings.seed, 1);
+    std::vector<Splat> splats;
+    for (int i = 0; i < paths && !context.control.stopped(); ++i) {
+        sampler.start(-1, i, 0);
+        const FirstBlock u = sampler.get_block();
+        tracer.trace(u, tracer.camera_hit(u), sampler, splats);
+        for (const Splat& splat : splats)
+            if (is_finite(splat.light)) light[tile(splat.pixel)] += static_cast<double>(luminance(splat.light)) / paths;
+    }
+    const double mean = std::accumulate(light.begin(), light.end(), 0.0);
+    for (std::size_t i = 0; i < light.size() && mean > 0; ++i) {
+        if (parts[i] == 0) continue; // the image has fewer pixels than tiles
+        importances_[i] = 1 / std::max(light[i] / parts[i], kLeastBrightness * mean);
+        mean_ += light[i] * importances_[i];
+    }
+}
+
+std::size_t MetropolisPilot::tile(std::uint32_t pixel) const {
+    const int x = static_cast<int>(pixel) % width_, y = static_cast<int>(pixel) / width_;
+    const auto place = [&](int i, int count) { return std::int64_t{i} * tiles_ / count; };
+    return static_cast<std::size_t>(place(y, height_) * tiles_ + place(x, width_));
+}
+
+std::optional<Image<Rgbd>> Metropolis::sample(std::uint32_t index) const {
+    return ChainedSample(context_, emission_, pilot_, index).render();
+}
+
+} // namespace duet::raytrace

@@ -1,0 +1,56 @@
+// Metropolis light transport walks from path to path, and stays longer where paths bring much light: a path that has
+// found a way through a door ajar is followed by others that are like it (Veach and Guibas 1997; in primary sample
+// space, Kelemen et al. 2002). As in multiplexed Metropolis light transport (Hachisuka et al. 2014), a path is drawn by
+// one of the strategies of bidirectional path tracing, and the choice of the strategy is one of its random numbers.
+#pragma once
+
+#include "raytrace/bidirectional/bidirectional.h"
+#include "raytrace/render_pass.h"
+
+#include <optional>
+#include <vector>
+
+namespace duet::raytrace {
+
+/// Knows the image roughly, from a few paths.
+class MetropolisPilot {
+public:
+    MetropolisPilot(const PassContext& context, const LightEmission& emission);
+
+    /// Returns how much luminance at a pixel (row · width + column) counts: one over the brightness of the tile around
+    /// it. So chains do not stay where the image is bright, but visit all tiles about equally often, and noise is even
+    /// in proportion to the brightness (Veach 1997, §11.4.3).
+    double importance(std::uint32_t pixel) const { return importances_[tile(pixel)]; }
+    /// Returns an estimate of the mean importance of what a path sends.
+    double mean_importance() const { return mean_; }
+
+private:
+    std::size_t tile(std::uint32_t pixel) const;
+
+    int width_, height_, tiles_ = 1; ///< tiles per axis
+    std::vector<double> importances_; ///< by tile
+    double mean_ = 0;
+};
+
+/// Renders samples of all pixels. A sample of a pixel is an independent path and kStepsPerPixel steps of Markov chains,
+/// which start at some of the independent paths of all pixels. Both find all light, and are combined by multiple
+/// importance sampling: steps find bright paths better, and independent paths dim ones.
+class Metropolis {
+public:
+    /// Refers to both arguments.
+    Metropolis(const PassContext& context, const LightEmission& emission)
+        : context_(context), emission_(emission), pilot_(context, emission) {}
+
+    /// Returns an unbiased estimate of the radiance of all pixels, or nothing if it was stopped. `index` is that of the
+    /// sample, on which the random numbers depend. Independent paths are added to the auxiliary images.
+    std::optional<Image<Rgbd>> sample(std::uint32_t index) const;
+
+    static constexpr int kStepsPerPixel = 8;
+
+private:
+    const PassContext& context_;
+    const LightEmission& emission_;
+    const MetropolisPilot pilot_;
+};
+
+} // namespace duet::raytrace
