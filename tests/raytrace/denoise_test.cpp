@@ -217,9 +217,10 @@ TEST_SUITE("unit") {
 
     TEST_CASE("every integrator and sampler can be denoised") {
         for (const Integrator integrator :
- {Integrator::kPath, Integrator::kNaive, Integrator::kBidirectional, Integrator::kVcm, Integrator::kPhotons,
+             {Integrator::kPath, Integrator::kNaive, Integrator::kBidirectional, Integrator::kVcm, Integrator::kPhotons,
               Integrator::kMetropolis, Integrator::kWhitted, Integrator::kDirect, Integrator::kUnshadowed,
-              Integrator::kLights, Integrator::kEnvironment, Integrator::kReflection, Integrator::kNormal, Integrator::kAlbedo})
+              Integrator::kLights, Integrator::kEnvironment, Integrator::kReflection,
+              Integrator::kNormal, Integrator::kAlbedo})
             for (const SamplerKind sampler : {SamplerKind::kSobol, SamplerKind::kStratified, SamplerKind::kBlueNoise,
                                               SamplerKind::kIndependent, SamplerKind::kCenter}) {
                 CAPTURE(integrator_name(integrator));

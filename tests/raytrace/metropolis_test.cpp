@@ -28,8 +28,8 @@ Sampler::Block read(PrimarySample& sample, std::uint32_t block) {
     return sample.get_block();
 }
 
-// Returns two rooms beside each other. An area light lights the right one, and the left one through a gap alone. A glass
-// ball stands in the light.
+// Returns two rooms beside each other. An area light lights the right one, and the left one through a gap alone. A
+// glass ball stands in the light.
 Scene two_rooms() {
     SceneBuilder builder;
     const std::uint32_t wall = builder.material(Diffuse{{Rgb(0.7f, 0.6f, 0.5f)}});
