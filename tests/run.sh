@@ -10,9 +10,10 @@ preset=${1:-release}
 # that is installed (Chromium or Chrome) is taken, and without one the tests are skipped.
 # Embree is a peer of `compare kernels`, whose tests want it; the programs build without.
 # The course's pages are checked by KaTeX (formulas) and hunspell (spelling), the comments of functions by Doxygen.
-# OpenVDB's Python module reads files of clouds and smoke (models/vdb_to_smoke.py).
+# git knows which files are the project's, and applies the mutations. OpenVDB's Python module
+# reads files of clouds and smoke (models/vdb_to_smoke.py).
 # The window is tested on a virtual screen (Xvfb), drawn by Mesa's software renderer, with a mouse of xdotool.
-packages='libembree-dev katex hunspell hunspell-en-us doxygen xvfb xdotool libgl1-mesa-dri'
+packages='git libembree-dev katex hunspell hunspell-en-us doxygen xvfb xdotool libgl1-mesa-dri'
 command -v python3 >/dev/null || packages="$packages python3"
 if grep -q '^ID=debian' /etc/os-release; then
     packages="$packages python3-openvdb"

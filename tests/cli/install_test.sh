@@ -8,8 +8,8 @@ expect 0 cmake --install "$build" --prefix "$prefix"
 
 # The consumer is compiled by the compiler of the build, as the libraries may need its runtime (sanitizers).
 compiler=$(sed -n 's/^CMAKE_CXX_COMPILER:[A-Z]*=//p' "$build/CMakeCache.txt")
-expect 0 cmake -S tests/consumer -B "$scratch/consumer" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_COMPILER="$compiler" \
-    -DCMAKE_BUILD_TYPE=Release
+expect 0 cmake -G Ninja -S tests/consumer -B "$scratch/consumer" -DCMAKE_PREFIX_PATH="$prefix" \
+    -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=Release
 expect 0 cmake --build "$scratch/consumer"
 expect 0 "$scratch/consumer/render_both" "$models/meshes/pear.obj" "$scratch/raster.png" "$scratch/raytrace.png"
 expect 0 "$prefix/bin/compare" images "$scratch/raster.png" "$scratch/raytrace.png" --fail-above flip=0.06
