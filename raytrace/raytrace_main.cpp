@@ -29,7 +29,7 @@ void add_options(CommandLine& command_line, Options& options) {
     command_line.add("--integrator", options.integrator,
                      "path (default), naive (no light sampling), bidirectional (paths from the camera and from the"
                      " lights, connected), vcm (the same, also merged where they nearly meet), photons "
-                     "(progressive photon mapping), metropolis (chains of connected paths that are like each other), "
+                     "(progressive photon mapping), metropolis (Markov chains of connected paths), "
                      "whitted (mirrors, glass and hard shadows), direct, "
                      "unshadowed (direct light without visibility), lights "
                      "(emission and direct light of lights), environment"

@@ -19,6 +19,9 @@ void check_bidirectional(const Scene& scene, const PathTracerSettings& settings)
     if (settings.filter != FilterKind::kBox)
         throw Error(message("the integrator ", integrator_name(settings.integrator),
                             " weighs no light by a filter: found ", filter_name(settings.filter), ", expected box"));
+    if (settings.integrator == Integrator::kMetropolis && settings.sampler == SamplerKind::kCenter)
+        throw Error("the chains of the integrator metropolis move over the whole image: found the sampler center, "
+                    "expected another");
     if (scene.needs.interiors)
         throw Error(message("a dielectric of the scene absorbs or has a priority, which the integrator ",
                             integrator_name(settings.integrator), " does not support: expected another"));

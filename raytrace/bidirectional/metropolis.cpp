@@ -14,16 +14,18 @@ namespace duet::raytrace {
 namespace {
 
 constexpr std::size_t kStepsPerChain = 128;
-constexpr int kMostTiles = 16;       ///< of the pilot, per axis
+constexpr int kMaxTiles = 16;        ///< of the pilot, per axis
 constexpr double kPathsPerTile = 64; ///< of the pilot, at least
 constexpr int kPilotPaths = 16384;   ///< at most; fewer in images of fewer pixels
 /// A tile is taken to be at least this bright, relative to the mean of the image, so that chains also leave dark tiles.
-constexpr double kLeastBrightness = 0.02;
+constexpr double kMinBrightness = 0.02;
 
-// Holds what a path sends to pixels.
+// Holds the contribution of a path to pixels.
 struct Contribution {
     std::vector<Splat> splats;
-    double importance = 0; ///< chains stay in proportion to it; see MetropolisPilot
+    /// This is the scalar contribution function I of Kelemen et al. 2002: chains visit paths in proportion to it. It is
+    /// the weighted sum of the luminance of the splats; see MetropolisPilot.
+    double scalar = 0;
 };
 
 // The first block of random numbers: position in the image, point on the lens, time.
@@ -71,10 +73,10 @@ private:
     BidirectionalTracer tracer_;
 };
 
-// Estimates the radiance of all pixels. The mean over the independent paths estimates the mean importance b of all
-// paths. A chain starts at one of them, chosen in proportion to its importance I. In the mean over all of these paths
-// it is in equilibrium from its first step on: what its paths send, times b / I, is an unbiased estimate (Veach 1997,
-// §11.3.1).
+// Estimates the radiance of all pixels. The mean over the independent paths estimates the mean b of the scalar
+// contribution I of all paths. A chain starts at one of them, chosen in proportion to I. In the mean over all of these
+// paths it is in equilibrium from its first step on: the contributions of its paths, times b / I, are an unbiased
+// estimate (Veach 1997, §11.3.1).
 class ChainedSample {
 public:
     ChainedSample(const PassContext& context, const LightEmission& emission, const MetropolisPilot& pilot,
@@ -83,7 +85,7 @@ public:
           seed_(hash_combine(hash_combine(0, context.settings.seed), index)),
           sums_(context.view.width, context.view.height),
           chains_((sums_.size() * Metropolis::kStepsPerPixel + kStepsPerChain - 1) / kStepsPerChain),
-          importances_(sums_.size()) {}
+          scalars_(sums_.size()) {}
 
     std::optional<Image<Rgbd>> render() {
         const auto height = static_cast<std::size_t>(context_.view.height);
@@ -91,8 +93,8 @@ public:
                 trace_row(static_cast<int>(y), tracer, sent);
             }))
             return std::nullopt;
-        std::partial_sum(importances_.begin(), importances_.end(), importances_.begin());
-        if (importances_.back() > 0 &&
+        std::partial_sum(scalars_.begin(), scalars_.end(), scalars_.begin());
+        if (scalars_.back() > 0 &&
             !for_groups(chains_, [&](std::size_t chain, PairTracer& tracer, std::vector<Splat>& sent) {
                 run_chain(chain, tracer, sent);
             }))
@@ -104,7 +106,7 @@ private:
     // Calls body(i, …) for all i below `count`, in groups. What bodies send is added in their order, so that the sum
     // does not depend on threads; meanwhile it takes memory. Returns false if it was stopped.
     template <typename Body> bool for_groups(std::size_t count, const Body& body) {
-        constexpr std::size_t kGroup = 64;
+        constexpr std::size_t kGroup = 1024;
         for (std::size_t first = 0; first < count; first += kGroup) {
             std::vector<std::vector<Splat>> sent(std::min(kGroup, count - first));
             parallel_for(sent.size(), context_.settings.threads, [&](std::size_t i) {
@@ -141,26 +143,29 @@ private:
             const std::pair<Ray, Hit> seen = tracer.camera_hit(u);
             if (context_.aovs.any()) context_.aovs.add(x, y, index_, seen.first, seen.second);
             tracer.trace(u, seen, sampler, found.splats);
-            set_importance(found);
-            const bool valid = std::isfinite(found.importance);
-            importances_[static_cast<std::size_t>(y) * static_cast<std::size_t>(sums_.width()) +
-                         static_cast<std::size_t>(x)] = valid ? found.importance : 0;
-            send(found, valid ? 1 - weight_of_steps(found.importance) : 1, sent); // the film reports invalid ones
+            set_scalar(found);
+            const bool valid = std::isfinite(found.scalar);
+            scalars_[static_cast<std::size_t>(y) * static_cast<std::size_t>(sums_.width()) +
+                     static_cast<std::size_t>(x)] = valid ? found.scalar : 0;
+            if (valid)
+                send(found, 1 - weight_of_steps(found.scalar), sent);
+            else
+                send_invalid(found, sent);
         }
     }
 
-    void set_importance(Contribution& found) const {
-        found.importance = 0;
+    void set_scalar(Contribution& found) const {
+        found.scalar = 0;
         for (const Splat& splat : found.splats)
-            found.importance += static_cast<double>(luminance(splat.light)) * pilot_.importance(splat.pixel);
+            found.scalar += static_cast<double>(luminance(splat.light)) * pilot_.weight(splat.pixel);
     }
 
     // Returns the weight of steps in multiple importance sampling, by the balance heuristic: a path has the density 1
     // among independent paths, and I / b times as many among steps. Any constant in place of b gives an unbiased
     // estimate, but not one that depends on the paths at which the chains start.
-    double weight_of_steps(double importance) const {
-        const double steps = Metropolis::kStepsPerPixel * importance;
-        return steps > 0 ? steps / (steps + pilot_.mean_importance()) : 0;
+    double weight_of_steps(double scalar) const {
+        const double steps = Metropolis::kStepsPerPixel * scalar;
+        return steps > 0 ? steps / (steps + pilot_.mean_contribution()) : 0;
     }
 
     void run_chain(std::size_t chain, PairTracer& tracer, std::vector<Splat>& sent) const {
@@ -169,16 +174,16 @@ private:
             return static_cast<double>(unit_float(high_bits(stream_number(seed, i))));
         };
         const double u = (static_cast<double>(chain) + uniform(kStepsPerChain)) / static_cast<double>(chains_);
-        PrimarySample sample = start_at(u * importances_.back(), mix_bits(seed));
+        PrimarySample sample = start_at(u * scalars_.back(), mix_bits(seed));
         Contribution current, proposal;
         trace(sample, tracer, current);
-        double stay = 0; // the probabilities with which the chain has been at the current path, summed over steps
+        double stay = 0; // the expected number of steps at the current path
         for (std::size_t step = 0; step < kStepsPerChain; ++step) {
             sample.propose();
             trace(sample, tracer, proposal);
             // Both paths count with the probabilities with which the chain goes on from them (Veach 1997, §11.3.2).
-            const bool valid = std::isfinite(proposal.importance);
-            const double acceptance = valid ? std::min(1.0, proposal.importance / current.importance) : 0;
+            const bool valid = std::isfinite(proposal.scalar);
+            const double acceptance = valid ? std::min(1.0, proposal.scalar / current.scalar) : 0;
             stay += 1 - acceptance;
             if (uniform(step) < acceptance) {
                 send_steps(current, stay, sent);
@@ -189,17 +194,17 @@ private:
                 if (valid)
                     send_steps(proposal, acceptance, sent);
                 else
-                    send(proposal, 1, sent);
+                    send_invalid(proposal, sent);
                 sample.reject();
             }
         }
         send_steps(current, stay, sent);
     }
 
-    // Returns the independent path up to which the importances sum up to this.
+    // Returns the independent path up to which the scalar contributions sum up to this.
     PrimarySample start_at(double sum, std::uint64_t seed) const {
-        const auto found = std::upper_bound(importances_.begin(), importances_.end() - 1, sum);
-        const auto i = static_cast<int>(found - importances_.begin());
+        const auto found = std::upper_bound(scalars_.begin(), scalars_.end() - 1, sum);
+        const auto i = static_cast<int>(found - scalars_.begin());
         const auto [sampler, u] = independent_path(i % sums_.width(), i / sums_.width());
         return {sampler, u, seed};
     }
@@ -208,19 +213,25 @@ private:
         sample.set_dimension(0);
         const FirstBlock u = sample.get_block();
         tracer.trace(u, tracer.camera_hit(u), sample, found.splats);
-        set_importance(found);
+        set_scalar(found);
     }
 
     void send_steps(const Contribution& contribution, double steps, std::vector<Splat>& sent) const {
         if (steps == 0) return;
-        const double b = importances_.back() / static_cast<double>(sums_.size()), importance = contribution.importance;
+        const double b = scalars_.back() / static_cast<double>(sums_.size()), scalar = contribution.scalar;
         const double pixels_per_step =
             static_cast<double>(sums_.size()) / static_cast<double>(chains_ * kStepsPerChain);
-        send(contribution, weight_of_steps(importance) * steps * pixels_per_step * b / importance, sent);
+        send(contribution, weight_of_steps(scalar) * steps * pixels_per_step * b / scalar, sent);
     }
     static void send(const Contribution& found, double factor, std::vector<Splat>& sent) {
         for (const Splat& splat : found.splats)
             if (!is_black(splat.light)) sent.push_back({splat.pixel, Rgb(Rgbd(splat.light) * factor)});
+    }
+
+    // The film reports these pixels.
+    static void send_invalid(const Contribution& found, std::vector<Splat>& sent) {
+        for (const Splat& splat : found.splats)
+            if (!is_finite(splat.light)) sent.push_back(splat);
     }
 
     const PassContext& context_;
@@ -230,37 +241,70 @@ private:
     const std::uint64_t seed_;
     Image<Rgbd> sums_;
     const std::size_t chains_;
-    std::vector<double> importances_; // of the independent paths; once all are traced, each plus all before it
-    std::mutex mutex_;                // guards the counts
+    std::vector<double>
+        scalars_;      // contributions of the independent paths; once all are traced, each plus all before it
+    std::mutex mutex_; // guards the counts
 };
 
 } // namespace
 
 MetropolisPilot::MetropolisPilot(const PassContext& context, const LightEmission& emission)
     : width_(context.view.width), height_(context.view.height) {
-    const std::size_t pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
-    const auto paths = static_cast<int>(std::min<std::size_t>(pixels, kPilotPaths));
-    tiles_ = std::clamp(static_cast<int>(std::sqrt(paths / kPathsPerTile)), 1, kMostTiles);
-    importances_.assign(static_cast<std::size_t>(tiles_ * tiles_), 1);
-    std::vector<double> light(importances_.size()), parts(importances_.size()); // parts of the light and of the pixels
-    for (std::size_t i = 0; i < pixels; ++i)
-        parts[tile(static_cast<std::uint32_t>(i))] += 1 / static_cast<double>(pixels);
-    PairTracer tracer(context, emission);
-    Sampler sampler(SamplerKind::kIndependent, context.settings.seed, 1);
-    std::vector<Splat> splats;
-    for (int i = 0; i < paths && !context.control.stopped(); ++i) {
-        sampler.start(-1, i, 0);
-        const FirstBlock u = sampler.get_block();
-        tracer.trace(u, tracer.camera_hit(u), sampler, splats);
-        for (const Splat& splat : splats)
-            if (is_finite(splat.light)) light[tile(splat.pixel)] += static_cast<double>(luminance(splat.light)) / paths;
-    }
+    const double pixels = static_cast<double>(width_) * static_cast<double>(height_);
+    const auto paths = static_cast<int>(std::min(pixels, double{kPilotPaths}));
+    tiles_ = std::clamp(static_cast<int>(std::sqrt(paths / kPathsPerTile)), 1, kMaxTiles);
+    weights_.assign(static_cast<std::size_t>(tiles_ * tiles_), 1);
+    const std::vector<double> light = light_of_tiles(context, emission, paths);
     const double mean = std::accumulate(light.begin(), light.end(), 0.0);
     for (std::size_t i = 0; i < light.size() && mean > 0; ++i) {
-        if (parts[i] == 0) continue; // the image has fewer pixels than tiles
-        importances_[i] = 1 / std::max(light[i] / parts[i], kLeastBrightness * mean);
-        mean_ += light[i] * importances_[i];
+        if (light[i] == 0) {
+            weights_[i] = 1 / (kMinBrightness * mean);
+            continue;
+        }
+        const double fraction = pixels_of_tile(i) / pixels;
+        weights_[i] = 1 / std::max(light[i] / fraction, kMinBrightness * mean);
+        mean_ += light[i] * weights_[i];
     }
+}
+
+// Returns the luminance that reaches each tile, as a fraction of that of an image of luminance 1.
+std::vector<double> MetropolisPilot::light_of_tiles(const PassContext& context, const LightEmission& emission,
+                                                    int paths) const {
+    constexpr int kChunk = 256; // paths, whose light is summed up by itself: the sum does not depend on threads
+    std::vector<std::vector<double>> chunks(static_cast<std::size_t>((paths + kChunk - 1) / kChunk));
+    std::vector<RayCounts> counts(chunks.size());
+    parallel_for(chunks.size(), context.settings.threads, [&](std::size_t chunk) {
+        chunks[chunk].assign(weights_.size(), 0);
+        if (context.control.stopped()) return;
+        PairTracer tracer(context, emission);
+        Sampler sampler(SamplerKind::kIndependent, context.settings.seed, 1);
+        std::vector<Splat> splats;
+        for (int i = static_cast<int>(chunk) * kChunk; i < std::min(paths, static_cast<int>(chunk + 1) * kChunk); ++i) {
+            sampler.start(-1, i, 0);
+            const FirstBlock u = sampler.get_block();
+            tracer.trace(u, tracer.camera_hit(u), sampler, splats);
+            for (const Splat& splat : splats)
+                if (is_finite(splat.light))
+                    chunks[chunk][tile(splat.pixel)] += static_cast<double>(luminance(splat.light)) / paths;
+        }
+        counts[chunk] = tracer.counts();
+    });
+    std::vector<double> light(weights_.size());
+    for (std::size_t chunk = 0; chunk < chunks.size(); ++chunk) {
+        for (std::size_t i = 0; i < light.size(); ++i) light[i] += chunks[chunk][i];
+        context.counts += counts[chunk];
+    }
+    return light;
+}
+
+// A tile begins at the first row or column i with i · tiles / count = its number, rounded down.
+double MetropolisPilot::pixels_of_tile(std::size_t tile) const {
+    const auto length = [&](std::int64_t k, int count) {
+        const auto first = [&](std::int64_t n) { return (n * count + tiles_ - 1) / tiles_; };
+        return static_cast<double>(first(k + 1) - first(k));
+    };
+    const auto index = static_cast<std::int64_t>(tile);
+    return length(index % tiles_, width_) * length(index / tiles_, height_);
 }
 
 std::size_t MetropolisPilot::tile(std::uint32_t pixel) const {

@@ -12,23 +12,25 @@
 
 namespace duet::raytrace {
 
-/// Knows the image roughly, from a few paths.
+/// Estimates the brightness of each tile of the image from a few paths.
 class MetropolisPilot {
 public:
     MetropolisPilot(const PassContext& context, const LightEmission& emission);
 
-    /// Returns how much luminance at a pixel (row · width + column) counts: one over the brightness of the tile around
+    /// Returns the weight of luminance at a pixel (row · width + column): one over the brightness of the tile around
     /// it. So chains do not stay where the image is bright, but visit all tiles about equally often, and noise is even
     /// in proportion to the brightness (Veach 1997, §11.4.3).
-    double importance(std::uint32_t pixel) const { return importances_[tile(pixel)]; }
-    /// Returns an estimate of the mean importance of what a path sends.
-    double mean_importance() const { return mean_; }
+    double weight(std::uint32_t pixel) const { return weights_[tile(pixel)]; }
+    /// Returns an estimate of the mean scalar contribution of a path, which is the weighted luminance of its splats.
+    double mean_contribution() const { return mean_; }
 
 private:
+    std::vector<double> light_of_tiles(const PassContext& context, const LightEmission& emission, int paths) const;
     std::size_t tile(std::uint32_t pixel) const;
+    double pixels_of_tile(std::size_t tile) const;
 
     int width_, height_, tiles_ = 1; ///< tiles per axis
-    std::vector<double> importances_; ///< by tile
+    std::vector<double> weights_;    ///< by tile
     double mean_ = 0;
 };
 

@@ -18,59 +18,70 @@ Vec2 PrimarySample::Random::normal_pair() {
     return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
+namespace {
+
+// Adds normally distributed moves to all numbers. The interval [0, 1) is closed to a circle.
+template <typename Random> void move(Sampler::Block& values, float deviation, Random& random) {
+    const auto wrapped = [](float x) { return std::min(x - std::floor(x), kOneMinusEpsilon); };
+    for (std::size_t i = 0; i < values.size(); i += 2) {
+        const Vec2 moves = random.normal_pair() * deviation;
+        values[i] = wrapped(values[i] + moves.x);
+        values[i + 1] = wrapped(values[i + 1] + moves.y);
+    }
+}
+
+} // namespace
+
 void PrimarySample::propose() {
-    ++steps_;
+    ++proposals_;
+    proposing_ = true;
     large_ = random_.uniform() < kLargeStep;
     changed_.clear();
 }
 
 void PrimarySample::accept() {
+    ++steps_;
     if (large_) large_step_ = steps_;
-}
-
-void PrimarySample::reject() {
-    for (const std::uint32_t i : changed_) {
-        Block& block = blocks_[i];
-        block.values = block.backup, block.step = block.backup_step;
-    }
-    --steps_;
+    for (const std::uint32_t i : changed_) blocks_[i].values = blocks_[i].proposal, blocks_[i].step = steps_;
+    proposing_ = false;
 }
 
 Sampler::Block PrimarySample::get_block() {
     if (blocks_.size() <= next_) blocks_.resize(next_ + 1);
     Block& block = blocks_[next_];
-    if (block.step < steps_) {
-        block.backup = block.values, block.backup_step = block.step;
-        changed_.push_back(next_);
+    if (!proposing_) {
         catch_up(block);
-        block.step = steps_;
+    } else if (block.proposed < proposals_) {
+        if (large_) {
+            for (float& value : block.proposal) value = random_.uniform();
+        } else {
+            catch_up(block);
+            block.proposal = block.values;
+            move(block.proposal, kDeviation, random_);
+        }
+        block.proposed = proposals_;
+        changed_.push_back(next_);
     }
     ++next_;
-    return block.values;
+    return proposing_ ? block.proposal : block.values;
 }
 
-// Several small steps of the normal distribution are one of a larger deviation.
+// Brings a block to the current point, whatever becomes of the proposal. Otherwise chains would be drawn to paths that
+// read it: each proposal of such a path would try other values, and reject those that are dark. Several small steps of
+// the normal distribution are one of a larger deviation.
 void PrimarySample::catch_up(Block& block) {
-    const std::int64_t last_large = large_ ? steps_ : large_step_;
-    if (block.step < 0 && last_large == 0) {
+    if (block.step == steps_) return;
+    if (block.step < 0 && large_step_ == 0) {
         start_.set_dimension(next_ * static_cast<std::uint32_t>(Sampler::kBlock));
         block.values = start_.get_block();
         block.step = 0;
-    } else if (block.step < last_large) {
+    } else if (block.step < large_step_) {
         for (float& value : block.values) value = random_.uniform();
-        block.step = last_large;
+        block.step = large_step_;
     }
-    if (block.step == steps_) return;
-    const float deviation = kDeviation * std::sqrt(static_cast<float>(steps_ - block.step));
-    const auto move = [](float& value, float by) {
-        value += by;
-        value = std::min(value - std::floor(value), kOneMinusEpsilon);
-    };
-    for (std::size_t i = 0; i < block.values.size(); i += 2) {
-        const Vec2 moves = random_.normal_pair() * deviation;
-        move(block.values[i], moves.x);
-        move(block.values[i + 1], moves.y);
-    }
+    if (block.step < steps_)
+        move(block.values, kDeviation * std::sqrt(static_cast<float>(steps_ - block.step)), random_);
+    block.step = steps_;
 }
 
 } // namespace duet

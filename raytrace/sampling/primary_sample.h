@@ -10,13 +10,13 @@
 namespace duet {
 
 /// Holds the random numbers of one path, each in [0, 1), and proposes changes of them. It has the functions of Sampler
-/// with which a path reads them. Numbers that no path has read yet are drawn when they are read, and those that the
-/// last paths did not read catch up on the steps that they have missed.
+/// with which a path reads them. Numbers that no path has read yet are drawn when they are read. Those that the last
+/// paths did not read first make up for the steps that they have missed.
 class PrimarySample {
 public:
     /// Starts at the point that the sampler is at, except for the first block. The seed is that of all further points.
     PrimarySample(const Sampler& start, const Sampler::Block& first, std::uint64_t seed)
-        : start_(start), random_(seed), blocks_{{first, first, 0, 0}} {}
+        : start_(start), random_(seed), blocks_{{first, 0, {}, 0}} {}
 
     /// Moves to a proposal: with a probability of kLargeStep to an independent point, else to one nearby. accept() or
     /// reject() must follow.
@@ -24,14 +24,14 @@ public:
     /// Stays at the proposal.
     void accept();
     /// Returns to the point before the proposal.
-    void reject();
+    void reject() { proposing_ = false; }
 
     /// These are as in Sampler. Numbers are read in blocks: the dimension must be a multiple of Sampler::kBlock.
     void set_dimension(std::uint32_t dimension) { next_ = dimension / static_cast<std::uint32_t>(Sampler::kBlock); }
     Sampler::Block get_block(); ///< returns the next block
     std::uint32_t sample() const { return start_.sample(); }
 
-    static constexpr float kLargeStep = 0.1f; ///< in models/door.json, 0.3 (Kelemen et al. 2002, §5) is no better
+    static constexpr float kLargeStep = 0.1f;  ///< in models/door.json, 0.3 (Kelemen et al. 2002, §5) is no better
     static constexpr float kDeviation = 0.01f; ///< standard deviation of a small step (pbrt, 3rd edition, §16.4.4)
 
 private:
@@ -45,18 +45,21 @@ private:
         std::uint64_t state_, drawn_ = 0;
     };
     struct Block {
-        Sampler::Block values{}, backup{};
-        std::int64_t step = -1, backup_step = -1; ///< at which the values were drawn or moved last; −1: never
+        Sampler::Block values{};
+        std::int64_t step = -1; ///< the number of accepted steps after which the block had these values; −1: never
+        Sampler::Block proposal{};
+        std::int64_t proposed = 0; ///< the number of the proposal with these values
     };
     void catch_up(Block& block);
 
     Sampler start_;
     Random random_;
     std::uint32_t next_ = 0;                  ///< block to be read
-    std::int64_t steps_ = 0, large_step_ = 0; ///< so far, and the last accepted one to an independent point
-    bool large_ = false;                      ///< whether the proposal is such a step
+    std::int64_t steps_ = 0, large_step_ = 0; ///< accepted so far, and the last of them to an independent point
+    std::int64_t proposals_ = 0;
+    bool proposing_ = false, large_ = false; ///< whether a proposal is open, and whether it is an independent point
     std::vector<Block> blocks_;
-    std::vector<std::uint32_t> changed_; ///< blocks that the current proposal has changed
+    std::vector<std::uint32_t> changed_; ///< blocks that the proposal has changed
 };
 
 } // namespace duet

@@ -247,6 +247,9 @@ TEST_SUITE("unit") {
         settings = bidirectional(4);
         settings.filter = FilterKind::kBlackmanHarris;
         CHECK_THROWS_WITH_AS(check_bidirectional(plain, settings), doctest::Contains("expected box"), Error);
+        settings = bidirectional(4, Integrator::kMetropolis);
+        settings.sampler = SamplerKind::kCenter;
+        CHECK_THROWS_WITH_AS(check_bidirectional(plain, settings), doctest::Contains("center"), Error);
         SceneBuilder builder = room();
         Dielectric wine;
         wine.absorption = Rgb(1.0f);

@@ -136,6 +136,43 @@ TEST_SUITE("unit") {
         for (const int count : counts) CHECK(std::abs(count / 32000.0 - 0.25) < 6 * std::sqrt(0.1875 / 4800));
     }
 
+    // A path of number u below 1/2 reads another number v, of which it is bright in every second stripe. Both halves of u
+    // bring the same light. Chains start in equilibrium, in which they must stay: half of their steps are below 1/2. The
+    // deviation of the fraction is measured over chains, and the bound is six standard errors, at most 2 %.
+    TEST_CASE("chains stay in equilibrium where paths read different numbers") {
+        constexpr int kChains = 4000, kSteps = 100;
+        constexpr float kStripe = 0.01f; // as wide as a small step is long
+        const auto light = [](PrimarySample& sample) {
+            if (read(sample, 0)[0] >= 0.5f) return 1.0f;
+            return std::fmod(read(sample, 1)[0], 2 * kStripe) < kStripe ? 2.0f : 0.0f;
+        };
+        Sampler uniform(SamplerKind::kIndependent, 99, 1);
+        uniform.start(0, 0, 0);
+        double sum = 0, squares = 0;
+        int chains = 0;
+        for (std::uint64_t seed = 0; chains < kChains; ++seed) {
+            PrimarySample sample = start(seed);
+            float current = light(sample);
+            if (2 * uniform.get_1d() >= current) continue; // starts have a density in proportion to their light
+            double below = 0;
+            for (int step = 0; step < kSteps; ++step) {
+                sample.propose();
+                const float proposal = light(sample);
+                if (uniform.get_1d() * current < proposal)
+                    sample.accept(), current = proposal;
+                else
+                    sample.reject();
+                below += read(sample, 0)[0] < 0.5f ? 1.0 / kSteps : 0;
+            }
+            sum += below, squares += below * below, ++chains;
+        }
+        const double mean = sum / chains, error = std::sqrt((squares / chains - mean * mean) / chains);
+        CAPTURE(mean);
+        CAPTURE(error);
+        CHECK(std::abs(mean - 0.5) < 6 * error);
+        CHECK(6 * error < 0.05);
+    }
+
     TEST_CASE("an image without light is black, and auxiliary images are those of the camera rays") {
         SceneBuilder builder;
         builder.add(Sphere{{0, 0, 0}, 1}, builder.material(Diffuse{}));
