@@ -3,8 +3,8 @@
 
   vdb_to_smoke.py FILE.vdb OUT.raw [--grid NAME] [--resolution N] [--up y|z]
 
-Where the file's grid is finer than N points along its longest side, blocks of its voxels are averaged, so that no
-density is lost. A byte holds the density of a point: 255 is the largest. The medium's scattering is that density, so
+Where the file's grid is finer than N points along its longest side, blocks of its voxels are averaged. A byte holds the
+density of a point: 255 is the largest, and less than 1/510 of it becomes 0. The medium's scattering is that density, so
 that a density of 1 in the file scatters all light once per meter; change it to taste. Around the grid is a layer
 without density.
 
@@ -22,11 +22,17 @@ def fail(text):
     sys.exit(f"vdb_to_smoke: {text}")
 
 
-try:
-    import numpy
-    import pyopenvdb
-except ImportError as error:
-    fail(f"{error}; expected OpenVDB's Python module for {sys.executable} (Debian, Ubuntu: python3-openvdb)")
+def load_modules():
+    """Imports what only a conversion needs, so that --help works without it."""
+    global numpy, openvdb
+    try:
+        import numpy
+        try:
+            import openvdb  # its name from OpenVDB 12 on
+        except ImportError:
+            import pyopenvdb as openvdb
+    except ImportError as error:
+        fail(f"{error}; expected OpenVDB's Python module for {sys.executable} (Debian, Ubuntu: python3-openvdb)")
 
 
 def read_grid(path, name):
@@ -34,23 +40,27 @@ def read_grid(path, name):
     if not os.path.isfile(path):
         fail(f"{path}: there is no such file")
     try:
-        grids = [grid for grid in pyopenvdb.readAllGridMetadata(path) if isinstance(grid, pyopenvdb.FloatGrid)]
+        grids = [grid for grid in openvdb.readAllGridMetadata(path) if isinstance(grid, openvdb.FloatGrid)]
         names = [grid.name for grid in grids]
         wanted = name or ("density" if "density" in names else names[0] if len(names) == 1 else "")
         if wanted not in names:
             found = ", ".join(names) or "none"
             fail(f"{path}: found the grids of floats {found}, expected {name or 'one named density'} (see --grid)")
-        return pyopenvdb.read(path, wanted)
+        return openvdb.read(path, wanted)
     except (IOError, RuntimeError, KeyError, ValueError) as error:
         fail(f"{path}: OpenVDB cannot read it: {error}")
 
 
-def voxel_sides(grid, path):
-    """Returns the sides of a voxel in meters. Only grids along the axes have a box."""
+def voxel_grid(grid, path, far):
+    """Returns the position of voxel (0, 0, 0) and the sides of a voxel, in meters. Fails for a grid that is turned or
+    not linear, because boxes of media are neither; `far` is a voxel at the end of the grid."""
     origin = numpy.array(grid.transform.indexToWorld((0, 0, 0)))
     axes = [numpy.array(grid.transform.indexToWorld(unit)) - origin for unit in numpy.eye(3).tolist()]
     sides = numpy.array([axes[i][i] for i in range(3)])
-    if not (sides > 0).all() or not numpy.allclose(numpy.array(axes), numpy.diag(sides), atol=1e-6 * sides.max()):
+    end = numpy.array(grid.transform.indexToWorld(far.tolist()))
+    tolerance = 1e-6 * numpy.abs(sides).max() * max(1, numpy.abs(far).max())
+    if (not (sides > 0).all() or not numpy.allclose(numpy.array(axes), numpy.diag(sides), atol=tolerance)
+            or not numpy.allclose(end, origin + sides * far, atol=tolerance)):
         fail(f"{path}: the grid is turned, mirrored or not linear: expected one along the axes")
     return origin, sides
 
@@ -61,8 +71,7 @@ def averages(grid, low, count, side):
     for x in range(count[0]):  # slab by slab, so that a fine grid needs little memory
         slab = numpy.zeros((side, count[1] * side, count[2] * side), dtype=numpy.float32)
         grid.copyToArray(slab, ijk=(low[0] + x * side, low[1], low[2]))
-        blocks = slab.reshape(side, count[1], side, count[2], side).astype(numpy.float64)
-        means[x] = blocks.mean(axis=(0, 2, 4))
+        means[x] = slab.reshape(side, count[1], side, count[2], side).mean(axis=(0, 2, 4), dtype=numpy.float64)
     if not numpy.isfinite(means).all():
         fail("a density is infinite or not a number")
     return numpy.maximum(means, 0)
@@ -92,11 +101,14 @@ def main():
     if not 1 <= options.resolution <= LARGEST_RESOLUTION:
         fail(f"--resolution: found {options.resolution}, expected 1 to {LARGEST_RESOLUTION}")
 
+    load_modules()
     grid = read_grid(options.file, options.grid)
-    origin, sides = voxel_sides(grid, options.file)
+    if grid.gridClass == "level set":
+        fail(f"{options.file}: the grid {grid.name} holds distances to a surface, expected densities")
     if grid.activeVoxelCount() == 0:
         fail(f"{options.file}: the grid {grid.name} has no density")
     low, high = (numpy.array(corner) for corner in grid.evalActiveVoxelBoundingBox())
+    origin, sides = voxel_grid(grid, options.file, high)
     voxels = high - low + 1
     side = int(-(-voxels.max() // options.resolution))
     inner = -(-voxels // side)
@@ -109,7 +121,9 @@ def main():
         first, last = (numpy.array([first[0], first[2], -last[1]]), numpy.array([last[0], last[2], -first[1]]))
 
     largest = float(densities.max())
-    scaled = numpy.rint(densities * (255 / largest if largest > 0 else 0)).astype(numpy.uint8)
+    if largest == 0:
+        fail(f"{options.file}: the grid {grid.name} has no density above 0")
+    scaled = numpy.rint(densities * (255 / largest)).astype(numpy.uint8)
     write_whole(options.out, scaled.tobytes(order="F"))  # x varies fastest
     rounded = [[float(f"{x:.9g}") for x in corner] for corner in (first, last)]
     print(json.dumps({"type": "smoke", "low": rounded[0], "high": rounded[1], "scattering": float(f"{largest:.6g}"),

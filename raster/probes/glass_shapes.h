@@ -10,9 +10,9 @@
 namespace duet::raster {
 
 /// Holds the shapes of a scene's glass objects. Spheres at rest are exact. Other shapes are exact up to the resolution
-/// of a map, if each ray from the center leaves them once. A ring, a fast ball, or another object whose center lies
-/// outside of it, is taken for a ball that touches it wherever a ray enters, of the radius of a tube with the ring's
-/// volume and surface, or of the ball.
+/// of a map, if each ray from the center leaves them once. A ring, or another mesh whose center lies outside of it, is
+/// taken for a ball that touches it wherever a ray enters, of the radius of a tube with its volume and surface. A ball
+/// that moves away from the center of its bounds is taken for itself.
 /// Surfaces that enclose nothing have no shape.
 class GlassShapes {
 public:

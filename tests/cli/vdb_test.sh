@@ -4,7 +4,7 @@
 
 python=''
 for candidate in python3 /usr/bin/python3; do
-    if "$candidate" -c 'import numpy, pyopenvdb' 2>/dev/null; then python=$candidate && break; fi
+    if "$candidate" -c 'import numpy, pyopenvdb' 2>/dev/null; then python=$candidate; fi
 done
 if [ -z "$python" ]; then
     echo "OpenVDB's Python module (Debian: python3-openvdb) is not installed"
@@ -48,6 +48,7 @@ expect 0 "$bin/raytrace" "$scratch/scene.json" --size 16x16 --spp 4 --quiet -o "
 
 expect 1 $convert "$scratch/none.vdb" "$scratch/x.raw"
 one_line_error none.vdb
+expect 0 $convert --help
 expect 1 $convert "$scratch/scene.json" "$scratch/x.raw"
 one_line_error scene.json
 expect 1 $convert "$scratch/box.vdb" "$scratch/x.raw" --grid heat
