@@ -5,6 +5,7 @@
 #include "common/program/statistics.h"
 #include "common/program/video.h"
 #include "common/program/view_transform_options.h"
+#include "common/system/name_table.h"
 #include "common/system/parallel.h"
 #include "common/system/stopwatch.h"
 
@@ -155,11 +156,9 @@ void add_scene_options(CommandLine& program, SceneOptions& options) {
         .add_parsed(
             "--up",
             [&options](const std::vector<std::string>& axes) {
-                static constexpr std::string_view kAxes = "xyz";
-                const std::size_t axis = kAxes.find(axes.back());
-                if (axes.back().size() != 1 || axis == kAxes.npos)
-                    throw Error(message("--up: found ", axes.back(), ", expected x, y or z"));
-                options.up = static_cast<UpAxis>(axis + 1);
+                static constexpr NameTable<UpAxis, 3> kAxes{
+                    "--up", {{{"x", UpAxis::kX}, {"y", UpAxis::kY}, {"z", UpAxis::kZ}}}};
+                options.up = kAxes.value(axes.back());
             },
             "The axis of a bare mesh that points up: x, y or z (default: z for a mesh that is flat below along z "
             "alone, else y)")
@@ -183,18 +182,18 @@ int run_render_program(const RenderProgram& program, int argc, char** argv) {
 }
 
 AovSet parse_aovs(std::string_view list) {
-    constexpr std::pair<std::string_view, bool AovSet::*> kNames[] = {
-        {"depth", &AovSet::depth}, {"normal", &AovSet::normal},     {"albedo", &AovSet::albedo},
-        {"hit", &AovSet::hit},     {"variance", &AovSet::variance}, {"samples", &AovSet::samples}};
+    static constexpr NameTable<bool AovSet::*, 6> kNames{"--aov",
+                                                         {{{"depth", &AovSet::depth},
+                                                           {"normal", &AovSet::normal},
+                                                           {"albedo", &AovSet::albedo},
+                                                           {"hit", &AovSet::hit},
+                                                           {"variance", &AovSet::variance},
+                                                           {"samples", &AovSet::samples}}}};
     AovSet set;
     while (!list.empty()) {
         const std::string_view name = list.substr(0, list.find(','));
         list.remove_prefix(std::min(list.size(), name.size() + 1));
-        const auto found =
-            std::find_if(std::begin(kNames), std::end(kNames), [&](auto& aov) { return aov.first == name; });
-        if (found == std::end(kNames))
-            throw Error(message("--aov: found ", name, ", expected depth, normal, albedo, hit, variance or samples"));
-        set.*found->second = true;
+        set.*kNames.value(name) = true;
     }
     return set;
 }

@@ -28,7 +28,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 std::string suggestion(std::string_view name, const std::vector<std::string_view>& known) {
     if (name.size() > 40) return "";
     std::string_view nearest;
-    std::size_t least = name.size() / 3 + 2; // up to a third of the letters plus one may differ
+    // Up to a third of the letters plus one may differ, but not all.
+    std::size_t least = std::min(name.size() / 3 + 2, name.size());
     for (const std::string_view candidate : known) {
         if (candidate.size() > 40) continue;
         const std::size_t distance = edit_distance(name, candidate);

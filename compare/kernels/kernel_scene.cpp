@@ -3,6 +3,7 @@
 #include "common/sampling/hash.h"
 #include "common/system/error.h"
 #include "common/system/file.h"
+#include "common/system/name_table.h"
 
 #include <array>
 #include <optional>
@@ -11,7 +12,11 @@ namespace duet::compare {
 
 namespace {
 
-constexpr std::array<const char*, 4> kNames{"alone", "room", "clutter", "instances"};
+constexpr NameTable<Arrangement, 4> kNames{"--scene",
+                                           {{{"alone", Arrangement::kAlone},
+                                             {"room", Arrangement::kRoom},
+                                             {"clutter", Arrangement::kClutter},
+                                             {"instances", Arrangement::kInstances}}}};
 
 Box3d bounds_of(const Mesh& mesh) {
     Box3d box;
@@ -189,13 +194,9 @@ KernelScene kernel_scene_of_file(const Scene& loaded) {
 
 } // namespace
 
-Arrangement parse_arrangement(const std::string& name) {
-    for (std::size_t i = 0; i < kNames.size(); ++i)
-        if (name == kNames[i]) return static_cast<Arrangement>(i);
-    throw Error("--scene: found " + name + ", expected alone, room, clutter or instances");
-}
+Arrangement parse_arrangement(std::string_view name) { return kNames.value(name); }
 
-const char* name_of(Arrangement arrangement) { return kNames[static_cast<std::size_t>(arrangement)]; }
+std::string_view name_of(Arrangement arrangement) { return kNames.name(arrangement); }
 
 bool is_bare_mesh(const std::filesystem::path& file) { return lower_case_extension(file) == ".obj"; }
 
@@ -244,8 +245,8 @@ KernelScene load_kernel_scene(const std::filesystem::path& file, Arrangement arr
     Scene loaded = load_scene(file);
     if (!is_bare_mesh(file)) {
         if (arrangement != Arrangement::kAlone)
-            throw Error(file.string() + ": a scene file is measured as it is; only a mesh (.obj) can be put in a " +
-                        name_of(arrangement));
+            throw Error(message(file.string(), ": a scene file is measured as it is; only a mesh (.obj) can be put in a ",
+                                name_of(arrangement)));
         return kernel_scene_of_file(loaded);
     }
     Mesh& given = std::get<Mesh>(loaded.shapes.front()); // first shape; the ground follows (default_scene_for_mesh)

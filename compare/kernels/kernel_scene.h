@@ -16,9 +16,9 @@ enum class Arrangement {
     kInstances, ///< the copies of kClutter as instances of one mesh, with a two-level BVH
 };
 /// Returns the arrangement "alone", "room", "clutter" or "instances". Throws Error for another name.
-Arrangement parse_arrangement(const std::string& name);
+Arrangement parse_arrangement(std::string_view name);
 /// Returns the name that parse_arrangement reads.
-const char* name_of(Arrangement arrangement);
+std::string_view name_of(Arrangement arrangement);
 
 /// This is a scene of triangle meshes only: one mesh in world space as the single object, or instances of one mesh
 /// followed by a mesh in world space.

@@ -1,45 +1,32 @@
 #include "raytrace/integrator/integrator.h"
 
-#include "common/system/error.h"
-
-#include <algorithm>
-#include <array>
-#include <utility>
+#include "common/system/name_table.h"
 
 namespace duet::raytrace {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, Integrator>, 14> kNames{{{"path", Integrator::kPath},
-                                                                          {"naive", Integrator::kNaive},
-                                                                          {"bidirectional", Integrator::kBidirectional},
-                                                                          {"vcm", Integrator::kVcm},
-                                                                          {"photons", Integrator::kPhotons},
-                                                                          {"metropolis", Integrator::kMetropolis},
-                                                                          {"whitted", Integrator::kWhitted},
-                                                                          {"direct", Integrator::kDirect},
-                                                                          {"unshadowed", Integrator::kUnshadowed},
-                                                                          {"lights", Integrator::kLights},
-                                                                          {"environment", Integrator::kEnvironment},
-                                                                          {"reflection", Integrator::kReflection},
-                                                                          {"normal", Integrator::kNormal},
-                                                                          {"albedo", Integrator::kAlbedo}}};
+constexpr NameTable<Integrator, 14> kNames{"integrator",
+                                           {{{"path", Integrator::kPath},
+                                             {"naive", Integrator::kNaive},
+                                             {"bidirectional", Integrator::kBidirectional},
+                                             {"vcm", Integrator::kVcm},
+                                             {"photons", Integrator::kPhotons},
+                                             {"metropolis", Integrator::kMetropolis},
+                                             {"whitted", Integrator::kWhitted},
+                                             {"direct", Integrator::kDirect},
+                                             {"unshadowed", Integrator::kUnshadowed},
+                                             {"lights", Integrator::kLights},
+                                             {"environment", Integrator::kEnvironment},
+                                             {"reflection", Integrator::kReflection},
+                                             {"normal", Integrator::kNormal},
+                                             {"albedo", Integrator::kAlbedo}}}};
 
 } // namespace
 
-Integrator integrator(std::string_view name) {
-    for (const auto& [known, value] : kNames)
-        if (known == name) return value;
-    throw Error(message("unknown integrator '", name,
-                        "': expected path, naive, bidirectional, vcm, photons, metropolis, whitted, direct, "
-                        "unshadowed, lights, environment, reflection, normal or albedo"));
-}
+Integrator integrator(std::string_view name) { return kNames.value(name); }
 
-std::string_view integrator_name(Integrator integrator) {
-    const auto known = std::ranges::find(kNames, integrator, &std::pair<std::string_view, Integrator>::second);
-    DUET_CHECK(known != kNames.end());
-    return known->first;
-}
+std::string_view integrator_name(Integrator integrator) { return kNames.name(integrator); }
 
 RadianceFunction radiance_function(Integrator integrator) {
     switch (integrator) {

@@ -1,6 +1,6 @@
 #include "raytrace/sampling/pixel_filter.h"
 
-#include "common/system/error.h"
+#include "common/system/name_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +8,9 @@
 namespace duet {
 
 namespace {
+
+constexpr NameTable<FilterKind, 2> kNames{
+    "filter", {{{"box", FilterKind::kBox}, {"blackman-harris", FilterKind::kBlackmanHarris}}}};
 
 /// Returns the integral from −r to x of the four-term Blackman-Harris window over [−r, r], divided by the integral
 /// of the whole window (Harris 1978, "On the Use of Windows for Harmonic Analysis", table I, −92 dB).
@@ -42,13 +45,9 @@ std::vector<double> blackman_harris_quantiles() {
 
 } // namespace
 
-FilterKind filter_kind(std::string_view name) {
-    if (name == "box") return FilterKind::kBox;
-    if (name == "blackman-harris") return FilterKind::kBlackmanHarris;
-    throw Error(message("unknown filter '", name, "': expected box or blackman-harris"));
-}
+FilterKind filter_kind(std::string_view name) { return kNames.value(name); }
 
-std::string_view filter_name(FilterKind kind) { return kind == FilterKind::kBox ? "box" : "blackman-harris"; }
+std::string_view filter_name(FilterKind kind) { return kNames.name(kind); }
 
 PixelFilter::PixelFilter(FilterKind kind) {
     if (kind == FilterKind::kBlackmanHarris) quantiles_ = blackman_harris_quantiles();

@@ -2,7 +2,7 @@
 
 #include "common/sampling/hash.h"
 #include "common/sampling/sobol.h"
-#include "common/system/error.h"
+#include "common/system/name_table.h"
 #include "common/vec/simd.h"
 
 #include <algorithm>
@@ -14,11 +14,12 @@ namespace duet {
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, SamplerKind>, 5> kNames{{{"sobol", SamplerKind::kSobol},
-                                                                          {"blue-noise", SamplerKind::kBlueNoise},
-                                                                          {"stratified", SamplerKind::kStratified},
-                                                                          {"independent", SamplerKind::kIndependent},
-                                                                          {"center", SamplerKind::kCenter}}};
+constexpr NameTable<SamplerKind, 5> kNames{"sampler",
+                                           {{{"sobol", SamplerKind::kSobol},
+                                             {"blue-noise", SamplerKind::kBlueNoise},
+                                             {"stratified", SamplerKind::kStratified},
+                                             {"independent", SamplerKind::kIndependent},
+                                             {"center", SamplerKind::kCenter}}}};
 
 /// Returns (numerator + fraction) / denominator, clamped below 1 because rounding can reach 1.
 float stratum(std::uint32_t numerator, double fraction, std::uint32_t denominator) {
@@ -114,20 +115,12 @@ Vec2 stratified_2d(std::uint32_t index, std::uint32_t count, std::uint64_t key) 
 
 } // namespace
 
-SamplerKind sampler_kind(std::string_view name) {
-    for (const auto& [known, kind] : kNames)
-        if (known == name) return kind;
-    throw Error(message("unknown sampler '", name, "': expected sobol, blue-noise, stratified, independent or center"));
-}
+SamplerKind sampler_kind(std::string_view name) { return kNames.value(name); }
+
+std::string_view sampler_name(SamplerKind kind) { return kNames.name(kind); }
 
 bool needs_sample_count(SamplerKind kind) {
     return kind == SamplerKind::kStratified || kind == SamplerKind::kBlueNoise;
-}
-
-std::string_view sampler_name(SamplerKind kind) {
-    for (const auto& [name, known] : kNames)
-        if (known == kind) return name;
-    return {};
 }
 
 Sampler::Sampler(SamplerKind kind, std::uint64_t seed, int samples_per_pixel, std::uint32_t replicates)

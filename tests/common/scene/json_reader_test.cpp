@@ -111,6 +111,7 @@ TEST_SUITE("unit") {
     TEST_CASE("The nearest key is suggested, and none where none is near") {
         const std::vector<std::string_view> known{"albedo", "radiance", "roughness", "type"};
         CHECK(suggestion("albdeo", known) == "; did you mean \"albedo\"?");
+        CHECK(suggestion("w", {"x", "y", "z"}).empty()); // no letter would be left
         CHECK(suggestion("Roughness", known) == "; did you mean \"roughness\"?");
         CHECK(suggestion("elephant", known).empty());
         CHECK(suggestion(std::string(100'000, 'a'), known).empty());

@@ -322,8 +322,8 @@ TEST_SUITE("unit") {
             {with_objects(R"([{"type": "cube"}])"), "$.objects[0].type: found the string \"cube\""},
             {with_objects(R"([{"type": "sphere", "center": [0, 0, 0], "radius": 0, "material": "m"}])"),
              "$.objects[0].radius: found 0"},
-            {with_objects(R"([{"type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "n"}])"),
-             "$.objects[0].material: unknown material \"n\"; did you mean \"m\"?"},
+            {with_objects(R"([{"type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "mm"}])"),
+             "$.objects[0].material: unknown material \"mm\"; did you mean \"m\"?"},
             {with_objects(R"([{"type": "sphere", "center": [0, 0, 0], "radius": 1}])"),
              "$.objects[0]: the key \"material\" is missing"},
             {with_objects(

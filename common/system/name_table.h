@@ -1,0 +1,35 @@
+// A NameTable holds the names of values, as users write them in options and files.
+#pragma once
+
+#include "common/system/error.h"
+#include "common/system/escape.h"
+#include "common/system/suggestion.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace duet {
+
+/// Holds N names of values, each once.
+template <typename Value, std::size_t N> struct NameTable {
+    const char* what; ///< what the values are: "integrator", or the option that takes them
+    std::array<std::pair<std::string_view, Value>, N> entries;
+
+    /// Returns the value of a name. Throws Error for an unknown name, with the nearest known one or a list.
+    Value value(std::string_view name) const {
+        const auto found = std::ranges::find(entries, name, [](const auto& entry) { return entry.first; });
+        if (found != entries.end()) return found->second;
+        std::vector<std::string_view> names;
+        for (const auto& [known, value] : entries) names.push_back(known);
+        throw Error(message(what, ": found ", quoted_text(name), suggestion_or_list(name, names)));
+    }
+    /// Returns the name of a value, which must be in the table.
+    std::string_view name(Value value) const {
+        const auto found = std::ranges::find(entries, value, [](const auto& entry) { return entry.second; });
+        DUET_CHECK(found != entries.end());
+        return found->first;
+    }
+};
+
+} // namespace duet
