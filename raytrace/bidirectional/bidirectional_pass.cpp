@@ -1,13 +1,12 @@
 #include "raytrace/bidirectional/bidirectional_pass.h"
 
 #include "common/system/error.h"
-#include "common/system/parallel.h"
 #include "raytrace/bidirectional/bidirectional.h"
 #include "raytrace/bidirectional/metropolis.h"
+#include "raytrace/bidirectional/ordered_groups.h"
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 
 namespace duet::raytrace {
 
@@ -35,9 +34,7 @@ void check_bidirectional(const Scene& scene, const PathTracerSettings& settings)
 
 namespace {
 
-// Rows are rendered in groups. What the light subpaths of a group leave is added row by row, so that it does not depend
-// on threads; meanwhile it takes memory.
-constexpr int kRowsInGroup = 64;
+constexpr std::size_t kRowsInGroup = 64; // whose light subpaths' splats and photons are kept until they are added
 
 // The radius of merging is at first this number of pixels, on the median of the visible surfaces. Sample i merges over
 // the first radius times (i + 1)^(-1/8): then the variance and the bias both vanish with more samples (Knaus and
@@ -95,18 +92,15 @@ private:
     };
 
     bool render_rows(bool light, bool camera) {
-        for (int first = 0; first < context_.view.height; first += kRowsInGroup) {
-            std::vector<Row> rows(static_cast<std::size_t>(std::min(kRowsInGroup, context_.view.height - first)));
-            parallel_for(rows.size(), context_.settings.threads, [&](std::size_t i) {
-                if (!context_.control.stopped()) render_row(first + static_cast<int>(i), light, camera, rows[i]);
-            });
-            if (context_.control.stopped()) return false;
-            for (const Row& row : rows) {
+        return run_in_order<Row>(
+            context_, static_cast<std::size_t>(context_.view.height), kRowsInGroup,
+            [&](std::size_t y, Row& row, RayCounts& counts) {
+                render_row(static_cast<int>(y), light, camera, row, counts);
+            },
+            [&](const Row& row) {
                 for (const Splat& splat : row.splats) sums_[splat.pixel] += Rgbd(splat.light);
                 photons_.insert(photons_.end(), row.photons.begin(), row.photons.end());
-            }
-        }
-        return true;
+            });
     }
 
     // Returns the time of all rays where subpaths merge: a photon lights what is there at its own time only.
@@ -117,8 +111,7 @@ private:
         return static_cast<float>(camera_.time(static_cast<double>(u.time)));
     }
 
-    void render_row(int y, bool light, bool camera, Row& row) {
-        RayCounts counts;
+    void render_row(int y, bool light, bool camera, Row& row, RayCounts& counts) {
         BidirectionalTracer tracer(context_.plan, emission_, context_.view, context_.settings.integrator, radius_,
                                    counts);
         const bool connected = connects(context_.settings.integrator);
@@ -141,8 +134,6 @@ private:
             const PhotonMap* const photons = photon_map_ ? &*photon_map_ : nullptr;
             sums_(x, y) += Rgbd(tracer.trace_camera_subpath(ray, hit, pinhole, sampler, photons));
         }
-        const std::lock_guard lock(mutex_);
-        context_.counts += counts;
     }
 
     const PassContext& context_;
@@ -154,7 +145,6 @@ private:
     Image<Rgbd> sums_;
     std::vector<Photon> photons_;
     std::optional<PhotonMap> photon_map_;
-    std::mutex mutex_; // guards the counts
 };
 
 void add_to_film(const PassContext& context, const Image<Rgbd>& sample, std::uint32_t index) {

@@ -1,12 +1,11 @@
 #include "raytrace/bidirectional/metropolis.h"
 
 #include "common/sampling/hash.h"
-#include "common/system/parallel.h"
+#include "raytrace/bidirectional/ordered_groups.h"
 #include "raytrace/sampling/primary_sample.h"
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 #include <numeric>
 
 namespace duet::raytrace {
@@ -14,9 +13,10 @@ namespace duet::raytrace {
 namespace {
 
 constexpr std::size_t kStepsPerChain = 128;
-constexpr int kMaxTiles = 16;        ///< of the pilot, per axis
-constexpr double kPathsPerTile = 64; ///< of the pilot, at least
-constexpr int kPilotPaths = 16384;   ///< at most; fewer in images of fewer pixels
+constexpr std::size_t kRowsInGroup = 64, kChainsInGroup = 1024; ///< whose splats are kept until they are added
+constexpr int kMaxTiles = 16;                                   ///< of the pilot, per axis
+constexpr double kPathsPerTile = 64;                            ///< of the pilot, at least
+constexpr int kPilotPaths = 16384;                              ///< at most; fewer in images of fewer pixels
 /// A tile is taken to be at least this bright, relative to the mean of the image, so that chains also leave dark tiles.
 constexpr double kMinBrightness = 0.02;
 
@@ -34,9 +34,9 @@ using FirstBlock = Sampler::Block;
 // Traces one pair of subpaths after the other.
 class PairTracer {
 public:
-    PairTracer(const PassContext& context, const LightEmission& emission)
-        : context_(context), camera_(context.view),
-          tracer_(context.plan, emission, context.view, context.settings.integrator, 0, counts_) {}
+    PairTracer(const PassContext& context, const LightEmission& emission, RayCounts& counts)
+        : context_(context), camera_(context.view), counts_(counts),
+          tracer_(context.plan, emission, context.view, context.settings.integrator, 0, counts) {}
 
     // Returns what the camera ray of these random numbers hits.
     std::pair<Ray, Hit> camera_hit(const FirstBlock& u) {
@@ -59,8 +59,6 @@ public:
         splats.push_back({index, tracer_.trace_camera_subpath(ray, hit, pinhole, sample, nullptr)});
     }
 
-    const RayCounts& counts() const { return counts_; }
-
 private:
     Vec2d pixel(const FirstBlock& u) const {
         return {static_cast<double>(u[0]) * context_.view.width, static_cast<double>(u[1]) * context_.view.height};
@@ -69,7 +67,7 @@ private:
 
     const PassContext& context_;
     const CameraModel camera_;
-    RayCounts counts_;
+    RayCounts& counts_;
     BidirectionalTracer tracer_;
 };
 
@@ -89,13 +87,13 @@ public:
 
     std::optional<Image<Rgbd>> render() {
         const auto height = static_cast<std::size_t>(context_.view.height);
-        if (!for_groups(height, [&](std::size_t y, PairTracer& tracer, std::vector<Splat>& sent) {
+        if (!add_splats(height, kRowsInGroup, [&](std::size_t y, PairTracer& tracer, std::vector<Splat>& sent) {
                 trace_row(static_cast<int>(y), tracer, sent);
             }))
             return std::nullopt;
         std::partial_sum(scalars_.begin(), scalars_.end(), scalars_.begin());
         if (scalars_.back() > 0 &&
-            !for_groups(chains_, [&](std::size_t chain, PairTracer& tracer, std::vector<Splat>& sent) {
+            !add_splats(chains_, kChainsInGroup, [&](std::size_t chain, PairTracer& tracer, std::vector<Splat>& sent) {
                 run_chain(chain, tracer, sent);
             }))
             return std::nullopt;
@@ -103,24 +101,17 @@ public:
     }
 
 private:
-    // Calls body(i, …) for all i below `count`, in groups. What bodies send is added in their order, so that the sum
-    // does not depend on threads; meanwhile it takes memory. Returns false if it was stopped.
-    template <typename Body> bool for_groups(std::size_t count, const Body& body) {
-        constexpr std::size_t kGroup = 1024;
-        for (std::size_t first = 0; first < count; first += kGroup) {
-            std::vector<std::vector<Splat>> sent(std::min(kGroup, count - first));
-            parallel_for(sent.size(), context_.settings.threads, [&](std::size_t i) {
-                if (context_.control.stopped()) return;
-                PairTracer tracer(context_, emission_);
-                body(first + i, tracer, sent[i]);
-                const std::lock_guard lock(mutex_);
-                context_.counts += tracer.counts();
-            });
-            if (context_.control.stopped()) return false;
-            for (const std::vector<Splat>& splats : sent)
+    // Calls body(i, …) for all i below `count`, and adds the splats. Returns false if it was stopped.
+    template <typename Body> bool add_splats(std::size_t count, std::size_t group, const Body& body) {
+        return run_in_order<std::vector<Splat>>(
+            context_, count, group,
+            [&](std::size_t i, std::vector<Splat>& splats, RayCounts& counts) {
+                PairTracer tracer(context_, emission_, counts);
+                body(i, tracer, splats);
+            },
+            [&](const std::vector<Splat>& splats) {
                 for (const Splat& splat : splats) sums_[splat.pixel] += Rgbd(splat.light);
-        }
-        return true;
+            });
     }
 
     // Returns the sampler at the independent path of a pixel, and the first block of its random numbers.
@@ -242,8 +233,7 @@ private:
     Image<Rgbd> sums_;
     const std::size_t chains_;
     std::vector<double>
-        scalars_;      // contributions of the independent paths; once all are traced, each plus all before it
-    std::mutex mutex_; // guards the counts
+        scalars_; // contributions of the independent paths; once all are traced, each plus all before it
 };
 
 } // namespace
@@ -270,30 +260,29 @@ MetropolisPilot::MetropolisPilot(const PassContext& context, const LightEmission
 // Returns the luminance that reaches each tile, as a fraction of that of an image of luminance 1.
 std::vector<double> MetropolisPilot::light_of_tiles(const PassContext& context, const LightEmission& emission,
                                                     int paths) const {
-    constexpr int kChunk = 256; // paths, whose light is summed up by itself: the sum does not depend on threads
-    std::vector<std::vector<double>> chunks(static_cast<std::size_t>((paths + kChunk - 1) / kChunk));
-    std::vector<RayCounts> counts(chunks.size());
-    parallel_for(chunks.size(), context.settings.threads, [&](std::size_t chunk) {
-        chunks[chunk].assign(weights_.size(), 0);
-        if (context.control.stopped()) return;
-        PairTracer tracer(context, emission);
-        Sampler sampler(SamplerKind::kIndependent, context.settings.seed, 1);
-        std::vector<Splat> splats;
-        for (int i = static_cast<int>(chunk) * kChunk; i < std::min(paths, static_cast<int>(chunk + 1) * kChunk); ++i) {
-            sampler.start(-1, i, 0);
-            const FirstBlock u = sampler.get_block();
-            tracer.trace(u, tracer.camera_hit(u), sampler, splats);
-            for (const Splat& splat : splats)
-                if (is_finite(splat.light))
-                    chunks[chunk][tile(splat.pixel)] += static_cast<double>(luminance(splat.light)) / paths;
-        }
-        counts[chunk] = tracer.counts();
-    });
-    std::vector<double> light(weights_.size());
-    for (std::size_t chunk = 0; chunk < chunks.size(); ++chunk) {
-        for (std::size_t i = 0; i < light.size(); ++i) light[i] += chunks[chunk][i];
-        context.counts += counts[chunk];
-    }
+    constexpr int kChunk = 256; // paths that one thread traces
+    using Light = std::vector<double>;
+    Light light(weights_.size());
+    run_in_order<Light>(
+        context, static_cast<std::size_t>((paths + kChunk - 1) / kChunk), kPilotPaths,
+        [&](std::size_t chunk, Light& found, RayCounts& counts) {
+            found.assign(weights_.size(), 0);
+            PairTracer tracer(context, emission, counts);
+            Sampler sampler(SamplerKind::kIndependent, context.settings.seed, 1);
+            std::vector<Splat> splats;
+            const int first = static_cast<int>(chunk) * kChunk;
+            for (int i = first; i < std::min(first + kChunk, paths); ++i) {
+                sampler.start(-1, i, 0);
+                const FirstBlock u = sampler.get_block();
+                tracer.trace(u, tracer.camera_hit(u), sampler, splats);
+                for (const Splat& splat : splats)
+                    if (is_finite(splat.light))
+                        found[tile(splat.pixel)] += static_cast<double>(luminance(splat.light)) / paths;
+            }
+        },
+        [&](const Light& found) {
+            for (std::size_t i = 0; i < light.size(); ++i) light[i] += found[i];
+        });
     return light;
 }
 
