@@ -76,17 +76,19 @@ trace amphora amphora --size 300x360 --spp 512 --adaptive
 "$bin/compare" join $work/amphora-lines.exr $work/amphora-normal.exr $work/amphora-albedo.exr \
     $work/amphora-direct.exr $work/amphora-lit.exr $work/amphora.exr --columns 3 --gap 4 -o gallery/stages.jpg
 
-# The rungs of the ladder, rasterized and path traced.
+# The rungs of the ladder, rasterized and path traced. The last needs more samples than the others.
 "$bin/compare" ladder models/demo.json -o $work/ladder --size 320x180 --spp 128
+trace ladder-everything demo --size 320x180 --spp 2048 --adaptive
 (cd $work/ladder && "$bin/compare" join 1-hits-*.png 2-normals-*.png 2-albedo-*.png 3-direct-*.png 4-shadows-*.png \
-    5-environment-*.png 6-reflections-*.png 7-everything-*.png --columns 4 --gap 4 -o "$OLDPWD/gallery/ladder.jpg")
+    5-environment-*.png 6-reflections-*.png 7-everything-raster.png ../ladder-everything.png \
+    --columns 4 --gap 4 -o "$OLDPWD/gallery/ladder.jpg")
 
 # The materials, each by both pipelines, and all of them on one sheet.
 sheet=""
 for scene in models/balls/*.json; do
     ball=$(basename "$scene" .json)
-    spp=256
-    [ "$ball" != glass-frosted ] || spp=1024
+    spp=1024
+    [ "$ball" != glass-frosted ] || spp=4096
     trace "ball-$ball" "balls/$ball" --size 200x200 --spp $spp --adaptive
     "$bin/compare" join "$work/ball-$ball.exr" -o "gallery/materials/$ball.jpg"
     rasterize "ball-$ball-raster" "balls/$ball" --size 200x200
