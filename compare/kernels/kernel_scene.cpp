@@ -245,8 +245,9 @@ KernelScene load_kernel_scene(const std::filesystem::path& file, Arrangement arr
     Scene loaded = load_scene(file);
     if (!is_bare_mesh(file)) {
         if (arrangement != Arrangement::kAlone)
-            throw Error(message(file.string(), ": a scene file is measured as it is; only a mesh (.obj) can be put in ",
-                                "a ", name_of(arrangement)));
+            throw Error(message(
+                file.string(), ": a scene file is measured as it is; only a mesh (.obj) can be put in a ",
+                name_of(arrangement)));
         return kernel_scene_of_file(loaded);
     }
     Mesh& given = std::get<Mesh>(loaded.shapes.front()); // first shape; the ground follows (default_scene_for_mesh)

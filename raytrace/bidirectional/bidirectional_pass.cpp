@@ -3,7 +3,7 @@
 #include "common/system/error.h"
 #include "raytrace/bidirectional/bidirectional.h"
 #include "raytrace/bidirectional/metropolis.h"
-#include "raytrace/bidirectional/ordered_groups.h"
+#include "raytrace/bidirectional/run_in_order.h"
 
 #include <algorithm>
 #include <cmath>

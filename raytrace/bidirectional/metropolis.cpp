@@ -1,7 +1,7 @@
 #include "raytrace/bidirectional/metropolis.h"
 
 #include "common/sampling/hash.h"
-#include "raytrace/bidirectional/ordered_groups.h"
+#include "raytrace/bidirectional/run_in_order.h"
 #include "raytrace/sampling/primary_sample.h"
 
 #include <algorithm>
@@ -232,8 +232,8 @@ private:
     const std::uint64_t seed_;
     Image<Rgbd> sums_;
     const std::size_t chains_;
-    std::vector<double>
-        scalars_; // contributions of the independent paths; once all are traced, each plus all before it
+    // These are the scalar contributions of the independent paths. Once all are traced, each is added to those before.
+    std::vector<double> scalars_;
 };
 
 } // namespace

@@ -1,7 +1,7 @@
 // Metropolis light transport walks from path to path, and stays longer where paths bring much light: a path that has
 // found a way through a door ajar is followed by others that are like it (Veach and Guibas 1997; in primary sample
-// space, Kelemen et al. 2002). As in multiplexed Metropolis light transport (Hachisuka et al. 2014), a path is drawn by
-// one of the strategies of bidirectional path tracing, and the choice of the strategy is one of its random numbers.
+// space, Kelemen et al. 2002). A path is a pair of subpaths with all of their connections, as in bidirectional path
+// tracing.
 #pragma once
 
 #include "raytrace/bidirectional/bidirectional.h"

@@ -1,6 +1,6 @@
 #include "raytrace/integrator/medium_sampling.h"
 
-#include "raytrace/integrator/random_sequence.h"
+#include "raytrace/sampling/random_sequence.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include "common/medium/medium.h"
 #include "common/sampling/warp.h"
-#include "raytrace/integrator/random_sequence.h"
+#include "raytrace/sampling/random_sequence.h"
 #include "raytrace/integrator/russian_roulette.h"
 #include "raytrace/integrator/vertex.h"
 

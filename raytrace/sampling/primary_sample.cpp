@@ -1,6 +1,5 @@
 #include "raytrace/sampling/primary_sample.h"
 
-#include "common/sampling/hash.h"
 #include "common/vec/scalar.h"
 
 #include <algorithm>
@@ -8,23 +7,19 @@
 
 namespace duet {
 
-PrimarySample::Random::Random(std::uint64_t seed) : state_(mix_bits(seed + kGoldenGamma)) {}
+namespace {
 
-float PrimarySample::Random::uniform() { return unit_float(high_bits(stream_number(state_, drawn_++))); }
-
-// This is the transform of Box and Muller 1958.
-Vec2 PrimarySample::Random::normal_pair() {
-    const float radius = std::sqrt(-2 * std::log(1 - uniform())), angle = 2 * kPi * uniform();
+// Returns two independent numbers of the normal distribution of mean 0 and variance 1 (Box and Muller 1958).
+Vec2 normal_pair(raytrace::RandomSequence& random) {
+    const float radius = std::sqrt(-2 * std::log(1 - random())), angle = 2 * kPi * random();
     return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
-namespace {
-
 // Adds normally distributed moves to all numbers. The interval [0, 1) is closed to a circle.
-template <typename Random> void move(Sampler::Block& values, float deviation, Random& random) {
+void move(Sampler::Block& values, float deviation, raytrace::RandomSequence& random) {
     const auto wrapped = [](float x) { return std::min(x - std::floor(x), kOneMinusEpsilon); };
     for (std::size_t i = 0; i < values.size(); i += 2) {
-        const Vec2 moves = random.normal_pair() * deviation;
+        const Vec2 moves = normal_pair(random) * deviation;
         values[i] = wrapped(values[i] + moves.x);
         values[i + 1] = wrapped(values[i + 1] + moves.y);
     }
@@ -35,7 +30,7 @@ template <typename Random> void move(Sampler::Block& values, float deviation, Ra
 void PrimarySample::propose() {
     ++proposals_;
     proposing_ = true;
-    large_ = random_.uniform() < kLargeStep;
+    large_ = random_() < kLargeStep;
     changed_.clear();
 }
 
@@ -53,7 +48,7 @@ Sampler::Block PrimarySample::get_block() {
         catch_up(block);
     } else if (block.proposed < proposals_) {
         if (large_) {
-            for (float& value : block.proposal) value = random_.uniform();
+            for (float& value : block.proposal) value = random_();
         } else {
             catch_up(block);
             block.proposal = block.values;
@@ -76,7 +71,7 @@ void PrimarySample::catch_up(Block& block) {
         block.values = start_.get_block();
         block.step = 0;
     } else if (block.step < large_step_) {
-        for (float& value : block.values) value = random_.uniform();
+        for (float& value : block.values) value = random_();
         block.step = large_step_;
     }
     if (block.step < steps_)

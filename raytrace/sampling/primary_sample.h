@@ -3,6 +3,7 @@
 // Mutation Strategy for the Metropolis Light Transport Algorithm").
 #pragma once
 
+#include "raytrace/sampling/random_sequence.h"
 #include "raytrace/sampling/sampler.h"
 
 #include <vector>
@@ -35,15 +36,6 @@ public:
     static constexpr float kDeviation = 0.01f; ///< standard deviation of a small step (pbrt, 3rd edition, §16.4.4)
 
 private:
-    class Random {
-    public:
-        explicit Random(std::uint64_t seed);
-        float uniform();    ///< returns a number in [0, 1)
-        Vec2 normal_pair(); ///< returns two numbers of the normal distribution of mean 0 and variance 1
-
-    private:
-        std::uint64_t state_, drawn_ = 0;
-    };
     struct Block {
         Sampler::Block values{};
         std::int64_t step = -1; ///< the number of accepted steps after which the block had these values; −1: never
@@ -53,7 +45,7 @@ private:
     void catch_up(Block& block);
 
     Sampler start_;
-    Random random_;
+    raytrace::RandomSequence random_;
     std::uint32_t next_ = 0;                  ///< block to be read
     std::int64_t steps_ = 0, large_step_ = 0; ///< accepted so far, and the last of them to an independent point
     std::int64_t proposals_ = 0;

@@ -1,4 +1,5 @@
-// Random numbers for what media and solids do to a path between two vertices, however many it takes.
+// Random numbers where their count is not known before: what media and solids do to a path between two vertices, and
+// the steps of a Markov chain.
 #pragma once
 
 #include "common/image/rgb.h"
@@ -13,7 +14,9 @@ namespace duet::raytrace {
 /// Draws random numbers in [0, 1) that follow from one.
 class RandomSequence {
 public:
-    explicit RandomSequence(float u) : stream_(mix_bits(std::bit_cast<std::uint32_t>(u) + kGoldenGamma)) {}
+    explicit RandomSequence(float u) : RandomSequence(std::uint64_t{std::bit_cast<std::uint32_t>(u)}) {}
+    /// Draws numbers that follow from a seed.
+    explicit RandomSequence(std::uint64_t seed) : stream_(mix_bits(seed + kGoldenGamma)) {}
     /// Returns the next number.
     float operator()() { return unit_float(high_bits(stream_number(stream_, drawn_++))); }
 
