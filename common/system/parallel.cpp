@@ -12,12 +12,12 @@
 #include <vector>
 #else
 #include <map>
-#include <mutex>
 #include <optional>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <utility>
 #endif
 
 namespace duet {
@@ -59,9 +59,10 @@ int available_threads() { return std::max(1, tbb::info::default_concurrency()); 
 
 namespace {
 
-/// A task arena is cached for each number of threads and reused by later loops. Worker threads that left an arena
-/// rejoin it at once. On a computer that also runs other programs, they join a new arena only after some milliseconds,
-/// and a frame may end before that.
+/// A task arena is cached for each number of threads and reused by later loops of the same thread. Worker threads that
+/// left an arena rejoin it at once. On a computer that also runs other programs, they join a new arena only after some
+/// milliseconds, and a frame may end before that. Threads do not share arenas: an arena holds as many threads as its
+/// loops may use, and one more would wait until a loop of another thread has ended.
 struct Arena {
     // A caller may request more threads than there are cores, as a test of determinism does. The limit raises oneTBB's
     // own maximum for this case.
@@ -75,11 +76,20 @@ struct Arena {
 };
 
 tbb::task_arena& arena_of(int workers) {
-    static std::mutex mutex;
-    static std::map<int, Arena> arenas; // by number of threads; they live as long as oneTBB's worker threads
-    const std::lock_guard lock(mutex);
+    thread_local std::map<int, Arena> arenas; // by number of threads
     return arenas.try_emplace(workers, workers).first->second.arena;
 }
+
+/// It is true while this thread runs the body of a loop. Loops within use the arena of that loop.
+thread_local bool in_loop = false;
+
+struct LoopScope {
+    const bool outer = std::exchange(in_loop, true);
+    LoopScope() = default;
+    LoopScope(const LoopScope&) = delete;
+    LoopScope& operator=(const LoopScope&) = delete;
+    ~LoopScope() { in_loop = outer; }
+};
 
 } // namespace
 
@@ -89,7 +99,13 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
         for (std::size_t i = 0; i < count; ++i) body(i);
         return;
     }
-    arena_of(workers).execute([&] { tbb::parallel_for(std::size_t{0}, count, body); });
+    if (in_loop) return tbb::parallel_for(std::size_t{0}, count, body);
+    arena_of(workers).execute([&] {
+        tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+            const LoopScope scope;
+            body(i);
+        });
+    });
 }
 
 #endif

@@ -1,10 +1,13 @@
 #include "common/system/error.h"
 #include "common/system/file.h"
 #include "common/system/parallel.h"
+#include "common/system/stopwatch.h"
 
 #include <doctest/doctest.h>
 
 #include <atomic>
+#include <chrono>
+#include <thread>
 #include <vector>
 
 using namespace duet;
@@ -18,6 +21,29 @@ TEST_SUITE("unit") {
             for (const auto& c : calls) REQUIRE(c == 1);
         }
         parallel_for(0, 0, [](std::size_t) { FAIL("no index to call"); });
+    }
+
+    TEST_CASE("loops of two threads do not wait for each other") {
+        std::atomic<bool> ended = false, waited_in_vain = false;
+        const auto wait = [&](std::size_t) {
+            const Stopwatch watch;
+            while (!ended && watch.seconds() < 20) std::this_thread::yield();
+            if (!ended) waited_in_vain = true;
+        };
+        std::thread other([&] { parallel_for(2, 2, wait); });
+        std::this_thread::sleep_for(std::chrono::milliseconds(20)); // now both threads of that loop are busy
+        parallel_for(4, 2, [](std::size_t) {});
+        ended = true;
+        other.join();
+        CHECK_FALSE(waited_in_vain);
+    }
+
+    TEST_CASE("a loop in a parallel loop runs each index once") {
+        std::vector<std::atomic<int>> calls(400);
+        parallel_for(20, 2, [&](std::size_t i) {
+            parallel_for(20, 2, [&](std::size_t k) { ++calls[20 * i + k]; });
+        });
+        for (const auto& c : calls) REQUIRE(c == 1);
     }
 
     TEST_CASE("an exception in a parallel loop reaches the caller") {
