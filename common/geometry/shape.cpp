@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 #include <utility>
 
 namespace duet {
@@ -91,15 +92,18 @@ bool is_closed_outwards(const Mesh& mesh) {
         while (parent[i] != i) i = parent[i] = parent[parent[i]];
         return i;
     };
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> edges, reversed;
-    edges.reserve(mesh.triangles.size() * 3);
-    for (const auto& t : mesh.triangles)
-        for (std::size_t i = 0; i < 3; ++i) {
-            const std::uint32_t from = welded[t[i]], to = welded[t[(i + 1) % 3]];
-            if (from == to) continue;
-            edges.emplace_back(from, to);
-            parent[component(from)] = component(to);
-        }
+    std::vector<std::uint32_t> first(mesh.positions.size() + 1); // edge of each vertex, once the edges are sorted
+    const auto for_edges = [&](const auto& visit) {
+        for (const auto& t : mesh.triangles)
+            for (std::size_t i = 0; i < 3; ++i) {
+                const std::uint32_t from = welded[t[i]], to = welded[t[(i + 1) % 3]];
+                if (from != to) visit(from, to);
+            }
+    };
+    for_edges([&](std::uint32_t from, std::uint32_t to) {
+        ++first[from + 1];
+        parent[component(from)] = component(to);
+    });
     // The divergence theorem gives six times the volume of each component.
     std::vector<double> volume(mesh.positions.size(), 0.0);
     for (const auto& t : mesh.triangles) {
@@ -109,14 +113,23 @@ bool is_closed_outwards(const Mesh& mesh) {
         const auto corner = [&](std::size_t i) { return Vec3d(mesh.positions[t[i]]) - origin; };
         volume[root] += dot(corner(0), cross(corner(1), corner(2)));
     }
-    for (const auto& [from, to] : edges)
-        if (!(volume[component(from)] > 0)) return false;
-    std::sort(edges.begin(), edges.end());
-    if (std::adjacent_find(edges.begin(), edges.end()) != edges.end()) return false;
-    reversed.reserve(edges.size());
-    for (const auto& [from, to] : edges) reversed.emplace_back(to, from);
-    std::sort(reversed.begin(), reversed.end());
-    return edges == reversed;
+    // The edges are sorted by the vertex that they leave, by counting, and then by the vertex that they reach.
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<std::uint32_t> ends(first.back()), next = first;
+    for_edges([&](std::uint32_t from, std::uint32_t to) { ends[next[from]++] = to; });
+    const auto ends_of = [&](std::uint32_t from) {
+        return std::span(ends).subspan(first[from], first[from + 1] - first[from]);
+    };
+    for (std::uint32_t from = 0; from < mesh.positions.size(); ++from) {
+        const std::span<std::uint32_t> reached = ends_of(from);
+        if (!reached.empty() && !(volume[component(from)] > 0)) return false;
+        std::sort(reached.begin(), reached.end());
+        if (std::adjacent_find(reached.begin(), reached.end()) != reached.end()) return false; // the same edge twice
+    }
+    for (std::uint32_t from = 0; from < mesh.positions.size(); ++from)
+        for (const std::uint32_t to : ends_of(from))
+            if (!std::ranges::binary_search(ends_of(to), from)) return false;
+    return true;
 }
 
 } // namespace duet

@@ -7,6 +7,7 @@
 #include "common/scene/scene.h"
 #include "common/system/error.h"
 #include "common/system/escape.h"
+#include "common/system/parallel.h"
 
 #include <algorithm>
 
@@ -217,8 +218,9 @@ void finish_scene(Scene& scene) {
     bake_single_objects(scene);
     find_bounds(scene);
     limit_mean_free_paths(scene);
-    for (Shape& shape : scene.shapes)
-        if (auto* mesh = std::get_if<Mesh>(&shape)) mesh->closed = is_closed_outwards(*mesh);
+    parallel_for(scene.shapes.size(), 0, [&](std::size_t i) {
+        if (auto* mesh = std::get_if<Mesh>(&scene.shapes[i])) mesh->closed = is_closed_outwards(*mesh);
+    });
     add_surface_lights(scene);
     check_power(scene);
     scene.needs = find_needs(scene);

@@ -369,6 +369,20 @@ TEST_SUITE("unit") {
         Mesh one_flipped = tetrahedron;
         std::swap(one_flipped.triangles[0][0], one_flipped.triangles[0][1]);
         CHECK_FALSE(is_closed_outwards(one_flipped));
+        Mesh doubled = tetrahedron; // each edge belongs to four triangles
+        for (const auto& t : tetrahedron.triangles) doubled.triangles.push_back(t);
+        CHECK_FALSE(is_closed_outwards(doubled));
+        Mesh bicone; // two vertices with many edges
+        constexpr std::uint32_t kSides = 1000;
+        bicone.positions = {{0, 1, 0}, {0, -1, 0}};
+        for (std::uint32_t i = 0; i < kSides; ++i) {
+            const float angle = 2 * kPi * static_cast<float>(i) / kSides;
+            bicone.positions.emplace_back(std::cos(angle), 0.0f, -std::sin(angle));
+            const std::uint32_t a = 2 + i, b = 2 + (i + 1) % kSides;
+            bicone.triangles.push_back({0, a, b});
+            bicone.triangles.push_back({1, b, a});
+        }
+        CHECK(is_closed_outwards(bicone));
     }
 
     TEST_CASE("bounds contain the surface points of a transformed shape") {
