@@ -90,22 +90,30 @@ RasterObject prepare_object(const Scene& scene, const Object& object) {
     return result;
 }
 
-/// Renders the probes of deferred shading, if there is light that they could hold, and a surface that they could light.
-void prepare_probes(const RasterSettings& settings, RasterSceneData& data) {
-    const Scene& scene = data.scene;
-    if (scene.objects.empty() || is_dark(data, settings)) return;
-    if (settings.indirect_light) {
-        data.irradiance_probes = std::make_shared<const IrradianceProbes>(data, settings);
-        data.memory_bytes += static_cast<std::int64_t>(data.irradiance_probes->memory_bytes());
-    }
-    if (std::ranges::none_of(scene.materials, reflects)) return;
+std::shared_ptr<const RadianceMap> environment_map(const RasterSettings& settings, const Scene& scene) {
     const bool image = std::holds_alternative<ImageEnvironment>(scene.environment);
     const int side = image ? PrepareLimits(scene).radiance_map_side(256) : 32;
     const bool shown = settings.environment && scene.needs.environment;
-    data.environment_map = std::make_shared<const RadianceMap>(side, [&](Vec3 w) {
+    const auto arriving = [&](Vec3 w) {
         return RadianceMap::Arriving{shown ? radiance(scene.environment, w) : Rgb(), kInfinity};
-    }, RadianceMap::Source{}, settings.threads);
-    data.reflection_probes = std::make_shared<const ReflectionProbes>(data, settings);
+    };
+    return std::make_shared<const RadianceMap>(side, arriving, RadianceMap::Source{}, settings.threads);
+}
+
+/// Renders the probes of deferred shading, if there is light that they could hold, and a surface that they could light.
+/// Those of the scene `before` are used again, if there is one.
+void prepare_probes(const RasterSettings& settings, RasterSceneData& data, const RasterSceneData* before) {
+    const Scene& scene = data.scene;
+    if (scene.objects.empty() || is_dark(data, settings)) return;
+    if (settings.indirect_light) {
+        data.irradiance_probes =
+            before ? before->irradiance_probes : std::make_shared<const IrradianceProbes>(data, settings);
+        data.memory_bytes += static_cast<std::int64_t>(data.irradiance_probes->memory_bytes());
+    }
+    if (std::ranges::none_of(scene.materials, reflects)) return;
+    data.environment_map = before ? before->environment_map : environment_map(settings, scene);
+    data.reflection_probes =
+        before ? before->reflection_probes : std::make_shared<const ReflectionProbes>(data, settings);
     data.glass_shapes = std::make_shared<const GlassShapes>(data, settings);
     data.memory_bytes += static_cast<std::int64_t>(data.environment_map->memory_bytes() +
                                                    data.reflection_probes->memory_bytes() +
@@ -113,18 +121,17 @@ void prepare_probes(const RasterSettings& settings, RasterSceneData& data) {
 }
 
 /// Renders what Shading::kLit reads: shadow maps, then the probes, whose light they shadow.
-void prepare_lit(const RasterSettings& settings, RasterSceneData& data) {
+void prepare_lit(const RasterSettings& settings, RasterSceneData& data, const RasterSceneData* before) {
     if (settings.shadows && !data.scene.lights.empty()) {
         data.shadows = std::make_shared<const Shadows>(data, settings);
         data.soft_shadows = std::make_shared<const SoftShadowMaps>(*data.shadows);
         data.memory_bytes += data.shadows->memory_bytes();
     }
-    prepare_probes(settings, data);
+    prepare_probes(settings, data, before);
 }
 
-} // namespace
-
-RasterScene prepare(const Scene& scene, const RasterSettings& settings) {
+/// Returns what prepare() does, with the probes of the scene `before`, if there is one.
+RasterScene prepare_after(const RasterSceneData* before, const Scene& scene, const RasterSettings& settings) {
     RasterSceneData data{.scene = scene,
                          .sky_irradiance = environment_irradiance(scene.environment, settings.threads),
                          .shapes = std::vector<PackedShape>(scene.shapes.begin(), scene.shapes.end()),
@@ -161,8 +168,23 @@ RasterScene prepare(const Scene& scene, const RasterSettings& settings) {
         throw Error(message("shadow maps of ", settings.shadow_map_side, " texels a side: expected 64 to 8192"));
     if (settings.shadow_cells < 1 || settings.shadow_cells > Shadows::kMaxCells)
         throw Error(message(settings.shadow_cells, " pieces a light's side: expected 1 to ", Shadows::kMaxCells));
-    if (settings.shading == Shading::kLit && settings.output != Output::kReversedDepth) prepare_lit(settings, data);
+    if (settings.shading == Shading::kLit && settings.output != Output::kReversedDepth) prepare_lit(settings, data, before);
     return RasterScene(std::make_shared<const RasterSceneData>(std::move(data)));
+}
+
+} // namespace
+
+RasterScene prepare(const Scene& scene, const RasterSettings& settings) {
+    return prepare_after(nullptr, scene, settings);
+}
+
+std::optional<RasterScene> prepare_edited(const Scene& scene, const RasterSettings& settings,
+                                          const RasterScene& before) {
+    const RasterSceneData& data = before.data();
+    const bool reflection = std::ranges::any_of(scene.materials, reflects);
+    const bool fits = data.objects.size() == scene.objects.size() && (data.reflection_probes != nullptr) == reflection &&
+                      (data.irradiance_probes != nullptr) == settings.indirect_light;
+    return fits ? std::optional(prepare_after(&data, scene, settings)) : std::nullopt;
 }
 
 } // namespace duet::raster

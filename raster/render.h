@@ -7,6 +7,7 @@
 #include "raster/settings.h"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,11 @@ private:
 
 /// Prepares a scene. Throws Error if the shadow settings are out of range.
 RasterScene prepare(const Scene& scene, const RasterSettings& settings);
+/// Prepares a scene in which something was edited, for a look at it: it has the probes of the scene before, so that only
+/// light between surfaces and reflections lag behind. That takes milliseconds, where new probes take up to seconds.
+/// Returns nothing if the probes do not fit, since objects were added or deleted, or some reflect that did not.
+std::optional<RasterScene> prepare_edited(const Scene& scene, const RasterSettings& settings,
+                                          const RasterScene& before);
 /// Returns one sentence for each way in which images with these settings differ from the path tracer's. Only those
 /// that apply to the scene and to the requested parts are included.
 std::vector<std::string> approximations(const RasterScene& prepared, const RasterSettings& settings);
