@@ -87,10 +87,11 @@ IrradianceProbes::IrradianceProbes(const RasterSceneData& data, const RasterSett
         if (captures[i]) set_distances(*captures[i], probes_[i]);
     });
     find_sky(data, settings, captures);
+    std::vector<std::vector<Weights>> weights(probes_.size());
     for (int k = 0; k <= kBounces; ++k) {
         std::vector<IrradianceHarmonics> next(probes_.size());
         parallel_for(probes_.size(), settings.threads, [&](std::size_t i) {
-            if (captures[i]) next[i] = gather(*captures[i], k);
+            if (captures[i]) next[i] = gather(*captures[i], k, weights[i]);
         });
         for (std::size_t i = 0; i < probes_.size(); ++i) probes_[i].irradiance = next[i];
         fill_solids();
@@ -147,10 +148,21 @@ void IrradianceProbes::set_distances(const ProbeCapture& capture, Probe& probe) 
     probe.distance.finish();
 }
 
+/// Holds how much the eight probes about each of a batch of points count.
+struct IrradianceProbes::Weights {
+    alignas(64) std::array<std::int32_t, Ints::size> cells; ///< the first probe of each cell
+    std::array<Floats, 8> corners;                          ///< by corner of the cell: x + 2y + 4z
+    Floats sum;
+    Floats beyond; ///< distance from the grid in cells
+};
+
 /// Returns the harmonics of the irradiance at a probe: of the light that the surfaces around it reflect of what the
-/// lights emit, and, after the first bounce, of what the probes held after the last one.
-IrradianceHarmonics IrradianceProbes::gather(const ProbeCapture& capture, int bounce) const {
+/// lights emit, and, after the first bounce, of what the probes held after the last one. The first bounce sets the
+/// weights with which the surfaces get light from the probes, and all later ones use them.
+IrradianceHarmonics IrradianceProbes::gather(const ProbeCapture& capture, int bounce,
+                                             std::vector<Weights>& weights_of_batches) const {
     Projection::Sum sum{};
+    std::size_t next = 0;
     const ProbeCapture::Face& first = capture.faces().front();
     const bool hazy = bounce > 0 && !first.haze.empty();
     const Vec3s center{Floats(0.0f), Floats(0.0f), Floats(0.0f)};
@@ -162,8 +174,11 @@ IrradianceHarmonics IrradianceProbes::gather(const ProbeCapture& capture, int bo
         if (bounce > 0 && xsimd::any(seen)) {
             const GBuffer& g = face.gbuffer;
             const RgbT<Floats> albedo = g.diffuse.color(p.x, p.y) + g.specular.color(p.x, p.y);
-            const RgbT<Floats> arriving =
-                irradiance(g.projection, g.points(p.x, p.y), g.normal.vector(p.x, p.y), seen);
+            const Vec3s point = g.points(p.x, p.y), n = g.normal.vector(p.x, p.y);
+            if (bounce == 1)
+                weights_of_batches.push_back(
+                    weights(g.projection.eye(), point, n, to_viewer(g.projection, point), seen));
+            const RgbT<Floats> arriving = irradiance(weights_of_batches[next++], n, seen);
             light += blend(seen, albedo * arriving * Floats(kInvPi), RgbT<Floats>(Floats(0.0f)));
         }
         if (hazy) light += face.haze.color(p.x, p.y) * around;
@@ -175,35 +190,28 @@ IrradianceHarmonics IrradianceProbes::gather(const ProbeCapture& capture, int bo
     return result;
 }
 
-/// The weight of one of the eight probes about a batch of points, and its irradiance.
-struct IrradianceProbes::Corner {
-    Floats weight;
-    RgbT<Floats> irradiance;
+namespace {
 
-    Corner(const Probe& probe, const Vec3s& to_probe, const Vec3s& n, const std::array<Floats, 9>& basis,
-           const Floats& trilinear) {
-        weight = trilinear * (probe.distance.empty() ? Floats(kInside) : visibility(probe, to_probe, n));
-        irradiance = irradiance_at(probe.irradiance, basis);
-    }
+/// Weights of probes inside objects, and of those that a point does not see. Where they are the nearest, light changes
+/// over this fraction of a cell.
+constexpr float kInside = 1e-2f, kHidden = 3e-3f;
+constexpr float kBehind = 0.05f; ///< added to the weight of a probe, so that none behind the surface has 0
 
-private:
-    /// Weights of probes inside objects, and of those that a point does not see. Where they are the nearest, light
-    /// changes over this fraction of a cell.
-    static constexpr float kInside = 1e-2f, kHidden = 3e-3f;
-    static constexpr float kBehind = 0.05f; ///< added to the weight of a probe, so that none behind the surface has 0
+/// Returns how much a probe with these distances counts at points with the normals n that may not see it.
+Floats visibility(const OctahedralMap& distances, const Vec3s& to_probe, const Vec3s& n) {
+    if (distances.empty()) return Floats(kInside);
+    const Floats squared = max(dot(to_probe, to_probe), Floats(1e-20f)), over = inverse_sqrt(squared);
+    const Floats distance = squared * over, cosine = dot(to_probe, n) * over, half(0.5f), one(1.0f);
+    // Probes behind the surface count less, but smoothly, so that no edge shows (Majercik et al. 2019, §5.2).
+    const Floats front = (cosine + one) * half;
+    const auto [mean, mean_square] = distances.at<2>(-to_probe);
+    const Floats variance = max(mean_square - mean * mean, Floats(1e-4f) * mean_square);
+    const Floats behind = max(distance - mean, Floats(0.0f));
+    const Floats seen = variance / (variance + behind * behind); // Chebyshev's inequality
+    return (front * front + Floats(kBehind)) * (seen * seen * seen + Floats(kHidden));
+}
 
-    static Floats visibility(const Probe& probe, const Vec3s& to_probe, const Vec3s& n) {
-        const Floats squared = max(dot(to_probe, to_probe), Floats(1e-20f)), over = inverse_sqrt(squared);
-        const Floats distance = squared * over, cosine = dot(to_probe, n) * over, half(0.5f), one(1.0f);
-        // Probes behind the surface count less, but smoothly, so that no edge shows (Majercik et al. 2019, §5.2).
-        const Floats front = (cosine + one) * half;
-        const auto [mean, mean_square] = probe.distance.at<2>(-to_probe);
-        const Floats variance = max(mean_square - mean * mean, Floats(1e-4f) * mean_square);
-        const Floats behind = max(distance - mean, Floats(0.0f));
-        const Floats seen = variance / (variance + behind * behind); // Chebyshev's inequality
-        return (front * front + Floats(kBehind)) * (seen * seen * seen + Floats(kHidden));
-    }
-};
+} // namespace
 
 /// Says between which probes a batch of points lies.
 struct IrradianceProbes::Place {
@@ -211,10 +219,10 @@ struct IrradianceProbes::Place {
     std::array<Floats, 3> f;                                ///< position in the cell
     Floats beyond;                                          ///< distance from the grid in cells
 
-    /// Returns the weight of a corner of the cell in the linear interpolation.
-    Floats weight(int dx, int dy, int dz) const {
-        const auto part = [&](std::size_t axis, int far) { return far ? f[axis] : Floats(1.0f) - f[axis]; };
-        return part(0, dx) * part(1, dy) * part(2, dz);
+    /// Returns the weight of a corner of the cell, x + 2y + 4z, in the linear interpolation.
+    Floats weight(int corner) const {
+        const auto part = [&](std::size_t axis) { return corner >> axis & 1 ? f[axis] : Floats(1.0f) - f[axis]; };
+        return part(0) * part(1) * part(2);
     }
 };
 
@@ -235,6 +243,11 @@ IrradianceProbes::Place IrradianceProbes::place_of(const Vec3d& eye, const Vec3s
     return result;
 }
 
+/// Returns the probe at a corner, x + 2y + 4z, of the cell with this first probe.
+std::size_t IrradianceProbes::probe_at(std::int32_t first, int corner) const {
+    return static_cast<std::size_t>(first + (corner & 1) + size_[0] * ((corner >> 1 & 1) + size_[1] * (corner >> 2)));
+}
+
 /// Calls use(first, own) for the cells in which the given lanes lie: the cell's first probe, and its lanes. Cells are
 /// large, so a batch mostly lies in one.
 template <typename Cells, typename Use> void for_each_cell(const Cells& cells, std::uint32_t left, const Use& use) {
@@ -251,11 +264,8 @@ RgbT<Floats> IrradianceProbes::mean_radiance(const Vec3d& eye, const Vec3s& p, c
     RgbT<Floats> result(Floats(0.0f));
     for_each_cell(place.cells, lane_bits(Mask(true)), [&](std::int32_t first, const Mask& own) {
         RgbT<Floats> sum(Floats(0.0f));
-        for (int corner = 0; corner < 8; ++corner) {
-            const int dx = corner & 1, dy = corner >> 1 & 1, dz = corner >> 2;
-            const auto probe = static_cast<std::size_t>(first + dx + size_[0] * (dy + size_[1] * dz));
-            sum += broadcast<Floats>(probes_[probe].irradiance[0]) * place.weight(dx, dy, dz);
-        }
+        for (int corner = 0; corner < 8; ++corner)
+            sum += broadcast<Floats>(probes_[probe_at(first, corner)].irradiance[0]) * place.weight(corner);
         result = blend(own, sum, result);
     });
     result *= Floats(kInvPi); // the first harmonic of the irradiance is π times the mean radiance
@@ -272,27 +282,43 @@ Vec3s IrradianceProbes::bias(const Vec3s& n, const Vec3s& to_viewer) const {
     return n * Floats(kNormalBias * step) + to_viewer * min(Floats(kViewBias * step) * over, Floats(0.5f));
 }
 
-RgbT<Floats> IrradianceProbes::irradiance(const Vec3d& eye, const Vec3s& p, const Vec3s& n, const Vec3s& to_viewer,
-                                          const Mask& mask) const {
+IrradianceProbes::Weights IrradianceProbes::weights(const Vec3d& eye, const Vec3s& p, const Vec3s& n,
+                                                    const Vec3s& to_viewer, const Mask& mask) const {
     const Place place = place_of(eye, p);
-    const std::array<Floats, 9> basis = harmonics(n);
     const Vec3s at = p + bias(n, to_viewer);
-    RgbT<Floats> result(Floats(0.0f));
+    Weights result{place.cells, {}, Floats(0.0f), place.beyond};
     for_each_cell(place.cells, lane_bits(mask), [&](std::int32_t base, const Mask& own) {
         Floats sum(0.0f);
-        RgbT<Floats> light(Floats(0.0f));
         for (int corner = 0; corner < 8; ++corner) {
-            const int dx = corner & 1, dy = corner >> 1 & 1, dz = corner >> 2;
-            const auto probe = static_cast<std::size_t>(base + dx + size_[0] * (dy + size_[1] * dz));
-            const Vec3 q(probes_[probe].position - eye);
-            const Corner c(probes_[probe], broadcast<Floats>(q) - at, n, basis, place.weight(dx, dy, dz));
-            sum += c.weight;
-            light += c.irradiance * c.weight;
+            const Probe& probe = probes_[probe_at(base, corner)];
+            const Vec3s to_probe = broadcast<Floats>(Vec3(probe.position - eye)) - at;
+            const Floats weight = place.weight(corner) * visibility(probe.distance, to_probe, n);
+            Floats& lanes = result.corners[static_cast<std::size_t>(corner)];
+            lanes = xsimd::select(own, weight, lanes);
+            sum += weight;
         }
-        const Floats over = Floats(1.0f) / sum;
+        result.sum = xsimd::select(own, sum, result.sum);
+    });
+    return result;
+}
+
+RgbT<Floats> IrradianceProbes::irradiance(const Weights& weights, const Vec3s& n, const Mask& mask) const {
+    const std::array<Floats, 9> basis = harmonics(n);
+    RgbT<Floats> result(Floats(0.0f));
+    for_each_cell(weights.cells, lane_bits(mask), [&](std::int32_t base, const Mask& own) {
+        RgbT<Floats> light(Floats(0.0f));
+        for (int corner = 0; corner < 8; ++corner)
+            light += irradiance_at(probes_[probe_at(base, corner)].irradiance, basis) *
+                     weights.corners[static_cast<std::size_t>(corner)];
+        const Floats over = Floats(1.0f) / weights.sum;
         result = blend(own, light * over, result);
     });
-    return faded_to_sky(result, basis, place.beyond);
+    return faded_to_sky(result, basis, weights.beyond);
+}
+
+RgbT<Floats> IrradianceProbes::irradiance(const Vec3d& eye, const Vec3s& p, const Vec3s& n, const Vec3s& to_viewer,
+                                          const Mask& mask) const {
+    return irradiance(weights(eye, p, n, to_viewer, mask), n, mask);
 }
 
 std::size_t IrradianceProbes::memory_bytes() const {

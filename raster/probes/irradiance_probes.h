@@ -25,7 +25,7 @@ public:
     /// The same for points that a camera sees.
     RgbT<Floats> irradiance(const ScreenProjection& camera, const Vec3T<Floats>& p, const Vec3T<Floats>& n,
                             const xsimd::batch_bool<float>& mask) const {
-        return irradiance(camera.eye(), p, n, camera.to_viewer(p) * camera.distance(p), mask);
+        return irradiance(camera.eye(), p, n, to_viewer(camera, p), mask);
     }
     /// Returns the mean radiance from all directions at points in space. Walls do not stop it between two probes. Far
     /// from the probes it is that of the sky, as far as they see it; `sky` may be empty.
@@ -48,7 +48,8 @@ private:
     Vec3d grid_point(std::size_t probe) const;
     bool move_out_of_solids(const SolidTest& solids, Vec3d& position) const;
     void set_distances(const ProbeCapture& capture, Probe& probe) const;
-    IrradianceHarmonics gather(const ProbeCapture& capture, int bounce) const;
+    struct Weights;
+    IrradianceHarmonics gather(const ProbeCapture& capture, int bounce, std::vector<Weights>& weights) const;
     void drop_strays(std::vector<std::unique_ptr<ProbeCapture>>& captures) const;
     void fill_solids();
     void find_sky(const RasterSceneData& data, const RasterSettings& settings,
@@ -56,11 +57,19 @@ private:
     static Floats sky_share(const Floats& cells);
     RgbT<Floats> faded_to_sky(const RgbT<Floats>& irradiance, const std::array<Floats, 9>& basis,
                               const Floats& cells) const;
+    /// Returns the vector from points that a camera sees to its eye.
+    static Vec3T<Floats> to_viewer(const ScreenProjection& camera, const Vec3T<Floats>& p) {
+        return camera.to_viewer(p) * camera.distance(p);
+    }
+    std::size_t probe_at(std::int32_t first, int corner) const;
     struct Place;
     Place place_of(const Vec3d& eye, const Vec3T<Floats>& p) const;
     Vec3T<Floats> bias(const Vec3T<Floats>& n, const Vec3T<Floats>& to_viewer) const;
+    Weights weights(const Vec3d& eye, const Vec3T<Floats>& p, const Vec3T<Floats>& n, const Vec3T<Floats>& to_viewer,
+                    const xsimd::batch_bool<float>& mask) const;
+    RgbT<Floats> irradiance(const Weights& weights, const Vec3T<Floats>& n,
+                            const xsimd::batch_bool<float>& mask) const;
     template <typename Visit> void for_each_neighbor(std::size_t probe, const Visit& visit) const;
-    struct Corner;
 
     Vec3d origin_;              ///< position of the first probe
     Vec3d step_;                ///< between probes, by axis
