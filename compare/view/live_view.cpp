@@ -19,8 +19,10 @@ constexpr double kPreviewScale = 0.25;
 /// A pass of the path tracer takes about this long at first, in seconds, and later this part of the time so far: short
 /// enough to watch it converge, and long enough for copies of the image not to count.
 constexpr double kPassSeconds = 0.3, kPassPart = 0.1;
-/// The image of a scene that was edited replaces the one before from this many samples per pixel on.
-constexpr std::uint32_t kSamplesToReplace = 4;
+/// It has this many samples per pixel. The whole image replaces it once it has as many.
+constexpr std::uint32_t kPreviewSamples = 4;
+/// Probes are rendered anew when there was no edit for this long, in seconds.
+constexpr double kRestSeconds = 0.2;
 /// A pass adds at most this many samples per pixel, as passes of raytrace do.
 constexpr std::uint32_t kPassSamples = 16;
 
@@ -29,6 +31,13 @@ Scene seen_in(const View& view, Scene scene) {
     scene.width = view.width;
     scene.height = view.height;
     return scene;
+}
+
+// Waits until an edit has come to rest. Returns false if the next one comes first.
+bool rests(const std::atomic<bool>& stop) {
+    for (const Stopwatch watch; !stop && watch.seconds() < kRestSeconds;)
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    return !stop;
 }
 
 double pixels(const View& view) { return static_cast<double>(view.width) * view.height; }
@@ -45,55 +54,78 @@ void LiveView::publish(const std::function<void()>& change) {
     wake_();
 }
 
-template <typename Prepared, typename Settings>
-std::shared_ptr<const PreparedScene<Prepared>> LiveView::prepared(unsigned load,
-                                                                  const std::shared_ptr<const Scene>& scene) {
+template <typename Settings> Settings LiveView::with_threads() const {
     Settings settings;
     settings.threads = threads_;
-    const Stopwatch watch;
-    Prepared result = prepare(*scene, settings);
-    return std::make_shared<const PreparedScene<Prepared>>(
-        PreparedScene<Prepared>{++preparations_, load, scene, std::move(result), watch.seconds()});
+    return settings;
 }
 
 // Runs a job on the loader's thread, and reports why it failed.
-void LiveView::start_loading(std::function<void()> job) {
-    loader_.start([this, job = std::move(job)](const std::atomic<bool>&) {
+void LiveView::start_loading(LatestJob::Job job) {
+    loader_.start([this, job = std::move(job)](const std::atomic<bool>& stop) {
         try {
-            job();
+            job(stop);
         } catch (const std::exception& error) {
-            publish([&] { loaded_.error = error.what(); });
+            publish([&] {
+                loaded_.error = error.what();
+                loading_ = false;
+            });
         }
     });
 }
 
 unsigned LiveView::load(const View& view, std::function<Scene()> read) {
     const unsigned load = ++loads_;
-    start_loading([=, this] {
+    loading_ = true; // the path tracer waits, since its image is outdated, and leaves the cores to the loader
+    start_loading([=, this](const std::atomic<bool>& stop) {
         LoadedScene next;
         next.scene = std::make_shared<const Scene>(seen_in(view, read()));
         next.load = load;
-        next.raytrace = prepared<raytrace::PathTracerScene, raytrace::PathTracerSettings>(next.load, next.scene);
+        const Stopwatch watch;
+        raytrace::PathTracerScene traced = prepare(*next.scene, with_threads<raytrace::PathTracerSettings>());
+        next.raytrace = std::make_shared<const PreparedScene<raytrace::PathTracerScene>>(
+            ++preparations_, load, next.scene, std::move(traced), watch.seconds());
         LoadedScene before; // is freed outside of the lock
         publish([&] {
             next.raster = loaded_.raster;
             before = std::exchange(loaded_, next);
+            loading_ = false;
         });
-        prepare_raster(next.load, next.scene); // also if the next edit waits: edits are seen while they go on
+        if (prepare_edited_raster(load, next.scene) && !rests(stop)) return;
+        prepare_raster(load, next.scene);
     });
     return load;
 }
 
 void LiveView::prepare_raster(unsigned load, const std::shared_ptr<const Scene>& scene) {
-    const auto next = prepared<raster::RasterScene, raster::RasterSettings>(load, scene);
-    publish([&] {
-        if (loaded_.load == load) loaded_.raster = next;
+    const Stopwatch watch;
+    raster::RasterScene result = prepare(*scene, with_threads<raster::RasterSettings>());
+    set_raster({++preparations_, load, scene, std::move(result), watch.seconds()});
+}
+
+// Prepares the rasterizer's scene with the probes of the scene before. Returns false if they do not fit.
+bool LiveView::prepare_edited_raster(unsigned load, const std::shared_ptr<const Scene>& scene) {
+    const auto before = loaded().raster;
+    if (!before) return false;
+    const Stopwatch watch;
+    std::optional<raster::RasterScene> result =
+        prepare_edited(*scene, with_threads<raster::RasterSettings>(), before->prepared);
+    if (!result) return false;
+    set_raster({++preparations_, load, scene, std::move(*result), watch.seconds(), false});
+    return true;
+}
+
+void LiveView::set_raster(PreparedScene<raster::RasterScene> next) {
+    auto shared = std::make_shared<const PreparedScene<raster::RasterScene>>(std::move(next));
+    publish([&] { // what was before is freed outside of the lock
+        if (loaded_.load == shared->load) loaded_.raster.swap(shared);
     });
 }
 
 void LiveView::prepare_for(const View& view, const LoadedScene& loaded) {
-    start_loading(
-        [=, this] { prepare_raster(loaded.load, std::make_shared<const Scene>(seen_in(view, *loaded.scene))); });
+    start_loading([=, this](const std::atomic<bool>&) {
+        prepare_raster(loaded.load, std::make_shared<const Scene>(seen_in(view, *loaded.scene)));
+    });
 }
 
 LoadedScene LiveView::loaded() const {
@@ -114,24 +146,24 @@ std::shared_ptr<const TracerFrame> LiveView::tracer_frame() const {
 void LiveView::show(const Wish& wish) {
     const LoadedScene scene = loaded();
     if (scene.raster) show_raster(wish, scene);
-    if (!scene.raytrace || tracer_started_ == Started{wish.version, scene.raytrace->id, 1}) return;
-    const bool same_view = tracer_started_.prepared != 0 && wish.view == traced_view_;
-    tracer_started_ = Started{wish.version, scene.raytrace->id, 1};
-    traced_view_ = wish.view;
-    tracer_.start([=, this](const std::atomic<bool>& stop) { render_traced(wish, scene, same_view, stop); });
+    if (!scene.raytrace) return;
+    const Started started{wish.version, scene.load, scene.raytrace->id, 1};
+    if (tracer_started_ == started) return;
+    tracer_started_ = started;
+    tracer_.start([=, this](const std::atomic<bool>& stop) { render_traced(wish, scene, stop); });
 }
 
 void LiveView::show_raster(const Wish& wish, const LoadedScene& scene) {
-    const Started full{wish.version, scene.raster->id, 1};
+    const Started full{wish.version, scene.raster->load, scene.raster->id, 1};
     if (raster_started_ == full) {
-        const bool outdated = scene.raster->load != scene.load || !(wish.view == scene_view(*scene.raster->scene));
+        const bool outdated = !scene.raster->whole || scene.raster->load != scene.load || !(wish.view == scene_view(*scene.raster->scene));
         const bool tried = prepared_for_.version == wish.version && prepared_for_.load == scene.load;
         if (!outdated || tried || raster_.busy() || loader_.busy()) return;
         prepared_for_ = {wish.version, scene.load};
         prepare_for(wish.view, scene);
         return;
     }
-    const bool moving = raster_started_.version != wish.version;
+    const bool moving = raster_started_.version != wish.version || raster_started_.load != scene.raster->load;
     if (!moving && raster_started_.scale < 1 && raster_.busy()) return;
     Started next = full;
     if (moving && pixel_seconds_ > 0)
@@ -139,7 +171,7 @@ void LiveView::show_raster(const Wish& wish, const LoadedScene& scene) {
             std::clamp(std::sqrt(kMovingFrameSeconds / (pixel_seconds_ * pixels(wish.view))), kLeastScale, 1.0);
     raster_started_ = next;
     raster_.start([=, this](const std::atomic<bool>& stop) {
-        // A frame of a new view runs to its end, or nothing would be seen while the camera moves.
+        // A frame of something new runs to its end, or nothing would be seen while the camera or an object moves.
         const std::atomic<bool> go_on = false;
         render_raster(wish, scene, next.scale, moving ? go_on : stop);
     });
@@ -165,11 +197,10 @@ void LiveView::render_raster(const Wish& wish, const LoadedScene& scene, double 
 }
 
 void LiveView::wait_while_paused(const std::atomic<bool>& stop) const {
-    while (paused_ && !stop) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    while ((paused_ || loading_) && !stop) std::this_thread::sleep_for(std::chrono::milliseconds(20));
 }
 
-void LiveView::render_traced(const Wish& wish, const LoadedScene& scene, bool same_view,
-                             const std::atomic<bool>& stop) {
+void LiveView::render_traced(const Wish& wish, const LoadedScene& scene, const std::atomic<bool>& stop) {
     TracerFrame frame{.version = wish.version, .prepared = scene.raytrace->id, .load = scene.load};
     Stopwatch watch;
     double paused_seconds = 0;
@@ -183,20 +214,17 @@ void LiveView::render_traced(const Wish& wish, const LoadedScene& scene, bool sa
     try {
         wait();
         Control to_the_end, stoppable{.stop = &stop, .progress = {}};
-        if (!same_view) {
-            raytrace::ProgressiveRender preview(scene.raytrace->prepared, scaled(wish.view, kPreviewScale),
-                                                wish.raytrace);
-            preview.add_samples(1, to_the_end);
-            frame.preview = true;
-            frame.samples = 1;
-            frame.image = preview.film().image();
-            frame.seconds = seconds();
-            publish_frame();
-        }
+        raytrace::ProgressiveRender preview(scene.raytrace->prepared, scaled(wish.view, kPreviewScale), wish.raytrace);
+        const auto limit = static_cast<std::uint32_t>(wish.raytrace.samples_per_pixel);
+        frame.preview = true;
+        frame.samples = std::min(kPreviewSamples, limit);
+        preview.add_samples(frame.samples, to_the_end);
+        frame.image = preview.film().image();
+        frame.seconds = seconds();
+        publish_frame();
         if (stop) return;
 
         raytrace::ProgressiveRender render(scene.raytrace->prepared, wish.view, wish.raytrace);
-        const auto limit = static_cast<std::uint32_t>(wish.raytrace.samples_per_pixel);
         frame.preview = false;
         frame.samples = 0;
         for (double sample_seconds = 0; frame.samples < limit;) {
@@ -213,8 +241,7 @@ void LiveView::render_traced(const Wish& wish, const LoadedScene& scene, bool sa
             frame.estimated_relmse = render.film().estimated_relmse();
             frame.seconds = seconds();
             if (frame.estimated_relmse > 0) frame.curve.emplace_back(frame.seconds, frame.estimated_relmse);
-            // After an edit the picture before stays until this one is less noisy.
-            if (!same_view || frame.samples >= std::min(kSamplesToReplace, limit)) publish_frame();
+            if (frame.samples >= std::min(kPreviewSamples, limit)) publish_frame();
         }
     } catch (const std::exception& error) {
         frame.error = error.what();

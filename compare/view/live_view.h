@@ -19,6 +19,7 @@ template <typename Prepared> struct PreparedScene {
     std::shared_ptr<const Scene> scene;
     Prepared prepared;
     double seconds; ///< time of the preparation
+    bool whole = true; ///< false for the rasterizer's scene after an edit, while probes are those of the scene before
 };
 
 /// What is known of the scene that was loaded last.
@@ -26,8 +27,9 @@ struct LoadedScene {
     unsigned load = 0;                  ///< what LiveView::load returned for this scene
     std::shared_ptr<const Scene> scene; ///< null until a scene has been loaded
     std::shared_ptr<const PreparedScene<raytrace::PathTracerScene>> raytrace; ///< of `scene`
-    /// The rasterizer takes longer to prepare a scene; until then this is of the scene before. It places probes and
-    /// shadow maps for the scene's camera, so that it is prepared anew when the camera has moved and come to rest.
+    /// The rasterizer takes longer to prepare a scene; until then this is of the scene before, or of the scene with the
+    /// probes of before. It places probes and shadow maps for the scene's camera, so that it is prepared anew when the
+    /// camera has moved and come to rest.
     std::shared_ptr<const PreparedScene<raster::RasterScene>> raster;
     std::string error; ///< why the newest text could not be loaded; empty: it could, and `scene` is of it
 };
@@ -88,31 +90,32 @@ public:
 
 private:
     void publish(const std::function<void()>& change); // under the lock; then calls wake_
-    template <typename Prepared, typename Settings>
-    std::shared_ptr<const PreparedScene<Prepared>> prepared(unsigned load, const std::shared_ptr<const Scene>& scene);
-    void start_loading(std::function<void()> job);
+    template <typename Settings> Settings with_threads() const;
+    void start_loading(LatestJob::Job job);
     void prepare_raster(unsigned load, const std::shared_ptr<const Scene>& scene);
+    bool prepare_edited_raster(unsigned load, const std::shared_ptr<const Scene>& scene);
+    void set_raster(PreparedScene<raster::RasterScene> next);
     void prepare_for(const View& view, const LoadedScene& loaded);
     void show_raster(const Wish& wish, const LoadedScene& scene);
     void render_raster(const Wish& wish, const LoadedScene& scene, double scale, const std::atomic<bool>& stop);
     void wait_while_paused(const std::atomic<bool>& stop) const;
-    void render_traced(const Wish& wish, const LoadedScene& scene, bool same_view, const std::atomic<bool>& stop);
+    void render_traced(const Wish& wish, const LoadedScene& scene, const std::atomic<bool>& stop);
 
     const int threads_;
     unsigned loads_ = 0, preparations_ = 0; // preparations_ is the loader's
     const std::function<void()> wake_;
     std::atomic<bool> paused_ = false;
+    std::atomic<bool> loading_ = false; // until the path tracer's scene is prepared
     mutable std::mutex mutex_; // guards the results
     LoadedScene loaded_;
     std::shared_ptr<const RasterFrame> raster_frame_;
     std::shared_ptr<const TracerFrame> tracer_frame_;
     // The last renders that were started.
     struct Started {
-        unsigned version = 0, prepared = 0;
+        unsigned version = 0, load = 0, prepared = 0;
         double scale = 1;
         friend bool operator==(const Started&, const Started&) = default;
     } raster_started_, tracer_started_;
-    View traced_view_; // of tracer_started_
     // For which wish and scene the rasterizer was last prepared anew.
     struct {
         unsigned version = 0, load = 0;

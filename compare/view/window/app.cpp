@@ -77,6 +77,13 @@ void App::turn(double angle) {
     document_.commit();
 }
 
+bool App::move_first_object(Vec3d by) {
+    if (!document_.editable() || live_.loaded().scene->objects.empty()) return false;
+    edit(moved(document_.text(), {"objects", "0"}, by));
+    document_.commit();
+    return true;
+}
+
 void App::follow_document() {
     wish_.view.camera = document_.camera();
     ++wish_.version;

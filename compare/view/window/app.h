@@ -48,6 +48,8 @@ public:
     bool draw();
     /// Turns the camera around what it looks at, by an angle in radians.
     void turn(double angle);
+    /// Moves the first object of the scene file by a vector, in meters, if it can be edited. Returns whether it can.
+    bool move_first_object(Vec3d by);
     /// Returns whether the window may close. With changes that were not saved, the first request only warns.
     bool may_close() { return may_lose_changes("closes the window"); }
     LiveView& live() { return live_; }

@@ -25,6 +25,16 @@ void draw_frame(App& app, Window& window, double wait = 0) {
     if (const LoadedScene loaded = app.live().loaded(); !loaded.error.empty()) throw Error(loaded.error);
 }
 
+// Returns statistics of times in seconds, in milliseconds.
+json percentiles(std::vector<double> times) {
+    const auto at = [&](double part) {
+        const auto i = static_cast<std::ptrdiff_t>(part * static_cast<double>(times.size() - 1));
+        std::nth_element(times.begin(), times.begin() + i, times.end());
+        return 1000 * times[static_cast<std::size_t>(i)];
+    };
+    return {{"images", times.size()}, {"median_ms", at(0.5)}, {"p95_ms", at(0.95)}};
+}
+
 json measure_turn(App& app, Window& window, double seconds) {
     std::vector<double> intervals;
     double scales = 0;
@@ -43,12 +53,38 @@ json measure_turn(App& app, Window& window, double seconds) {
     }
     if (intervals.empty()) intervals.push_back(seconds);
     const auto count = static_cast<double>(intervals.size());
-    const auto at = [&](double part) {
-        const auto i = static_cast<std::ptrdiff_t>(part * (count - 1));
-        std::nth_element(intervals.begin(), intervals.begin() + i, intervals.end());
-        return 1000 * intervals[static_cast<std::size_t>(i)];
-    };
-    return {{"images", intervals.size()}, {"median_ms", at(0.5)}, {"p95_ms", at(0.95)}, {"scale", scales / count}};
+    json result = percentiles(std::move(intervals));
+    result["scale"] = scales / count;
+    return result;
+}
+
+// Moves an object to and fro with every frame of the window, as a hand would drag it. Returns the times between images
+// of edited scenes, for both pipelines, or null if the scene cannot be edited.
+json measure_drag(App& app, Window& window, double seconds) {
+    const Box3 bounds = app.live().loaded().scene->bounds;
+    const double step = 1e-3 * static_cast<double>(length(bounds.diagonal()));
+    struct Shown {
+        unsigned load = 0;
+        Stopwatch since{};
+        std::vector<double> intervals{};
+        void note(unsigned next) {
+            if (next == load) return;
+            load = next;
+            intervals.push_back(since.lap());
+        }
+    } raster, traced;
+    raster.load = app.live().raster_frame()->load;
+    traced.load = app.live().tracer_frame()->load;
+    const Stopwatch watch;
+    for (int i = 0; watch.seconds() < seconds; ++i) {
+        if (!app.move_first_object({i % 2 == 0 ? step : -step, 0, 0})) return nullptr;
+        draw_frame(app, window);
+        raster.note(app.live().raster_frame()->load);
+        traced.note(app.live().tracer_frame()->load);
+    }
+    if (raster.intervals.empty()) raster.intervals.push_back(seconds);
+    if (traced.intervals.empty()) traced.intervals.push_back(seconds);
+    return {{"raster", percentiles(raster.intervals)}, {"raytrace", percentiles(traced.intervals)}};
 }
 
 // Returns samples of pixels per second, of the window at rest and of a render without one.
@@ -80,6 +116,7 @@ void measure(App& app, Window& window, const ViewOptions& options) {
         app.live().pause(paused);
         result[paused ? "path_tracer_paused" : "path_tracer_running"] = measure_turn(app, window, options.measure);
     }
+    result["drag"] = measure_drag(app, window, options.measure);
     result["samples_per_second"] = measure_rates(app, window, options.measure);
     for (const char* turn : {"path_tracer_paused", "path_tracer_running"}) {
         const json& row = result[turn];
@@ -90,6 +127,11 @@ void measure(App& app, Window& window, const ViewOptions& options) {
     const json& rates = result["samples_per_second"];
     std::cout << "path tracer: " << std::setprecision(2)
               << rates["window"].get<double>() / rates["raytrace"].get<double>() << " of raytrace's samples a second\n";
+    if (const json& drag = result["drag"]; !drag.is_null())
+        for (const char* program : {"raster", "raytrace"})
+            std::cout << "object dragged, " << program << ": " << drag[program]["images"] << " images, median "
+                      << std::setprecision(1) << drag[program]["median_ms"].get<double>() << " ms, 95th percentile "
+                      << drag[program]["p95_ms"].get<double>() << " ms\n";
     if (!options.stats.empty()) write_json(options.stats, result);
 }
 
