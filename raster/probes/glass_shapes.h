@@ -2,7 +2,7 @@
 // from the object's center. A refracted ray finds there where it leaves.
 #pragma once
 
-#include "raster/probes/octahedral_map.h"
+#include "raster/shader/octahedral_map.h"
 #include "raster/raster_scene.h"
 
 #include <optional>

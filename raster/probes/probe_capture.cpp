@@ -2,7 +2,7 @@
 
 #include "raster/gbuffer/gbuffer_pass.h"
 #include "raster/lighting/background.h"
-#include "raster/probes/octahedral_map.h"
+#include "raster/shader/octahedral_map.h"
 #include "raster/shadows/cube_map.h"
 #include "raster/shadows/light_views.h"
 #include "raster/shadows/shadow_map_lookup.h"

@@ -2,7 +2,7 @@
 // split sum (Karis 2013, "Real Shading in Unreal Engine 4").
 #pragma once
 
-#include "raster/probes/octahedral_map.h"
+#include "raster/shader/octahedral_map.h"
 
 #include "common/image/rgb.h"
 

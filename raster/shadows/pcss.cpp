@@ -16,7 +16,6 @@ constexpr int kPatterns = 16;
 constexpr float kLeastRise = 0.1f;
 /// Rounding of a depth and of a point relative to the light, as a fraction of its distance.
 constexpr float kRounding = 0x1p-18f;
-constexpr float kLeastReversed = 1e-25f; ///< near / depth where nothing is seen
 constexpr float kMargin = 0.02f; ///< of the light's edge by which a line may miss the light and still count
 
 /// Tap positions, kPatterns × count of them in a (0,2)-net, by pattern and tap: (a, b) on the unit square, and the same
@@ -46,42 +45,6 @@ const Taps<SoftShadowMap::kFilterTaps> kFilter;
 
 } // namespace
 
-DepthCube::DepthCube(const CubeMap& cube)
-    : frame(cube.frame), center(cube.center), side_(static_cast<int>(std::lround(2 * cube.middle))), near_(cube.near),
-      middle_(cube.middle), scale_(cube.scale) {
-    const std::size_t texels = static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_);
-    depths_.assign(6 * texels, near_ / kLeastReversed);
-    for (std::size_t face = 0; face < 6; ++face)
-        if (cube.faces[face]) {
-            const ImageFloat& image = cube.faces[face]->reversed_depth();
-            std::transform(image.begin(), image.end(), depths_.begin() + static_cast<std::ptrdiff_t>(face * texels),
-                           [&](float reversed) { return near_ / std::max(reversed, kLeastReversed); });
-        }
-}
-
-Vec3s DepthCube::surface(const Vec3s& w, Floats& texel) const {
-    const Floats zero(0.0f), one(1.0f), half(0.5f);
-    const Floats ax = abs(w.x), ay = abs(w.y), az = abs(w.z);
-    const Mask x_first = (ax >= ay) & (ax >= az), y_first = (!x_first) & (ay >= az);
-    const auto pick = [&](const Floats& x, const Floats& y, const Floats& z) {
-        return xsimd::select(x_first, x, xsimd::select(y_first, y, z));
-    };
-    // As in to_face(), right is the axis before the face's own and up the one after it.
-    const Floats axis = pick(w.x, w.y, w.z), sign = xsimd::select(axis < zero, -one, one);
-    const Floats scale = Floats(scale_) / max(axis * sign, Floats(1e-30f)), middle(middle_);
-    const Floats last(static_cast<float>(side_ - 1));
-    const Floats x = xsimd::floor(clamp(middle + pick(w.z, w.x, w.y) * sign * scale, zero, last)),
-                 y = xsimd::floor(clamp(middle - pick(w.y, w.z, w.x) * scale, zero, last));
-    const Ints face = truncated(pick(zero, Floats(2.0f), Floats(4.0f)) + xsimd::select(axis < zero, one, zero));
-    const Ints index = (face * Ints(side_) + truncated(y)) * Ints(side_) + truncated(x);
-    const Floats depth = gather(depths_.data(), index);
-    const Floats per_texel = depth * Floats(1 / scale_);
-    texel = per_texel;
-    const Floats right = (x + half - middle) * per_texel * sign, up = (middle - y - half) * per_texel,
-                 out = depth * sign;
-    return {pick(out, right, up), pick(up, out, right), pick(right, up, out)};
-}
-
 struct SoftShadowMap::Outline {
     Vec3s corner, u, v, dual_u, dual_v;
     Floats per_u, per_v; ///< lengths of dual_u and dual_v
@@ -97,7 +60,7 @@ struct SoftShadowMap::Receiver {
     Floats slack;
 
     /// Returns the fraction of the way from p to the light's plane at which the surface seen in direction q blocks the
-    /// light; 0 in lanes where it does not.
+    /// light; its negative in lanes where the surface lies between but beside the light, and 0 in all other lanes.
     Floats blocker(const Vec3s& q) const {
         Floats texel;
         const Vec3s to = cube.surface(q, texel) - p;
@@ -114,9 +77,9 @@ struct SoftShadowMap::Receiver {
         const Mask meets = light.shape == Emitter::Kind::kSphere ? a * a + b * b <= (one + margin_a) * (one + margin_a)
             : light.shape == Emitter::Kind::kTriangle            ? inside & (a + b < one + margin_a + margin_b)
                                                                  : inside;
-        const Mask blocks = (f > Floats(1e-5f)) & (f < Floats(0.9999f)) & (rise > slack) &
-                            (rise * rise > Floats(kLeastRise * kLeastRise) * distance2) & meets;
-        return xsimd::select(blocks, f, Floats(0.0f));
+        const Mask between = (f > Floats(1e-5f)) & (f < Floats(0.9999f)) & (rise > slack) &
+                             (rise * rise > Floats(kLeastRise * kLeastRise) * distance2);
+        return xsimd::select(between, xsimd::select(meets, f, -f), Floats(0.0f));
     }
     /// Returns the position of a tap on the light.
     template <int kTaps> Vec3s on_light(const Taps<kTaps>& taps, std::size_t tap, const Ints& pattern) const {
@@ -133,8 +96,10 @@ struct SoftShadowMap::Receiver {
     }
 };
 
-SoftShadowMap::SoftShadowMap(const CubeMap& cube, const Emitter& emitter)
-    : cube_(cube), kind_(emitter.kind), radius_(static_cast<float>(emitter.radius)) {
+SoftShadowMap::SoftShadowMap(const CellMaps& maps, const Emitter& emitter)
+    : cube_(maps.all), near_visibility_(maps.near_visibility), reach_(maps.reach), kind_(emitter.kind),
+      radius_(static_cast<float>(emitter.radius)) {
+    if (maps.distant) distant_.emplace(*maps.distant);
     if (kind_ == Emitter::Kind::kSphere) return;
     const Vec3d u = emitter.u, v = emitter.v, n = cross(u, v);
     const double over = 1 / dot(n, n);
@@ -166,26 +131,44 @@ Vec3s SoftShadowMap::local(const Vec3s& w) const {
     return {axis(cube_.frame.s), axis(cube_.frame.t), axis(cube_.frame.n)};
 }
 
+/// Combines what a lookup finds in the maps, of points in the cube's frame. Around the near casters it is the visible
+/// fraction past all casters. From twice as far, the fractions past near and past distant casters are multiplied, as if
+/// they hid points of the light independently of each other.
+template <typename Lookup> Floats SoftShadowMap::combined(const Vec3s& p, const Lookup& lookup) const {
+    if (!distant_) return lookup(cube_);
+    const Floats zero(0.0f), one(1.0f);
+    const Floats away = clamp(max(abs(p.x), max(abs(p.y), abs(p.z))) * Floats(1 / reach_) - one, zero, one);
+    Floats near = near_visibility_.at<1>(p)[0] * away;
+    if (xsimd::any(near > zero)) near *= lookup(*distant_);
+    return xsimd::all(away == one) ? near : near + lookup(cube_) * (one - away);
+}
+
 Floats SoftShadowMap::visibility(const Vec3d& eye, const Vec3s& p) const {
     const Vec3s own = local(p + broadcast<Floats>(Vec3(eye - cube_.center)));
-    Floats texel;
-    const Vec3s seen = cube_.surface(own, texel);
-    return xsimd::select(dot(own, own) > dot(seen, seen) * Floats(1 + kRounding), Floats(0.0f), Floats(1.0f));
+    return combined(own, [&](const DepthCube& cube) {
+        Floats texel;
+        const Vec3s seen = cube.surface(own, texel);
+        return xsimd::select(dot(own, own) > dot(seen, seen) * Floats(1 + kRounding), Floats(0.0f), Floats(1.0f));
+    });
 }
 
 Floats SoftShadowMap::visibility(const Vec3d& eye, const Vec3s& p, const Vec3s& n, const Ints& pattern) const {
-    const Vec3 offset(eye - cube_.center);
-    const Vec3s own = local(p + broadcast<Floats>(offset));
+    const Vec3s own = local(p + broadcast<Floats>(Vec3(eye - cube_.center))), normal = local(n);
+    return combined(own, [&](const DepthCube& cube) { return filtered(cube, own, normal, pattern); });
+}
+
+/// Looks up one cube for points and normals in its frame.
+Floats SoftShadowMap::filtered(const DepthCube& cube, const Vec3s& own, const Vec3s& n, const Ints& pattern) const {
     const Outline light = outline_from(own);
     const Floats height = max(-dot(own, light.axis), Floats(1e-20f));
-    const Receiver receiver{cube_, light, own, local(n), Floats(1.0f) / height, height * Floats(kRounding)};
+    const Receiver receiver{cube, light, own, n, Floats(1.0f) / height, height * Floats(kRounding)};
 
     Floats sum(0.0f), count(0.0f);
     for (std::size_t i = 0; i < kSearchTaps; ++i) {
         const Floats f = gather(kSearch.fraction[i].data(), pattern);
         const Vec3s l = receiver.on_light(kSearch, i, pattern);
         const Floats found = receiver.blocker(own * (Floats(1.0f) - f) + l * f);
-        sum += found;
+        sum += max(found, Floats(0.0f));
         count += xsimd::select(found > Floats(0.0f), Floats(1.0f), Floats(0.0f));
     }
     const Mask any = count > Floats(0.0f);
@@ -194,8 +177,12 @@ Floats SoftShadowMap::visibility(const Vec3d& eye, const Vec3s& p, const Vec3s& 
     Floats dark(0.0f);
     for (std::size_t i = 0; i < kFilterTaps; ++i) {
         const Vec3s l = receiver.on_light(kFilter, i, pattern);
-        dark += xsimd::select(receiver.blocker(own * (Floats(1.0f) - f) + l * f) > Floats(0.0f), Floats(1.0f),
-                              Floats(0.0f));
+        const auto found_at = [&](const Floats& at) { return receiver.blocker(own * (Floats(1.0f) - at) + l * at); };
+        Floats found = found_at(f);
+        // Where blockers differ in depth, the line is tested at the depth of the one beside it, too.
+        if (const Mask beside = found < Floats(0.0f); xsimd::any(any & beside))
+            found = xsimd::select(beside, found_at(-found), found);
+        dark += xsimd::select(found > Floats(0.0f), Floats(1.0f), Floats(0.0f));
     }
     return xsimd::select(any, Floats(1.0f) - dark * Floats(1.0f / kFilterTaps), Floats(1.0f));
 }

@@ -16,6 +16,7 @@ constexpr double kGuardTexels = 4;                         ///< texels
 constexpr std::int64_t kCubeTexels = 64 * (1 << 20); ///< over all cubes, at most
 constexpr std::int64_t kViewTexels = 128 * (1 << 20); ///< over all other maps, at most
 constexpr int kMinSide = 64;                          ///< texels, of any map
+constexpr double kNearReach = 6; ///< multiple of a spherical light's radius: casters nearer than this are near
 constexpr double kFloor = 1e-4; ///< relative to the scene's size: how far objects may penetrate a floor
 
 /// Returns whether the object is a quad with the whole scene and the sun on one side. Such a quad casts no shadow, so
@@ -193,23 +194,38 @@ void Shadows::draw(const RasterSceneData& data, const RasterSettings& settings, 
     if (surface_light == nullptr) {
         const auto* spot = std::get_if<SpotLight>(&light);
         const Vec3d center(spot != nullptr ? spot->position : std::get<PointLight>(light).position);
-        maps.cubes.push_back(draw_cube(data, kNoObject, center, nullptr, true, moment, cube_side_, settings.threads));
+        maps.cubes.push_back(draw_cube(data, kNoObject, center, nullptr, true, moment, cube_side_, 0,
+                                       settings.threads));
         return;
     }
 
-    const SurfaceLight& surface = *surface_light;
-    const std::uint32_t excluded = source.emits_only ? surface.object : kNoObject;
-    for (const Emitter& cell : source.cells) {
-        const bool flat = cell.kind != Emitter::Kind::kSphere;
-        // Other objects may lie in the light's plane, so the camera is slightly in front of it.
-        const double before = flat && !surface.two_sided ? 1e-3 * std::sqrt(length(cross(cell.u, cell.v))) : 0;
-        maps.cells.emplace_back(draw_cube(data, excluded, cell.center + cell.normal * before, flat ? &cell : nullptr,
-                                          surface.two_sided, moment, cube_side_ / 2, settings.threads));
-    }
+    for (const Emitter& cell : source.cells)
+        maps.cells.push_back(draw_cell(data, source, cell, moment, settings.threads));
+}
+
+CellMaps Shadows::draw_cell(const RasterSceneData& data, const Source& source, const Emitter& cell,
+                            double moment, int threads) {
+    const auto& surface = std::get<SurfaceLight>(scene_.lights[source.lights.front()]);
+    const bool flat = cell.kind != Emitter::Kind::kSphere;
+    // Other objects may lie in the light's plane, so the camera is slightly in front of it.
+    const double before = flat && !surface.two_sided ? 1e-3 * std::sqrt(length(cross(cell.u, cell.v))) : 0;
+    const auto draw_from = [&](Vec3d offset, int side, double near) {
+        return draw_cube(data, source.emits_only ? surface.object : kNoObject,
+                         cell.center + cell.normal * before + offset, flat ? &cell : nullptr, surface.two_sided, moment,
+                         side, near, threads);
+    };
+    CellMaps maps{draw_from({}, cube_side_ / 2, 0), {}, {}, static_cast<float>(kNearReach * cell.radius)};
+    if (flat || !near_casters_surround(maps.all, maps.reach)) return maps;
+    maps.distant = draw_from({}, cube_side_ / 2, static_cast<double>(maps.reach));
+    const std::int64_t kept = memory_bytes_;
+    maps.near_visibility =
+        near_visibility(cell.radius, maps.reach, [&](Vec3d offset) { return draw_from(offset, kMinSide, 0); });
+    memory_bytes_ = kept + static_cast<std::int64_t>(maps.near_visibility.memory_bytes());
+    return maps;
 }
 
 CubeMap Shadows::draw_cube(const RasterSceneData& data, std::uint32_t excluded, Vec3d center, const Emitter* plane,
-                           bool back, double moment, int side, int threads) {
+                           bool back, double moment, int side, double near, int threads) {
     CubeMap cube;
     cube.center = Vec3d(Vec3(center)); // rounded as the camera rounds it
     if (plane != nullptr) cube.frame = frame_from_normal(plane->normal);
@@ -217,6 +233,7 @@ CubeMap Shadows::draw_cube(const RasterSceneData& data, std::uint32_t excluded, 
     for (std::size_t i = 0; i < views.size(); ++i) {
         if (i == 5 && plane != nullptr && !back) continue;
         views[i].shutter_open = views[i].shutter_close = moment;
+        views[i].near = near;
         cube.faces[i] = std::make_unique<ShadowMap>(data, views[i], side, threads, excluded);
         memory_bytes_ += std::int64_t{4} * side * side;
     }

@@ -5,6 +5,7 @@
 #include "raster/shadows/cube_map.h"
 #include "raster/shadows/emitter.h"
 #include "raster/shadows/light_views.h"
+#include "raster/shadows/near_casters.h"
 
 #include <memory>
 #include <span>
@@ -32,7 +33,7 @@ public:
     struct Maps {
         std::vector<ShadowMap> views;
         std::vector<CubeMap> cubes;
-        std::vector<CubeMap> cells; ///< of surface lights: parallel to Source::cells
+        std::vector<CellMaps> cells; ///< of surface lights: parallel to Source::cells
     };
     /// A source shares maps. It is one point, spot or sun light, or the coplanar surface lights of one object, or all
     /// surface lights of an object that only emits.
@@ -64,10 +65,12 @@ private:
     /// `views` is the result of views_of for the source.
     void draw(const RasterSceneData& data, const RasterSettings& settings, std::span<const Camera> views,
               Source& source, double moment, Maps& maps);
-    /// `excluded` casts no shadow. `plane` is a planar emitter, or null; `back` says whether it also emits on its back
-    /// side.
+    CellMaps draw_cell(const RasterSceneData& data, const Source& source, const Emitter& cell, double moment,
+                       int threads);
+    /// `excluded` casts no shadow, nor does what lies at a depth below `near`. `plane` is a planar emitter, or null;
+    /// `back` says whether it also emits on its back side.
     CubeMap draw_cube(const RasterSceneData& data, std::uint32_t excluded, Vec3d center, const Emitter* plane,
-                      bool back, double moment, int side, int threads);
+                      bool back, double moment, int side, double near, int threads);
 
     const Scene& scene_;
     double scene_size_;

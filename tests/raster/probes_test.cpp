@@ -4,7 +4,7 @@
 #include "tests/raster/varied_scene.h"
 
 #include "raster/probes/irradiance_probes.h"
-#include "raster/probes/octahedral_map.h"
+#include "raster/shader/octahedral_map.h"
 #include "raster/probes/radiance_map.h"
 #include "raster/probes/solid_test.h"
 #include "raster/raster_scene.h"

@@ -192,4 +192,56 @@ TEST_SUITE("unit") {
             CHECK(dots == 0);
         }
     }
+
+    // The bowl is a box without a lid. For the wall its rim is the edge of a half-plane, so that what it hides of the
+    // light's disk has a closed form.
+    TEST_CASE("a light in a bowl: the rim's penumbra to 0.03 in the mean; none below it or behind a second wall") {
+        constexpr float kRadius = 0.06f, kSide = 0.3f, kRim = 0.05f, kWall = 3;
+        const auto scene_with = [&](bool second_wall) {
+            Scene scene;
+            QuadList bowl = box_quads(Vec3(-kSide, -0.1f, -kSide), Vec3(kSide, kRim, kSide));
+            std::erase_if(bowl.quads, [&](const Quad& quad) {
+                return quad.corner.y > 0 && quad.u.y == 0 && quad.v.y == 0; // its lid
+            });
+            CHECK(bowl.quads.size() == 5);
+            add(scene, bowl);
+            add(scene, Sphere{Vec3(0, 0, 0), kRadius}, Mat4(), Emissive{Rgb(100)});
+            add(scene, QuadList{{{Vec3(kWall, -2, -2), Vec3(0, 0, 4), Vec3(0, 4, 0)}}});
+            if (second_wall) add(scene, QuadList{{{Vec3(1, -3, -3), Vec3(0, 0, 6), Vec3(0, 6, 0)}}});
+            scene.camera = look({1.5, 0, 0}, {3, 0, 0}, 90);
+            finish_scene(scene);
+            return scene;
+        };
+        Scene open = scene_with(false), closed = scene_with(true);
+        const View view{open.camera, 64, 300};
+        const ImageFloat found = visible(open, view), behind = visible(closed, view);
+        CHECK(std::ranges::max(behind) == 0);
+        double sum = 0;
+        int penumbra = 0;
+        for (int y = 0; y < view.height; ++y) {
+            // The line from the wall past the rim passes the light's center at this height.
+            const double h = (150 - y - 0.5) / 100, at = h + (static_cast<double>(kRim) - h) * 3 / 2.7;
+            const double cut = std::clamp(at / static_cast<double>(kRadius), -1.0, 1.0);
+            const double expected = (std::acos(cut) - cut * std::sqrt(1 - cut * cut)) / kPiDouble;
+            const auto seen = static_cast<double>(found(32, y));
+            CAPTURE(h);
+            if (expected == 0 && h < 0) CHECK(seen < 0.02);
+            sum += std::abs(seen - expected);
+            penumbra += expected > 0.05 && expected < 0.95;
+        }
+        CHECK(penumbra > 50);
+        CHECK(sum / view.height < 0.03);
+    }
+
+    // Two walls at different distances overlap. The near one hides from the light's center where the other one begins.
+    TEST_CASE("no light between two walls that overlap as seen from every point of it") {
+        Scene scene;
+        add(scene, Sphere{Vec3(0, 0, 0), 0.1f}, Mat4(), Emissive{Rgb(100)});
+        add(scene, QuadList{{{Vec3(1, -3, -3), Vec3(0, 0, 3.05f), Vec3(0, 6, 0)}}});
+        add(scene, QuadList{{{Vec3(1.4f, -4, -0.02f), Vec3(0, 0, 4), Vec3(0, 8, 0)}}});
+        add(scene, QuadList{{{Vec3(4, -9, -9), Vec3(0, 0, 18), Vec3(0, 18, 0)}}});
+        scene.camera = look({2.5, 0, 0}, {4, 0, 0}, 40);
+        finish_scene(scene);
+        CHECK(std::ranges::max(visible(scene, {scene.camera, 160, 80})) == 0);
+    }
 }

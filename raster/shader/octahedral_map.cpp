@@ -1,4 +1,4 @@
-#include "raster/probes/octahedral_map.h"
+#include "raster/shader/octahedral_map.h"
 
 namespace duet::raster {
 
