@@ -6,6 +6,7 @@
 #include "raster/visibility/shader.h"
 
 #include "common/material/fresnel.h"
+#include "common/material/metal.h"
 #include "common/material/thin_dielectric.h"
 
 #include <bit>
@@ -61,7 +62,10 @@ public:
         const Refracted out = refract(in.w, exit->n * Floats(-1.0f), Floats(1 / glass.ior));
         const auto absorbed = [&](float per_meter) { return xsimd::exp(exit->length * Floats(-per_meter)); };
         const Rgbs inside{absorbed(glass.absorption.r), absorbed(glass.absorption.g), absorbed(glass.absorption.b)};
-        return lookup_(exit->p, exit->n, out.w, alpha_, lanes) * entering * (tint * tint) * inside;
+        // Light that leaves at a grazing angle fans out, so emitters do not show in it, as they do not in rough glass.
+        const Mask grazing = (out.through > Floats(0.0f)) & (out.through < Floats(0.5f));
+        const Floats alpha = max(alpha_, xsimd::select(grazing, Floats(MetalBsdf::kSmoothAlpha), Floats(0.0f)));
+        return lookup_(exit->p, exit->n, out.w, alpha, lanes) * entering * (tint * tint) * inside;
     }
 
 private:

@@ -58,6 +58,21 @@ TEST_SUITE("image") {
         const View view{scene.camera, 96, 96};
         CHECK(relmse(render(scene, view, {}).radiance, path_traced(scene, view, 256)) < 0.006);
     }
+    // A narrow ring of the sphere refracts the light's radiance at a grazing angle. The pixels whose center it meets
+    // would be bright dots.
+    TEST_CASE("a glass sphere under an area light has no bright dots at its lower rim") {
+        const Scene scene = load_model("glass.json");
+        const raster::RasterScene prepared = raster::prepare(scene, raster::RasterSettings{});
+        for (const int side : {180, 190, 200, 210, 220}) {
+            Control control;
+            const ImageRgb image =
+                raster::render(prepared, {scene.camera, side, side}, raster::RasterSettings{}, control).radiance;
+            float brightest = 0;
+            for (int y = side * 3 / 4; y < side; ++y)
+                for (int x = 0; x < side; ++x) brightest = std::max(brightest, image(x, y).g);
+            CHECK(brightest < 0.8f);
+        }
+    }
     TEST_CASE("a glass sphere in a box is that of the path tracer, but for its caustic") {
         const Scene scene = load_model("glass.json");
         const View view{scene.camera, 96, 96};
