@@ -24,9 +24,6 @@ constexpr float kFadeFrom = 0.75f;    ///< fraction of the radius at which horiz
 constexpr float kLeastCosine = 0.02f; ///< between normal and viewer; interpolated normals may face away
 constexpr int kBlock = 4;             ///< pixels of half resolution along a side, each with a direction of its own
 
-/// Returns the weight of a pixel at a distance along one axis: those half a block away repeat the same directions.
-constexpr float block_weight(int distance) { return distance == kBlock / 2 || distance == -kBlock / 2 ? 0.5f : 1.0f; }
-
 /// Returns arccos with an error of at most 7e-5 (Abramowitz and Stegun 1964, 4.4.45).
 Floats arc_cosine(const Floats& x) {
     const Floats a = min(abs(x), Floats(1.0f));
@@ -174,8 +171,7 @@ void GtaoImage::reset(int width, int height) {
     if (depth_.width() == width && depth_.height() == height) return;
     depth_ = PlaneFloat(width, height);
     normal_ = Planes3(width, height);
-    lost_ = all_ = PlaneFloat(width, height);
-    lost_directions_ = Planes3(width, height);
+    lines_ = column_sums_ = {PlaneFloat(width, height), PlaneFloat(width, height), Planes3(width, height)};
     smooth_.visible = PlaneFloat(width, height), smooth_.hidden = Planes3(width, height);
 }
 
@@ -184,7 +180,8 @@ void GtaoImage::compute(const GBuffer& gbuffer, float radius, int threads) {
     reset((gbuffer.width() + 1) / 2, (gbuffer.height() + 1) / 2);
     const auto rows = static_cast<std::size_t>(depth_.height());
     parallel_for(rows, threads, [&](std::size_t y) { search_row(static_cast<int>(y), radius); });
-    parallel_for(rows, threads, [&](std::size_t y) { filter_row(static_cast<int>(y)); });
+    parallel_for(rows, threads, [&](std::size_t y) { sum_columns(static_cast<int>(y)); });
+    parallel_for(rows, threads, [&](std::size_t y) { finish_row(static_cast<int>(y)); });
 }
 
 /// Returns the points of a batch of half-resolution pixels, relative to the eye.
@@ -208,16 +205,19 @@ void GtaoImage::search_row(int y, float radius) {
         }
         // Lanes without a surface may hold any number, and neighbors read them with weight 0.
         const auto valid = [&](const Floats& value) { return xsimd::select(seen, value, Floats(0.0f)); };
-        store(lost_, x, y, valid(found.lost));
-        store(all_, x, y, valid(found.all));
+        store(lines_.lost, x, y, valid(found.lost));
+        store(lines_.all, x, y, valid(found.all));
         const Vec3s& w = found.directions;
-        lost_directions_.set(x, y, Vec3s{valid(w.x), valid(w.y), valid(w.z)});
+        lines_.directions.set(x, y, Vec3s{valid(w.x), valid(w.y), valid(w.z)});
     }
 }
 
-/// Averages a row over the 5 × 5 pixels about each, with the weights ½, 1, 1, 1, ½ along each axis: each direction has
-/// the same weight, and the average changes little from one pixel to the next.
-void GtaoImage::filter_row(int y) {
+/// Calls use(x, lost, all, directions) for the batches of row y that show surfaces, with weighted sums over the
+/// neighbors along an axis that are on the same surface. The weights are a tent twice as wide as a block. So each
+/// direction has the same weight and is interpolated linearly between the pixels that have it: what varies linearly
+/// shows no blocks.
+template <typename Use>
+void GtaoImage::sum_neighbors(const Lines& from, int y, int step_x, int step_y, const Use& use) const {
     const ScreenProjection& projection = gbuffer_->projection;
     for (int x = 0; x < depth_.width(); x += static_cast<int>(Floats::size)) {
         const Floats depth = load(depth_, x, y);
@@ -226,22 +226,34 @@ void GtaoImage::filter_row(int y) {
         const Floats tolerance =
             Floats(kPlaneTolerance) * projection.pixel_size(Floats(projection.near()) / max(depth, Floats(1e-30f)));
         Floats all(0.0f), lost(0.0f);
-        Vec3s hidden{Floats(0.0f), Floats(0.0f), Floats(0.0f)};
-        for (int dy = -kBlock / 2; dy <= kBlock / 2; ++dy)
-            for (int dx = -kBlock / 2; dx <= kBlock / 2; ++dx) {
-                const Floats other = load_at(depth_, x + dx, y + dy);
-                const Floats alike = likeness(p, n, tolerance, point(x + dx, y + dy, other),
-                                              load_at(normal_, x + dx, y + dy));
-                const Floats share(block_weight(dx) * block_weight(dy));
-                const Floats weight = xsimd::select(other > Floats(0.0f), alike * share, Floats(0.0f));
-                all += weight * load_at(all_, x + dx, y + dy);
-                lost += weight * load_at(lost_, x + dx, y + dy);
-                hidden += load_at(lost_directions_, x + dx, y + dy) * weight;
-            }
+        Vec3s directions{Floats(0.0f), Floats(0.0f), Floats(0.0f)};
+        for (int i = 1 - kBlock; i < kBlock; ++i) {
+            const int at_x = x + i * step_x, at_y = y + i * step_y;
+            const Floats other = load_at(depth_, at_x, at_y);
+            const Floats alike = likeness(p, n, tolerance, point(at_x, at_y, other), load_at(normal_, at_x, at_y));
+            const Floats share(static_cast<float>(kBlock - std::abs(i)) / kBlock);
+            const Floats weight = xsimd::select(other > Floats(0.0f), alike * share, Floats(0.0f));
+            all += weight * load_at(from.all, at_x, at_y);
+            lost += weight * load_at(from.lost, at_x, at_y);
+            directions += load_at(from.directions, at_x, at_y) * weight;
+        }
+        use(x, lost, all, directions);
+    }
+}
+
+void GtaoImage::sum_columns(int y) {
+    sum_neighbors(lines_, y, 0, 1, [&](int x, const Floats& lost, const Floats& all, const Vec3s& directions) {
+        store(column_sums_.lost, x, y, lost), store(column_sums_.all, x, y, all);
+        column_sums_.directions.set(x, y, directions);
+    });
+}
+
+void GtaoImage::finish_row(int y) {
+    sum_neighbors(column_sums_, y, 1, 0, [&](int x, const Floats& lost, const Floats& all, const Vec3s& directions) {
         const Floats over = xsimd::select(all > Floats(0.0f), Floats(1.0f) / all, Floats(0.0f));
         store(smooth_.visible, x, y, clamp(Floats(1.0f) - lost * over, Floats(0.0f), Floats(1.0f)));
-        smooth_.hidden.set(x, y, hidden * over);
-    }
+        smooth_.hidden.set(x, y, directions * over);
+    });
 }
 
 GtaoImage::Upsampled GtaoImage::upsampled(int x, int y) const {

@@ -1,6 +1,6 @@
 // Ground-truth ambient occlusion (GTAO): how much of the environment the surfaces in the image hide from each pixel
 // (Jimenez et al. 2016, "Practical Realtime Strategies for Accurate Indirect Occlusion", §4). Horizons are searched
-// at half resolution, averaged over 5 × 5 neighbors on the same surface, and upsampled along depths and normals.
+// at half resolution, averaged over 7 × 7 neighbors on the same surface, and upsampled along depths and normals.
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"
@@ -35,8 +35,8 @@ public:
     }
 
     std::size_t memory_bytes() const {
-        return depth_.memory_bytes() + normal_.memory_bytes() + lost_.memory_bytes() + all_.memory_bytes() +
-               lost_directions_.memory_bytes() + smooth_.visible.memory_bytes() + smooth_.hidden.memory_bytes();
+        return depth_.memory_bytes() + normal_.memory_bytes() + lines_.memory_bytes() + column_sums_.memory_bytes() +
+               smooth_.visible.memory_bytes() + smooth_.hidden.memory_bytes();
     }
 
     static constexpr int kSteps = 10; ///< depths read on each side of a pixel
@@ -50,19 +50,29 @@ private:
         SkyVisibility<Floats> sky;
         xsimd::batch_bool<float> found;
     };
+    /// What is hidden along one line through each pixel, and what there is to hide; or sums of these. Sums over
+    /// neighbors are divided by each other, since a line's share of the hemisphere depends on its direction.
+    struct Lines {
+        PlaneFloat lost, all;
+        Planes3 directions;
+
+        std::size_t memory_bytes() const {
+            return lost.memory_bytes() + all.memory_bytes() + directions.memory_bytes();
+        }
+    };
     Upsampled upsampled(int x, int y) const;
     void search_row(int y, float radius);
-    void filter_row(int y);
+    template <typename Use> void sum_neighbors(const Lines& from, int y, int step_x, int step_y, const Use& use) const;
+    void sum_columns(int y);
+    void finish_row(int y);
     void reset(int width, int height);
     Vec3T<Floats> point(int x, int y, const Floats& depth) const;
 
     const GBuffer* gbuffer_ = nullptr;
     PlaneFloat depth_;      ///< reversed depth of every second pixel of every second row
     Planes3 normal_;        ///< likewise
-    /// Before averaging: what is hidden along one line, and what there is to hide. Their sums over neighbors are
-    /// divided by each other, since a line's share of the hemisphere depends on its direction.
-    PlaneFloat lost_, all_;
-    Planes3 lost_directions_;
+    Lines lines_;           ///< before averaging
+    Lines column_sums_;     ///< summed along columns
     Planes smooth_; ///< after averaging
 };
 
