@@ -9,6 +9,7 @@
 #include "raster/raster_scene.h"
 
 #include <array>
+#include <cstdint>
 
 namespace duet::raster {
 
@@ -48,9 +49,18 @@ private:
     Vec3d grid_point(std::size_t probe) const;
     bool move_out_of_solids(const SolidTest& solids, Vec3d& position) const;
     void set_distances(const ProbeCapture& capture, Probe& probe) const;
-    struct Weights;
+    /// Holds how much the eight probes about each of a batch of points count.
+    struct Weights {
+        alignas(64) std::array<std::int32_t, Ints::size> cells; ///< the first probe of each point's cell
+        std::array<Floats, 8> corners;                          ///< by corner of the cell
+        Floats sum;
+        Floats beyond; ///< distance from the grid in cells
+    };
     IrradianceHarmonics gather(const ProbeCapture& capture, int bounce, std::vector<Weights>& weights) const;
     void drop_strays(std::vector<std::unique_ptr<ProbeCapture>>& captures) const;
+    void find_sights(const std::vector<std::unique_ptr<ProbeCapture>>& captures);
+    bool sees(const ProbeCapture& capture, std::size_t from, std::size_t to) const;
+    std::size_t corner_of(std::size_t cell, unsigned corner) const;
     void fill_solids();
     void find_sky(const RasterSceneData& data, const RasterSettings& settings,
                   const std::vector<std::unique_ptr<ProbeCapture>>& captures);
@@ -61,7 +71,6 @@ private:
     static Vec3T<Floats> to_viewer(const ScreenProjection& camera, const Vec3T<Floats>& p) {
         return camera.to_viewer(p) * camera.distance(p);
     }
-    std::size_t probe_at(std::int32_t first, int corner) const;
     struct Place;
     Place place_of(const Vec3d& eye, const Vec3T<Floats>& p) const;
     Vec3T<Floats> bias(const Vec3T<Floats>& n, const Vec3T<Floats>& to_viewer) const;
@@ -75,6 +84,9 @@ private:
     Vec3d step_;                ///< between probes, by axis
     std::array<int, 3> size_{}; ///< number of probes, by axis; at least 2
     std::vector<Probe> probes_; ///< x fastest
+    /// For each cell, by its first probe: which of its corners see each of them, as bits. Bit 0 of a corner's number is
+    /// set if it is further along x, bit 1 along y, bit 2 along z.
+    std::vector<std::array<std::uint8_t, 8>> sights_;
     IrradianceHarmonics sky_{}; ///< of the environment alone, for points far beyond the probes
     float openness_ = 0;        ///< how much of it counts there, in [0, 1]; 0 in a closed room
 };

@@ -85,10 +85,17 @@ bool IrradianceProbes::move_out_of_solids(const SolidTest& solids, Vec3d& positi
     return false;
 }
 
+/// Returns whether no surface hides the probe `to` from the probe `from`, whose capture is given.
+bool IrradianceProbes::sees(const ProbeCapture& capture, std::size_t from, std::size_t to) const {
+    constexpr float kSeen = 0.95f; // of the distance, since pixels are coarse
+    const Vec3 way(probes_[to].position - probes_[from].position);
+    const float distance = length(way); // 0 if a probe was moved onto another
+    return !(distance > 0) || capture.distance(capture.pixel(way)) > kSeen * distance;
+}
+
 /// Removes probes that were moved beyond other surfaces, such as the ground: all that no chain of neighbors, each seen
 /// by the one before, connects to a probe on the grid.
 void IrradianceProbes::drop_strays(std::vector<std::unique_ptr<ProbeCapture>>& captures) const {
-    constexpr float kSeen = 0.95f; // of the distance, since pixels are coarse
     std::vector<bool> connected(probes_.size());
     std::vector<std::size_t> next;
     const auto connect = [&](std::size_t i) { connected[i] = true, next.push_back(i); };
@@ -99,14 +106,28 @@ void IrradianceProbes::drop_strays(std::vector<std::unique_ptr<ProbeCapture>>& c
         const std::size_t from = next.back();
         next.pop_back();
         for_each_neighbor(from, [&](std::size_t i) {
-            if (connected[i] || !captures[i]) return;
-            const Vec3 to(probes_[i].position - probes_[from].position);
-            const float distance = length(to); // 0 if a probe was moved onto another
-            if (!(distance > 0) || captures[from]->distance(captures[from]->pixel(to)) > kSeen * distance) connect(i);
+            if (!connected[i] && captures[i] && sees(*captures[from], from, i)) connect(i);
         });
     }
     for (std::size_t i = 0; i < probes_.size(); ++i)
         if (!connected[i]) captures[i].reset();
+}
+
+std::size_t IrradianceProbes::corner_of(std::size_t cell, unsigned corner) const {
+    const auto row = static_cast<std::size_t>(size_[0]), layer = row * static_cast<std::size_t>(size_[1]);
+    return cell + (corner & 1) + row * (corner >> 1 & 1) + layer * (corner >> 2);
+}
+
+/// Finds which probes about each cell see each other. Those inside objects see all and are seen by all.
+void IrradianceProbes::find_sights(const std::vector<std::unique_ptr<ProbeCapture>>& captures) {
+    sights_.assign(probes_.size(), {});
+    for (std::size_t cell = 0; corner_of(cell, 7) < probes_.size(); ++cell)
+        for (unsigned a = 0; a < 8; ++a)
+            for (unsigned b = 0; b < 8; ++b) {
+                const std::size_t from = corner_of(cell, a), to = corner_of(cell, b);
+                if (!captures[from] || !captures[to] || sees(*captures[from], from, to))
+                    sights_[cell][b] = static_cast<std::uint8_t>(sights_[cell][b] | 1u << a);
+            }
 }
 
 /// Gives probes inside objects the mean irradiance of their neighbors, from the surfaces inwards. They count where a
