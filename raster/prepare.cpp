@@ -168,7 +168,8 @@ RasterScene prepare_after(const RasterSceneData* before, const Scene& scene, con
         throw Error(message("shadow maps of ", settings.shadow_map_side, " texels a side: expected 64 to 8192"));
     if (settings.shadow_cells < 1 || settings.shadow_cells > Shadows::kMaxCells)
         throw Error(message(settings.shadow_cells, " pieces a light's side: expected 1 to ", Shadows::kMaxCells));
-    if (settings.shading == Shading::kLit && settings.output != Output::kReversedDepth) prepare_lit(settings, data, before);
+    if (settings.shading == Shading::kLit && settings.output != Output::kReversedDepth)
+        prepare_lit(settings, data, before);
     return RasterScene(std::make_shared<const RasterSceneData>(std::move(data)));
 }
 
@@ -182,7 +183,8 @@ std::optional<RasterScene> prepare_edited(const Scene& scene, const RasterSettin
                                           const RasterScene& before) {
     const RasterSceneData& data = before.data();
     const bool reflection = std::ranges::any_of(scene.materials, reflects);
-    const bool fits = data.objects.size() == scene.objects.size() && (data.reflection_probes != nullptr) == reflection &&
+    const bool fits = data.objects.size() == scene.objects.size() &&
+                      (data.reflection_probes != nullptr) == reflection &&
                       (data.irradiance_probes != nullptr) == settings.indirect_light;
     return fits ? std::optional(prepare_after(&data, scene, settings)) : std::nullopt;
 }

@@ -28,9 +28,10 @@ private:
 
 /// Prepares a scene. Throws Error if the shadow settings are out of range.
 RasterScene prepare(const Scene& scene, const RasterSettings& settings);
-/// Prepares a scene in which something was edited, for a look at it: it has the probes of the scene before, so that only
+/// Prepares a scene in which something was edited, for a first look at it: with the probes of the scene before, so that
 /// light between surfaces and reflections lag behind. That takes milliseconds, where new probes take up to seconds.
-/// Returns nothing if the probes do not fit, since objects were added or deleted, or some reflect that did not.
+/// Returns nothing if the probes do not fit: the number of objects differs, or something reflects and nothing did, or
+/// the other way round, or the settings want probes that the scene before lacks.
 std::optional<RasterScene> prepare_edited(const Scene& scene, const RasterSettings& settings,
                                           const RasterScene& before);
 /// Returns one sentence for each way in which images with these settings differ from the path tracer's. Only those

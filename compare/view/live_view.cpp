@@ -19,7 +19,8 @@ constexpr double kPreviewScale = 0.25;
 /// A pass of the path tracer takes about this long at first, in seconds, and later this part of the time so far: short
 /// enough to watch it converge, and long enough for copies of the image not to count.
 constexpr double kPassSeconds = 0.3, kPassPart = 0.1;
-/// It has this many samples per pixel. The whole image replaces it once it has as many.
+/// It has one sample per pixel, which is shown whatever follows, and then this many. The whole image replaces it once
+/// it has as many.
 constexpr std::uint32_t kPreviewSamples = 4;
 /// Probes are rendered anew when there was no edit for this long, in seconds.
 constexpr double kRestSeconds = 0.2;
@@ -76,7 +77,7 @@ void LiveView::start_loading(LatestJob::Job job) {
 
 unsigned LiveView::load(const View& view, std::function<Scene()> read) {
     const unsigned load = ++loads_;
-    loading_ = true; // the path tracer waits, since its image is outdated, and leaves the cores to the loader
+    loading_ = true;
     start_loading([=, this](const std::atomic<bool>& stop) {
         LoadedScene next;
         next.scene = std::make_shared<const Scene>(seen_in(view, read()));
@@ -156,7 +157,8 @@ void LiveView::show(const Wish& wish) {
 void LiveView::show_raster(const Wish& wish, const LoadedScene& scene) {
     const Started full{wish.version, scene.raster->load, scene.raster->id, 1};
     if (raster_started_ == full) {
-        const bool outdated = !scene.raster->whole || scene.raster->load != scene.load || !(wish.view == scene_view(*scene.raster->scene));
+        const bool outdated = !scene.raster->whole || scene.raster->load != scene.load ||
+                              !(wish.view == scene_view(*scene.raster->scene));
         const bool tried = prepared_for_.version == wish.version && prepared_for_.load == scene.load;
         if (!outdated || tried || raster_.busy() || loader_.busy()) return;
         prepared_for_ = {wish.version, scene.load};
@@ -196,39 +198,38 @@ void LiveView::render_raster(const Wish& wish, const LoadedScene& scene, double 
     }
 }
 
-void LiveView::wait_while_paused(const std::atomic<bool>& stop) const {
-    while ((paused_ || loading_) && !stop) std::this_thread::sleep_for(std::chrono::milliseconds(20));
-}
-
 void LiveView::render_traced(const Wish& wish, const LoadedScene& scene, const std::atomic<bool>& stop) {
     TracerFrame frame{.version = wish.version, .prepared = scene.raytrace->id, .load = scene.load};
     Stopwatch watch;
     double paused_seconds = 0;
-    const auto wait = [&] {
+    const auto wait = [&](const auto& condition) {
         const Stopwatch pause;
-        wait_while_paused(stop);
+        while (condition() && !stop) std::this_thread::sleep_for(std::chrono::milliseconds(10));
         paused_seconds += pause.seconds();
     };
     const auto seconds = [&] { return watch.seconds() - paused_seconds; };
     const auto publish_frame = [&] { publish([&] { tracer_frame_ = std::make_shared<const TracerFrame>(frame); }); };
     try {
-        wait();
+        wait([&] { return paused_.load(); });
         Control to_the_end, stoppable{.stop = &stop, .progress = {}};
         raytrace::ProgressiveRender preview(scene.raytrace->prepared, scaled(wish.view, kPreviewScale), wish.raytrace);
         const auto limit = static_cast<std::uint32_t>(wish.raytrace.samples_per_pixel);
         frame.preview = true;
-        frame.samples = std::min(kPreviewSamples, limit);
-        preview.add_samples(frame.samples, to_the_end);
-        frame.image = preview.film().image();
-        frame.seconds = seconds();
-        publish_frame();
+        for (const std::uint32_t end : {1u, std::min(kPreviewSamples, limit)}) {
+            if (end <= frame.samples) break;
+            if (!preview.add_samples(end - frame.samples, frame.samples == 0 ? to_the_end : stoppable)) return;
+            frame.samples = end;
+            frame.image = preview.film().image();
+            frame.seconds = seconds();
+            publish_frame();
+        }
         if (stop) return;
 
         raytrace::ProgressiveRender render(scene.raytrace->prepared, wish.view, wish.raytrace);
         frame.preview = false;
         frame.samples = 0;
         for (double sample_seconds = 0; frame.samples < limit;) {
-            wait();
+            wait([&] { return paused_ || loading_; }); // while an edit is loaded, the image is outdated
             const double pass_seconds = std::max(kPassSeconds, kPassPart * seconds());
             const auto fitting = static_cast<std::uint32_t>(sample_seconds > 0 ? pass_seconds / sample_seconds : 1);
             const std::uint32_t more =

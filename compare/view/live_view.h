@@ -98,7 +98,6 @@ private:
     void prepare_for(const View& view, const LoadedScene& loaded);
     void show_raster(const Wish& wish, const LoadedScene& scene);
     void render_raster(const Wish& wish, const LoadedScene& scene, double scale, const std::atomic<bool>& stop);
-    void wait_while_paused(const std::atomic<bool>& stop) const;
     void render_traced(const Wish& wish, const LoadedScene& scene, const std::atomic<bool>& stop);
 
     const int threads_;

@@ -3,10 +3,10 @@
 // "Dynamic Diffuse Global Illumination with Ray-Traced Irradiance Fields").
 #pragma once
 
-#include "raster/shader/octahedral_map.h"
 #include "raster/probes/probe_capture.h"
 #include "raster/probes/solid_test.h"
 #include "raster/raster_scene.h"
+#include "raster/shader/octahedral_map.h"
 
 #include <array>
 #include <cstdint>
