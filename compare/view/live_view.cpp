@@ -85,7 +85,8 @@ unsigned LiveView::load(const View& view, std::function<Scene()> read) {
         const Stopwatch watch;
         raytrace::PathTracerScene traced = prepare(*next.scene, with_threads<raytrace::PathTracerSettings>());
         next.raytrace = std::make_shared<const PreparedScene<raytrace::PathTracerScene>>(
-            ++preparations_, load, next.scene, std::move(traced), watch.seconds());
+            PreparedScene<raytrace::PathTracerScene>{++preparations_, load, next.scene, std::move(traced),
+                                                     watch.seconds()});
         LoadedScene before; // is freed outside of the lock
         publish([&] {
             next.raster = loaded_.raster;
