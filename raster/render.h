@@ -29,9 +29,9 @@ private:
 /// Prepares a scene. Throws Error if the shadow settings are out of range.
 RasterScene prepare(const Scene& scene, const RasterSettings& settings);
 /// Prepares a scene in which something was edited, for a first look at it: with the probes of the scene before, so that
-/// light between surfaces and reflections lag behind. That takes milliseconds, where new probes take up to seconds.
-/// Returns nothing if the probes do not fit: the number of objects differs, or something reflects and nothing did, or
-/// the other way round, or the settings want probes that the scene before lacks.
+/// light between surfaces and reflections lag behind. All else is new, which takes a small part of the time. Returns
+/// nothing if the probes do not fit: the number of objects differs, or objects reflect in one of both scenes alone, or
+/// the settings want probes that the scene before lacks, or lack those that it has.
 std::optional<RasterScene> prepare_edited(const Scene& scene, const RasterSettings& settings,
                                           const RasterScene& before);
 /// Returns one sentence for each way in which images with these settings differ from the path tracer's. Only those

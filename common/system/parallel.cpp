@@ -99,13 +99,15 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
         for (std::size_t i = 0; i < count; ++i) body(i);
         return;
     }
-    if (in_loop) return tbb::parallel_for(std::size_t{0}, count, body);
-    arena_of(workers).execute([&] {
+    const auto loop = [&] {
         tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
             const LoopScope scope;
             body(i);
         });
-    });
+    };
+    // A thread that waits for the end of an inner loop must not begin another turn of the outer one meanwhile.
+    if (in_loop) return tbb::this_task_arena::isolate(loop);
+    arena_of(workers).execute(loop);
 }
 
 #endif

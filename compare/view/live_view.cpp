@@ -19,8 +19,8 @@ constexpr double kPreviewScale = 0.25;
 /// A pass of the path tracer takes about this long at first, in seconds, and later this part of the time so far: short
 /// enough to watch it converge, and long enough for copies of the image not to count.
 constexpr double kPassSeconds = 0.3, kPassPart = 0.1;
-/// It has one sample per pixel, which is shown whatever follows, and then this many. The whole image replaces it once
-/// it has as many.
+/// The first image has one sample per pixel, which is shown whatever follows, and then this many. The whole image
+/// replaces it once it has as many.
 constexpr std::uint32_t kPreviewSamples = 4;
 /// Probes are rendered anew when there was no edit for this long, in seconds.
 constexpr double kRestSeconds = 0.2;
@@ -61,9 +61,9 @@ template <typename Settings> Settings LiveView::with_threads() const {
     return settings;
 }
 
-// Runs a job on the loader's thread, and reports why it failed.
-void LiveView::start_loading(LatestJob::Job job) {
-    loader_.start([this, job = std::move(job)](const std::atomic<bool>& stop) {
+// Runs a job on a thread, and reports why it failed.
+void LiveView::start(LatestJob& thread, LatestJob::Job job) {
+    thread.start([this, job = std::move(job)](const std::atomic<bool>& stop) {
         try {
             job(stop);
         } catch (const std::exception& error) {
@@ -75,10 +75,10 @@ void LiveView::start_loading(LatestJob::Job job) {
     });
 }
 
-unsigned LiveView::load(const View& view, std::function<Scene()> read) {
+unsigned LiveView::load(const View& view, std::function<Scene()> read, bool edited) {
     const unsigned load = ++loads_;
-    loading_ = true;
-    start_loading([=, this](const std::atomic<bool>& stop) {
+    start(loader_, [=, this](const std::atomic<bool>&) {
+        loading_ = true;
         LoadedScene next;
         next.scene = std::make_shared<const Scene>(seen_in(view, read()));
         next.load = load;
@@ -93,8 +93,10 @@ unsigned LiveView::load(const View& view, std::function<Scene()> read) {
             before = std::exchange(loaded_, next);
             loading_ = false;
         });
-        if (prepare_edited_raster(load, next.scene) && !rests(stop)) return;
-        prepare_raster(load, next.scene);
+        const bool seen = edited && prepare_edited_raster(load, next.scene);
+        start(preparer_, [=, this, scene = next.scene](const std::atomic<bool>& stop) {
+            if (!seen || rests(stop)) prepare_raster(load, scene);
+        });
     });
     return load;
 }
@@ -125,7 +127,7 @@ void LiveView::set_raster(PreparedScene<raster::RasterScene> next) {
 }
 
 void LiveView::prepare_for(const View& view, const LoadedScene& loaded) {
-    start_loading([=, this](const std::atomic<bool>&) {
+    start(preparer_, [=, this](const std::atomic<bool>&) {
         prepare_raster(loaded.load, std::make_shared<const Scene>(seen_in(view, *loaded.scene)));
     });
 }
@@ -161,7 +163,7 @@ void LiveView::show_raster(const Wish& wish, const LoadedScene& scene) {
         const bool outdated = !scene.raster->whole || scene.raster->load != scene.load ||
                               !(wish.view == scene_view(*scene.raster->scene));
         const bool tried = prepared_for_.version == wish.version && prepared_for_.load == scene.load;
-        if (!outdated || tried || raster_.busy() || loader_.busy()) return;
+        if (!outdated || tried || raster_.busy() || loader_.busy() || preparer_.busy()) return;
         prepared_for_ = {wish.version, scene.load};
         prepare_for(wish.view, scene);
         return;
@@ -253,10 +255,10 @@ void LiveView::render_traced(const Wish& wish, const LoadedScene& scene, const s
 }
 
 bool LiveView::finished(const Wish& wish) const {
-    if (loader_.busy()) return false;
+    if (loader_.busy() || preparer_.busy()) return false;
     const std::lock_guard lock(mutex_);
-    if (!loaded_.raster || loaded_.raster->load != loaded_.load || !raster_frame_ || !tracer_frame_ ||
-        !(wish.view == scene_view(*loaded_.raster->scene)))
+    if (!loaded_.raster || !loaded_.raster->whole || loaded_.raster->load != loaded_.load || !raster_frame_ ||
+        !tracer_frame_ || !(wish.view == scene_view(*loaded_.raster->scene)))
         return false;
     const bool raster = raster_frame_->version == wish.version && raster_frame_->prepared == loaded_.raster->id &&
                         raster_frame_->scale == 1;

@@ -63,15 +63,16 @@ struct TracerFrame {
     std::string error{};                            ///< why there is no image
 };
 
-/// A LiveView owns three threads: one loads and prepares scenes, and one for each pipeline renders. `wake` is called
-/// from them whenever there is something new.
+/// A LiveView owns four threads: one loads and prepares scenes, one renders the rasterizer's probes, which takes
+/// longer, and one for each pipeline renders images. `wake` is called from them whenever there is something new.
 class LiveView {
 public:
     LiveView(int threads, std::function<void()> wake);
 
     /// Loads a scene in the background, to be seen in this view. Until it is prepared, and if `read` throws, the scene
-    /// before stays. Returns a number that is different for every call, LoadedScene::load.
-    unsigned load(const View& view, std::function<Scene()> read);
+    /// before stays. If it is that scene, `edited`, the rasterizer shows it with the probes of before, until nothing
+    /// has been edited for a moment. Returns a number that is different for every call, LoadedScene::load.
+    unsigned load(const View& view, std::function<Scene()> read, bool edited = false);
     LoadedScene loaded() const;
 
     /// Renders what is wanted, unless this happens already. Call it for every frame of the window. A frame of the
@@ -91,7 +92,7 @@ public:
 private:
     void publish(const std::function<void()>& change); // under the lock; then calls wake_
     template <typename Settings> Settings with_threads() const;
-    void start_loading(LatestJob::Job job);
+    void start(LatestJob& thread, LatestJob::Job job);
     void prepare_raster(unsigned load, const std::shared_ptr<const Scene>& scene);
     bool prepare_edited_raster(unsigned load, const std::shared_ptr<const Scene>& scene);
     void set_raster(PreparedScene<raster::RasterScene> next);
@@ -101,10 +102,11 @@ private:
     void render_traced(const Wish& wish, const LoadedScene& scene, const std::atomic<bool>& stop);
 
     const int threads_;
-    unsigned loads_ = 0, preparations_ = 0; // preparations_ is the loader's
+    unsigned loads_ = 0;
+    std::atomic<unsigned> preparations_ = 0;
     const std::function<void()> wake_;
     std::atomic<bool> paused_ = false;
-    std::atomic<bool> loading_ = false; // until the path tracer's scene is prepared
+    std::atomic<bool> loading_ = false; // while a scene is read and prepared for the path tracer
     mutable std::mutex mutex_; // guards the results
     LoadedScene loaded_;
     std::shared_ptr<const RasterFrame> raster_frame_;
@@ -120,7 +122,8 @@ private:
         unsigned version = 0, load = 0;
     } prepared_for_;
     std::atomic<double> pixel_seconds_ = 0; // time of a frame of the rasterizer by its pixels; 0: unknown
-    LatestJob loader_, raster_, tracer_;    // last: their threads use the members above
+    // Last, since their threads use the members above. The loader, which starts jobs of the preparer, ends before it.
+    LatestJob preparer_, loader_, raster_, tracer_;
 };
 
 } // namespace duet::compare

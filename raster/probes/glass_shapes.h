@@ -2,8 +2,8 @@
 // from the object's center. A refracted ray finds there where it leaves.
 #pragma once
 
-#include "raster/shader/octahedral_map.h"
 #include "raster/raster_scene.h"
+#include "raster/shader/octahedral_map.h"
 
 #include <optional>
 

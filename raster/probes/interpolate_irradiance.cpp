@@ -43,6 +43,17 @@ Floats visibility(const OctahedralMap& distances, const Vec3s& to_probe, const V
     return (front * front + Floats(kBehind)) * (seen * seen * seen + Floats(kHidden));
 }
 
+/// Calls use(first, own) for the cells in which the given lanes lie: the cell's first probe, and its lanes. Cells are
+/// large, so a batch mostly lies in one.
+template <typename Cells, typename Use> void for_each_cell(const Cells& cells, std::uint32_t left, const Use& use) {
+    while (left != 0) {
+        const std::int32_t first = cells[static_cast<std::size_t>(std::countr_zero(left))];
+        const auto own = xsimd::bool_cast(Ints::load_aligned(cells.data()) == Ints(first));
+        left &= ~lane_bits(own);
+        use(first, own);
+    }
+}
+
 } // namespace
 
 /// Returns how much of the light is the sky's at a distance from the grid in cells.
@@ -57,6 +68,7 @@ RgbT<Floats> IrradianceProbes::faded_to_sky(const RgbT<Floats>& irradiance, cons
     if (!xsimd::any(fade > Floats(0.0f))) return irradiance;
     return irradiance + (irradiance_at(sky_, basis) - irradiance) * fade;
 }
+
 /// Says between which probes a batch of points lies.
 struct IrradianceProbes::Place {
     alignas(64) std::array<std::int32_t, Ints::size> cells; ///< the first probe of each cell
@@ -85,17 +97,6 @@ IrradianceProbes::Place IrradianceProbes::place_of(const Vec3d& eye, const Vec3s
     }
     (cell[0] + Ints(size_[0]) * (cell[1] + Ints(size_[1]) * cell[2])).store_aligned(result.cells.data());
     return result;
-}
-
-/// Calls use(first, own) for the cells in which the given lanes lie: the cell's first probe, and its lanes. Cells are
-/// large, so a batch mostly lies in one.
-template <typename Cells, typename Use> void for_each_cell(const Cells& cells, std::uint32_t left, const Use& use) {
-    while (left != 0) {
-        const std::int32_t first = cells[static_cast<std::size_t>(std::countr_zero(left))];
-        const auto own = xsimd::bool_cast(Ints::load_aligned(cells.data()) == Ints(first));
-        left &= ~lane_bits(own);
-        use(first, own);
-    }
 }
 
 RgbT<Floats> IrradianceProbes::mean_radiance(const Vec3d& eye, const Vec3s& p, const AmbientLight& sky) const {

@@ -107,7 +107,6 @@ void IrradianceProbes::find_sky(const RasterSceneData& data, const RasterSetting
     openness_ = all > 0 ? clamp(8 * seen / all - 1, 0.0f, 1.0f) : 0;
 }
 
-
 void IrradianceProbes::set_distances(const ProbeCapture& capture, Probe& probe) const {
     // A point may be interpolated from probes up to a cell's diagonal away; beyond, distances make no difference.
     const float farthest = 1.5f * static_cast<float>(length(step_));

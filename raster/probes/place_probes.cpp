@@ -88,9 +88,9 @@ bool IrradianceProbes::move_out_of_solids(const SolidTest& solids, Vec3d& positi
 /// Returns whether no surface hides the probe `to` from the probe `from`, whose capture is given.
 bool IrradianceProbes::sees(const ProbeCapture& capture, std::size_t from, std::size_t to) const {
     constexpr float kSeen = 0.95f; // of the distance, since pixels are coarse
-    const Vec3 way(probes_[to].position - probes_[from].position);
-    const float distance = length(way); // 0 if a probe was moved onto another
-    return !(distance > 0) || capture.distance(capture.pixel(way)) > kSeen * distance;
+    const Vec3 between(probes_[to].position - probes_[from].position);
+    const float distance = length(between); // 0 if a probe was moved onto another
+    return !(distance > 0) || capture.distance(capture.pixel(between)) > kSeen * distance;
 }
 
 /// Removes probes that were moved beyond other surfaces, such as the ground: all that no chain of neighbors, each seen

@@ -23,7 +23,7 @@ bool near_casters_surround(const CubeMap& cube, float reach) {
         near += std::ranges::count_if(depths, [&](float reversed) { return cube.near < reach * reversed; });
         all += static_cast<std::ptrdiff_t>(depths.size());
     }
-    return near * 3 > all;
+    return near * 2 > all;
 }
 
 OctahedralMap near_visibility(double radius, float reach, const std::function<CubeMap(Vec3d)>& draw) {

@@ -16,16 +16,16 @@ namespace duet::raster {
 struct CellMaps {
     CubeMap all;                    ///< shows all casters
     std::optional<CubeMap> distant; ///< shows what is beyond `reach`; none if no near casters surround the light
-    OctahedralMap near_visibility;  ///< of the function of this name; empty likewise
+    OctahedralMap near_visibility;  ///< what the function near_visibility() returns; empty if `distant` is none
     float reach = 0;
 };
 
-/// Returns whether surfaces whose depth is below `reach` meters fill more than a third of the cube about a light's
-/// center, as a shade does.
+/// Returns whether surfaces whose depth is below `reach` meters fill more than half of the cube about a light's center,
+/// as a shade does, and a floor alone cannot.
 bool near_casters_surround(const CubeMap& cube, float reach);
 
 /// Returns the fraction of a sphere that is visible past the casters nearer than `reach`, in channel 0, by direction in
-/// the frame of its cubes. It is exact at a distance of a few times `reach`. `draw` returns the cube about the sphere's
+/// the frame of its cubes. It is exact at three times the reach. `draw` returns the cube about the sphere's
 /// center moved by a vector.
 OctahedralMap near_visibility(double radius, float reach, const std::function<CubeMap(Vec3d)>& draw);
 

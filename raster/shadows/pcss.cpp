@@ -60,7 +60,7 @@ struct SoftShadowMap::Receiver {
     Floats slack;
 
     /// Returns the fraction of the way from p to the light's plane at which the surface seen in direction q blocks the
-    /// light; its negative in lanes where the surface lies between but beside the light, and 0 in all other lanes.
+    /// light; its negative in lanes where it lies between, but the line misses the light; 0 in all other lanes.
     Floats blocker(const Vec3s& q) const {
         Floats texel;
         const Vec3s to = cube.surface(q, texel) - p;

@@ -37,9 +37,9 @@ private:
     template <typename Lookup> Floats combined(const Vec3T<Floats>& p, const Lookup& lookup) const;
 
     DepthCube cube_;
-    std::optional<DepthCube> distant_; ///< as in CellMaps, with the next two
-    OctahedralMap near_visibility_;
-    float reach_;
+    std::optional<DepthCube> distant_; ///< CellMaps::distant
+    OctahedralMap near_visibility_;    ///< CellMaps::near_visibility
+    float reach_;                      ///< CellMaps::reach
     Emitter::Kind kind_;
     float radius_ = 0;
     Vec3 corner_, u_, v_, dual_u_, dual_v_; ///< of a flat light, in the cube's frame; its normal is +z

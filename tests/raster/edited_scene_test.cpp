@@ -53,7 +53,7 @@ TEST_SUITE("unit") {
         CHECK(image(*edited, moved, settings).pixels() != image(prepare(scene, settings), scene, settings).pixels());
     }
 
-    TEST_CASE("probes do not fit a scene with another number of objects, nor one that reflects for the first time") {
+    TEST_CASE("probes do not fit a scene with another number of objects, or whose objects reflect for the first time") {
         const Scene scene = scene_of("cornell");
         const RasterSettings settings;
         const RasterScene before = prepare(scene, settings);
@@ -62,9 +62,16 @@ TEST_SUITE("unit") {
         finish_scene(fewer);
         CHECK_FALSE(prepare_edited(fewer, settings, before));
         Scene shiny = scene;
-        shiny.materials.front() = Metal{};
+        shiny.materials.push_back(Metal{});
+        shiny.material_names.push_back("unused");
+        finish_scene(shiny);
+        const auto unused = prepare_edited(shiny, settings, before);
+        REQUIRE(unused);
+        CHECK(image(*unused, shiny, settings).pixels() == image(before, scene, settings).pixels());
+        shiny.objects.front().materials.front() = static_cast<std::uint32_t>(shiny.materials.size()) - 1;
         finish_scene(shiny);
         CHECK_FALSE(prepare_edited(shiny, settings, before));
+        CHECK_FALSE(prepare_edited(shiny, settings, *unused));
         RasterSettings direct;
         direct.indirect_light = false;
         CHECK_FALSE(prepare_edited(scene, direct, before));

@@ -4,10 +4,10 @@
 #include "tests/raster/varied_scene.h"
 
 #include "raster/probes/irradiance_probes.h"
-#include "raster/shader/octahedral_map.h"
 #include "raster/probes/radiance_map.h"
 #include "raster/probes/solid_test.h"
 #include "raster/raster_scene.h"
+#include "raster/shader/octahedral_map.h"
 
 #include "compare/stress/accelerated_scene.h"
 

@@ -233,6 +233,16 @@ TEST_SUITE("unit") {
         CHECK(sum / view.height < 0.03);
     }
 
+    TEST_CASE("a floor that a glowing ball touches is lit by all of it, in two pieces too") {
+        Scene scene;
+        add(scene, Sphere{Vec3(0, 0.1f, 0), 0.1f}, Mat4(), Emissive{Rgb(100)});
+        add(scene, QuadList{{{Vec3(-5, 0, 5), Vec3(5, 0, 0), Vec3(0, 0, -10)}}});
+        add(scene, QuadList{{{Vec3(0, 0, 5), Vec3(5, 0, 0), Vec3(0, 0, -10)}}});
+        scene.camera = look({1.6, 1.5, 0.01}, {1.6, 0, 0}, 40);
+        finish_scene(scene);
+        CHECK(std::ranges::min(visible(scene, {scene.camera, 80, 80})) > 0.99f);
+    }
+
     // Two walls at different distances overlap. The near one hides from the light's center where the other one begins.
     TEST_CASE("no light between two walls that overlap as seen from every point of it") {
         Scene scene;

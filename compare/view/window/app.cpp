@@ -65,7 +65,7 @@ bool App::draw() {
     return fly_by_keys();
 }
 
-void App::load() { requested_load_ = live_.load(wish_.view, document_.reader()); }
+void App::load(bool edited) { requested_load_ = live_.load(wish_.view, document_.reader(), edited); }
 
 void App::changed_camera(const Camera& camera) {
     document_.set_camera(camera);
@@ -91,7 +91,7 @@ void App::follow_document() {
 
 void App::edit(std::string text) {
     document_.set_text(std::move(text));
-    load();
+    load(true);
 }
 
 void App::undo(bool back) {
@@ -104,7 +104,7 @@ void App::undo(bool back) {
     follow_document();
     if (document_.text() == before) return;
     selected_ = -1; // its index may stand for another object
-    load();
+    load(true);
 }
 
 bool App::may_lose_changes(const std::string& what) {

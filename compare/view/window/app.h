@@ -104,7 +104,7 @@ private:
     void open(const std::filesystem::path& path);
     void reload();
     void reload_if_changed();
-    void load();
+    void load(bool edited = false);
     void changed_camera(const Camera& camera);
     void follow_document(); // shows the document's camera
     void edit(std::string text);

@@ -58,8 +58,8 @@ json measure_turn(App& app, Window& window, double seconds) {
     return result;
 }
 
-// Moves an object to and fro with every frame of the window, as a hand would drag it. Returns the times between images
-// of edited scenes, for both pipelines, or null if the scene cannot be edited.
+// Moves the first object to and fro with every frame of the window, as a hand would drag it. Returns the times between
+// images of edited scenes, for both pipelines, or null if the scene cannot be edited.
 json measure_drag(App& app, Window& window, double seconds) {
     const Box3 bounds = app.live().loaded().scene->bounds;
     const double step = 1e-3 * static_cast<double>(length(bounds.diagonal()));
@@ -116,8 +116,9 @@ void measure(App& app, Window& window, const ViewOptions& options) {
         app.live().pause(paused);
         result[paused ? "path_tracer_paused" : "path_tracer_running"] = measure_turn(app, window, options.measure);
     }
-    result["drag"] = measure_drag(app, window, options.measure);
     result["samples_per_second"] = measure_rates(app, window, options.measure);
+    app.live().pause(false);
+    result["drag"] = measure_drag(app, window, options.measure);
     for (const char* turn : {"path_tracer_paused", "path_tracer_running"}) {
         const json& row = result[turn];
         std::cout << std::fixed << std::setprecision(1) << turn << ": " << row["images"] << " images, median "

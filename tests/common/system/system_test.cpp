@@ -6,7 +6,6 @@
 #include <doctest/doctest.h>
 
 #include <atomic>
-#include <chrono>
 #include <thread>
 #include <vector>
 
@@ -25,13 +24,15 @@ TEST_SUITE("unit") {
 
     TEST_CASE("loops of two threads do not wait for each other") {
         std::atomic<bool> ended = false, waited_in_vain = false;
+        std::atomic<int> entered = 0;
+        const Stopwatch watch;
         const auto wait = [&](std::size_t) {
-            const Stopwatch watch;
+            ++entered;
             while (!ended && watch.seconds() < 20) std::this_thread::yield();
             if (!ended) waited_in_vain = true;
         };
         std::thread other([&] { parallel_for(2, 2, wait); });
-        std::this_thread::sleep_for(std::chrono::milliseconds(20)); // now both threads of that loop are busy
+        while (entered < 2 && watch.seconds() < 10) std::this_thread::yield(); // until both threads of it are busy
         parallel_for(4, 2, [](std::size_t) {});
         ended = true;
         other.join();

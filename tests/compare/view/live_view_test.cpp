@@ -88,6 +88,32 @@ TEST_SUITE("unit") {
         check_images(live, edited, wish);
     }
 
+    TEST_CASE("an object that is moved is seen before the probes are rendered anew, and then as the programs show it") {
+        const Scene scene = load_scene(kCornell);
+        const Wish wish = small_wish(scene);
+        LiveView live(0, [] {});
+        live.load(wish.view, [&] { return scene; });
+        wait_for(live, wish);
+        Scene edited = scene;
+        bool seen_with_old_probes = false;
+        for (int step = 1; step <= 10; ++step) {
+            edited.objects.front().place(Mat4(translation(Vec3d(0.01 * step, 0, 0))));
+            edited.objects.front().identity = false;
+            finish_scene(edited);
+            const unsigned load = live.load(wish.view, [&] { return edited; }, true);
+            while (live.loaded().load != load || live.loaded().raster->load != load) {
+                live.show(wish);
+                std::this_thread::sleep_for(std::chrono::milliseconds(2));
+            }
+            seen_with_old_probes = seen_with_old_probes || !live.loaded().raster->whole;
+            CHECK_FALSE(live.finished(wish));
+        }
+        CHECK(seen_with_old_probes);
+        wait_for(live, wish);
+        CHECK(live.loaded().raster->whole);
+        check_images(live, edited, wish);
+    }
+
     TEST_CASE("a paused path tracer renders nothing, and goes on where it was") {
         const Scene scene = load_scene(kCornell);
         Wish wish = small_wish(scene);
