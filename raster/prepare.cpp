@@ -14,6 +14,7 @@
 
 #include "common/scene/alpha_mask.h"
 #include "common/scene/motion_bounds.h"
+#include "common/scene/used_materials.h"
 #include "common/system/error.h"
 
 #include <algorithm>
@@ -110,11 +111,10 @@ void prepare_probes(const RasterSettings& settings, RasterSceneData& data, const
             before ? before->irradiance_probes : std::make_shared<const IrradianceProbes>(data, settings);
         data.memory_bytes += static_cast<std::int64_t>(data.irradiance_probes->memory_bytes());
     }
-    if (std::ranges::none_of(scene.materials, reflects)) return;
-    const bool reflected_before = before && before->reflection_probes;
-    data.environment_map = reflected_before ? before->environment_map : environment_map(settings, scene);
+    if (!any_used_material(scene, reflects)) return;
+    data.environment_map = before ? before->environment_map : environment_map(settings, scene);
     data.reflection_probes =
-        reflected_before ? before->reflection_probes : std::make_shared<const ReflectionProbes>(data, settings);
+        before ? before->reflection_probes : std::make_shared<const ReflectionProbes>(data, settings);
     data.glass_shapes = std::make_shared<const GlassShapes>(data, settings);
     data.memory_bytes += static_cast<std::int64_t>(data.environment_map->memory_bytes() +
                                                    data.reflection_probes->memory_bytes() +
@@ -183,11 +183,8 @@ RasterScene prepare(const Scene& scene, const RasterSettings& settings) {
 std::optional<RasterScene> prepare_edited(const Scene& scene, const RasterSettings& settings,
                                           const RasterScene& before) {
     const RasterSceneData& data = before.data();
-    const bool reflection = std::ranges::any_of(scene.objects, [&](const Object& object) {
-        return std::ranges::any_of(object.materials, [&](std::uint32_t i) { return reflects(scene.materials[i]); });
-    });
-    const bool reflected_before = data.reflection_probes && !data.reflection_probes->empty();
-    const bool fits = data.objects.size() == scene.objects.size() && reflected_before == reflection &&
+    const bool fits = data.objects.size() == scene.objects.size() &&
+                      (data.reflection_probes != nullptr) == any_used_material(scene, reflects) &&
                       (data.irradiance_probes != nullptr) == settings.indirect_light;
     return fits ? std::optional(prepare_after(&data, scene, settings)) : std::nullopt;
 }

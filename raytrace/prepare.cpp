@@ -1,7 +1,7 @@
 #include "raytrace/path_tracer_scene.h"
 
+#include "common/scene/used_materials.h"
 #include "raytrace/render.h"
-#include "raytrace/used_materials.h"
 
 namespace duet::raytrace {
 

@@ -13,12 +13,10 @@ namespace duet::raster {
 /// their center, which does not see them; all others use the nearest probe.
 class ReflectionProbes {
 public:
-    /// Renders the probes (raster/probes/render_reflection_probes.cpp). `data` must have its irradiance probes, if the
-    /// settings want them.
+    /// Renders the probes (raster/probes/render_reflection_probes.cpp). Some object must reflect, and `data` must
+    /// have its irradiance probes, if the settings want them.
     ReflectionProbes(const RasterSceneData& data, const RasterSettings& settings);
 
-    /// Returns whether there is none, since no object reflects.
-    bool empty() const { return probes_.empty(); }
     /// Returns the probe of an object.
     std::size_t probe_of(std::int32_t object) const { return of_object_[static_cast<std::size_t>(object)]; }
     /// Returns the vector from a probe's center to what a ray from the point p, relative to the eye at `eye`, meets in

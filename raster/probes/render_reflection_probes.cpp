@@ -118,7 +118,6 @@ bool reflects(const Material& material) {
 
 ReflectionProbes::ReflectionProbes(const RasterSceneData& data, const RasterSettings& settings) {
     const std::vector<Site> sites = sites_of(data);
-    if (sites.empty()) return;
     probes_.resize(sites.size());
     parallel_for(sites.size(), settings.threads, [&](std::size_t i) {
         probes_[i] = {sites[i].center, render_map(data, settings, sites[i])};
