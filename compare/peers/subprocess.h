@@ -34,6 +34,9 @@ public:
     /// Reads the next line of output. The status is kTimeout if none came within `wait`, kEnd if no more will come.
     Read read_line(std::chrono::milliseconds wait);
 
+    /// Returns the processor time of all threads of the process so far, without that of processes that it started.
+    std::chrono::nanoseconds processor_time() const;
+
 private:
     pid_t pid_ = -1;
     int to_ = -1, from_ = -1;

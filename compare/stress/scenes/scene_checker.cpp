@@ -10,11 +10,15 @@ namespace duet::compare {
 namespace {
 
 /// Returns the next line of JSON, or the reason why there is none. Other lines, such as a sanitizer's, go to `output`.
-Subprocess::Read read_result(Subprocess& process, int seconds, std::string& output) {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(seconds);
+Subprocess::Read read_result(Subprocess& process, SceneTimeLimits limits, std::string& output) {
+    constexpr std::chrono::milliseconds kPoll{50}; // between two looks at the processor time
+    const auto deadline = std::chrono::steady_clock::now() + limits.clock;
+    const auto processor_limit = process.processor_time() + limits.processor;
     for (;;) {
-        const auto left = deadline - std::chrono::steady_clock::now();
-        const Subprocess::Read read = process.read_line(std::chrono::duration_cast<std::chrono::milliseconds>(left));
+        Subprocess::Read read = process.read_line(kPoll);
+        const bool in_time =
+            std::chrono::steady_clock::now() < deadline && process.processor_time() < processor_limit;
+        if (read.status == Subprocess::Status::kTimeout && in_time) continue;
         if (read.status != Subprocess::Status::kLine || read.line.starts_with('{')) return read;
         output += (output.empty() ? "" : " | ") + read.line;
     }
@@ -23,24 +27,16 @@ Subprocess::Read read_result(Subprocess& process, int seconds, std::string& outp
 } // namespace
 
 SceneVerdict SceneChecker::check(const std::filesystem::path& scene) {
-    {
-        const std::shared_lock beside_others(alone_);
-        SceneVerdict verdict = check_once(scene);
-        if (verdict.failure != "hang") return verdict;
-    }
-    const std::unique_lock alone(alone_);
-    return check_once(scene);
-}
-
-SceneVerdict SceneChecker::check_once(const std::filesystem::path& scene) {
     auto process = processes_.take(command_);
     std::string output;
     process->write_line(scene.string());
-    const Subprocess::Read read = read_result(*process, seconds_, output);
+    const Subprocess::Read read = read_result(*process, limits_, output);
     if (read.status != Subprocess::Status::kLine) {
         const std::unique_ptr<Subprocess> ended(process.release()); // cannot check another scene
         if (read.status == Subprocess::Status::kEnd) return {.failure = "crash", .details = output};
-        return {.failure = "hang", .details = message("more than ", seconds_, " s")};
+        const std::chrono::duration<double> processor = limits_.processor, clock = limits_.clock;
+        return {.failure = "hang",
+                .details = message("more than ", processor.count(), " processor seconds or ", clock.count(), " s")};
     }
     const auto result = nlohmann::json::parse(read.line);
     if (result["verdict"] == "refused") return {.refused = true, .failure = {}, .details = result["details"]};

@@ -4,8 +4,8 @@
 #include "common/system/object_pool.h"
 #include "compare/peers/subprocess.h"
 
+#include <chrono>
 #include <filesystem>
-#include <shared_mutex>
 #include <string>
 #include <vector>
 
@@ -20,23 +20,27 @@ struct SceneVerdict {
     bool failed() const { return !failure.empty(); }
 };
 
+/// Holds how long a scene may take before it counts as one that hangs. Processor time does not depend on what else the
+/// machine does. A deadlock takes none, so time by the clock has a limit, too.
+struct SceneTimeLimits {
+    std::chrono::milliseconds processor{10'000}; ///< of all threads together
+    std::chrono::milliseconds clock = 12 * processor;
+};
+
 /// Runs processes that read names of scenes and print a line of JSON for each, as `compare check -` does. Each checks
 /// many scenes, one after the other.
 class SceneChecker {
 public:
-    /// `command` starts a process. A scene hangs that takes more than `seconds` twice: among others, and then alone,
-    /// when no other scene takes its processors.
-    SceneChecker(std::vector<std::string> command, int seconds) : command_(std::move(command)), seconds_(seconds) {}
+    /// `command` starts a process.
+    SceneChecker(std::vector<std::string> command, SceneTimeLimits limits)
+        : command_(std::move(command)), limits_(limits) {}
 
     /// Checks one scene file. Threads may call this at the same time.
     SceneVerdict check(const std::filesystem::path& scene);
 
 private:
-    SceneVerdict check_once(const std::filesystem::path& scene);
-
     std::vector<std::string> command_;
-    int seconds_;
-    std::shared_mutex alone_; ///< locked alone by a scene that is checked alone
+    SceneTimeLimits limits_;
     ObjectPool<Subprocess> processes_;
 };
 

@@ -22,16 +22,16 @@ namespace fs = std::filesystem;
 constexpr int kAttempts = 8; ///< at a scene that is not refused, and not empty
 constexpr double kReduceSeconds = 120;
 
-/// Returns the process that checks scenes, with its budget of memory and seconds for each.
+/// Returns the process that checks scenes, with its budget of memory and time for each.
 SceneChecker scene_checker() {
     std::vector<std::string> command{"/proc/self/exe", "check", "-", "--size", "32x32"};
 #ifdef DUET_SANITIZED // slow, and with a large address space of its own
-    constexpr int kSeconds = 200;
+    constexpr std::chrono::seconds kLimit{200};
 #else
-    constexpr int kSeconds = 10;
+    constexpr std::chrono::seconds kLimit{10};
     command.insert(command.end(), {"--memory", "4096"});
 #endif
-    return SceneChecker(std::move(command), kSeconds);
+    return SceneChecker(std::move(command), {.processor = kLimit});
 }
 
 /// Most scenes are of ordinary size about the origin. The others are tiny, huge or far away, or have numbers from
@@ -129,8 +129,8 @@ StressResult valid_scenes(const StressTest& test, const StressSetting& setting) 
 
 constexpr StressTest kTests[] = {
     {.name = "scenes/valid",
-     .what = "both programs render any scene that the format allows, at 32x32 pixels in 10 seconds and 4 GiB: "
-             "explained hits, valid samples, the same bits for 1 and 3 threads",
+     .what = "both programs render any scene that the format allows, at 32x32 pixels in 10 processor seconds and "
+             "4 GiB: explained hits, valid samples, the same bits for 1 and 3 threads",
      .bound = 0,
      .unit = "failed",
      .source = "the requirements of `compare check`; scenes are drawn by models/scene.schema.json",

@@ -134,8 +134,10 @@ TEST_SUITE("unit") {
             bad) echo noise; echo '{"verdict": "failed", "failure": "invalid samples", "details": "3 of 4"}';;
             refused) echo '{"verdict": "refused", "details": "no camera"}';;
             crash) echo overflow; exit 1;;
-            hang) exec sleep 100;; esac; done)";
-        SceneChecker checker({"sh", "-c", script}, 1);
+            wait) exec sleep 100;;
+            loop) while :; do :; done;; esac; done)";
+        using namespace std::chrono_literals;
+        SceneChecker checker({"sh", "-c", script}, {.processor = 1s, .clock = 60s});
         CHECK_FALSE(checker.check("good").failed());
         const SceneVerdict bad = checker.check("bad"), refused = checker.check("refused");
         CHECK(bad.failure == "invalid samples");
@@ -146,7 +148,8 @@ TEST_SUITE("unit") {
         const SceneVerdict crash = checker.check("crash");
         CHECK(crash.failure == "crash");
         CHECK(crash.details == "overflow");
-        CHECK(checker.check("hang").failure == "hang");
+        CHECK(checker.check("loop").failure == "hang");
         CHECK_FALSE(checker.check("good").failed()); // by a new process
+        CHECK(SceneChecker({"sh", "-c", script}, {.processor = 60s, .clock = 1s}).check("wait").failure == "hang");
     }
 }
