@@ -54,18 +54,37 @@ OctahedralMap halved(const OctahedralMap& fine) {
     return coarse;
 }
 
-OctahedralMap::Texel filtered(const std::vector<OctahedralMap>& mips, const LobeSamples& samples, Vec3 axis) {
-    const Frame frame = frame_from_normal(axis);
-    Rgb sum;
+/// Returns the mean of the lobe's samples about each of some unit directions.
+RgbT<Floats> filtered(const std::vector<OctahedralMap>& mips, const LobeSamples& samples, const Vec3T<Floats>& axis) {
+    const FrameT<Floats> frame = frame_from_normal(axis);
+    RgbT<Floats> sum;
     for (std::size_t i = 0; i < kSamples; ++i) {
         if (samples.weight[i] == 0) continue;
-        const Vec3 w = frame.to_world(samples.w[i]);
-        const OctahedralMap& map = mips[samples.level[i]];
-        const Vec2 p = octahedral(w);
-        const OctahedralMap::Texel& texel = map.texel(cell_of(p.x, map.side()), cell_of(p.y, map.side()));
-        sum += Rgb(texel[0], texel[1], texel[2]) * samples.weight[i];
+        const Vec3T<Floats> w = frame.to_world(Vec3T<Floats>(samples.w[i]));
+        const auto [r, g, b] = mips[samples.level[i]].nearest<3>(w);
+        sum += RgbT<Floats>{r, g, b} * Floats(samples.weight[i]);
     }
-    return {sum.r, sum.g, sum.b, 0};
+    return sum;
+}
+
+/// Sets each texel to the mean of the lobe's samples about its direction.
+void filter(const std::vector<OctahedralMap>& mips, const LobeSamples& samples, OctahedralMap& map, int threads) {
+    const std::size_t side = static_cast<std::size_t>(map.side());
+    parallel_for(side * side / kPacketSize, threads, [&](std::size_t packet) {
+        const auto column = [&](std::size_t i) { return static_cast<int>((packet * kPacketSize + i) % side); };
+        const auto row = [&](std::size_t i) { return static_cast<int>((packet * kPacketSize + i) / side); };
+        PacketOf<float> x, y, z;
+        for (std::size_t i = 0; i < kPacketSize; ++i) {
+            const Vec3 w = map.direction(column(i), row(i));
+            x[i] = w.x, y[i] = w.y, z[i] = w.z;
+        }
+        for (std::size_t i = 0; i < kPacketSize; i += Floats::size) {
+            const RgbT<Floats> mean = filtered(mips, samples, {load(x, i), load(y, i), load(z, i)});
+            store(x, i, mean.r), store(y, i, mean.g), store(z, i, mean.b);
+        }
+        for (std::size_t i = 0; i < kPacketSize; ++i) map.texel(column(i), row(i)) = {x[i], y[i], z[i], 0};
+    });
+    map.finish();
 }
 
 template <typename Value> void for_each_texel(OctahedralMap& map, int threads, const Value& value) {
@@ -95,7 +114,7 @@ RadianceMap::RadianceMap(int side, const Source& without_lights, const Source& w
         OctahedralMap& map = rough_[static_cast<std::size_t>(k)];
         map = OctahedralMap(std::clamp(side >> (k + 1), 8, 64));
         const LobeSamples samples(sqr(roughness), side, mips.size());
-        for_each_texel(map, threads, [&](Vec3 w) { return filtered(mips, samples, w); });
+        filter(mips, samples, map, threads);
     }
 }
 

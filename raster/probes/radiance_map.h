@@ -37,7 +37,7 @@ public:
     bool has_lights() const { return !bright_.empty(); }
     /// Returns the distance of what is visible in directions of any length, without or with lights.
     Floats distance(const Vec3T<Floats>& w, bool lights) const {
-        return (lights && has_lights() ? bright_ : sharp_).nearest(w, 3);
+        return (lights && has_lights() ? bright_ : sharp_).nearest<1>(w, 3)[0];
     }
     std::size_t memory_bytes() const;
 

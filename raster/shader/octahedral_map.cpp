@@ -29,15 +29,4 @@ void OctahedralMap::finish() {
     texel(-1, side_) = texel(last, 0), texel(side_, -1) = texel(0, last);
 }
 
-Floats OctahedralMap::nearest(const Vec3T<Floats>& w, std::size_t channel) const {
-    const Vec2T<Floats> p = octahedral(w);
-    const Floats half(0.5f * static_cast<float>(side_)), last(static_cast<float>(side_ - 1));
-    const auto cell = [&](const Floats& v) {
-        const Ints i = truncated(clamp(v * half + half, Floats(0.0f), last));
-        return xsimd::max(xsimd::min(i, Ints(side_ - 1)), Ints(0)) + Ints(1); // past the border
-    };
-    const Ints at = (cell(p.y) * Ints(side_ + 2) + cell(p.x)) * Ints(static_cast<std::int32_t>(kChannels));
-    return gather(texels_.data()->data() + channel, at);
-}
-
 } // namespace duet::raster

@@ -46,8 +46,9 @@ public:
 
     /// Looks up the first `count` channels bilinearly in directions of any length.
     template <std::size_t kCount> std::array<Floats, kCount> at(const Vec3T<Floats>& w) const;
-    /// Looks up one channel at the nearest texel.
-    Floats nearest(const Vec3T<Floats>& w, std::size_t channel) const;
+    /// Looks up kCount channels from the one with index `first` on, at the texels nearest to directions of any length.
+    template <std::size_t kCount> std::array<Floats, kCount> nearest(const Vec3T<Floats>& w,
+                                                                     std::size_t first = 0) const;
     std::size_t memory_bytes() const { return texels_.size() * sizeof(Texel); }
 
 private:
@@ -75,6 +76,20 @@ template <std::size_t kCount> std::array<Floats, kCount> OctahedralMap::at(const
         const Floats low = lerp(corner(0), corner(static_cast<int>(kChannels)), fx);
         result[c] = lerp(low, lerp(corner(row), corner(row + static_cast<int>(kChannels)), fx), fy);
     }
+    return result;
+}
+
+template <std::size_t kCount> std::array<Floats, kCount> OctahedralMap::nearest(const Vec3T<Floats>& w,
+                                                                                std::size_t first) const {
+    const Vec2T<Floats> p = octahedral(w);
+    const Floats half(0.5f * static_cast<float>(side_)), last(static_cast<float>(side_ - 1));
+    const auto cell = [&](const Floats& v) {
+        const Ints i = truncated(clamp(v * half + half, Floats(0.0f), last));
+        return xsimd::max(xsimd::min(i, Ints(side_ - 1)), Ints(0)) + Ints(1); // past the border
+    };
+    const Ints at = (cell(p.y) * Ints(side_ + 2) + cell(p.x)) * Ints(static_cast<std::int32_t>(kChannels));
+    std::array<Floats, kCount> result;
+    for (std::size_t c = 0; c < kCount; ++c) result[c] = gather(texels_.data()->data() + first + c, at);
     return result;
 }
 
