@@ -112,7 +112,7 @@ void check_header(const ImageBytes& file, const Imf::Header& header) {
         if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1)
             throw Error(
                 message(file.name, ": channel ", channel.name(), " is subsampled, expected a value for each pixel"));
-    constexpr double kMaxBytes = 0x1p32, kMaxTileSide = 4096, kMaxRowsPerChunk = 256;
+    constexpr double kMaxTileSide = 4096, kMaxRowsPerChunk = 256;
     const double pixel = bytes_per_pixel(header);
     const double bytes = pixel * static_cast<double>(window.width) * static_cast<double>(window.height);
     check_pixel_data_size(file, window.width, window.height, bytes / max_compression_ratio(header.compression()),
@@ -125,9 +125,9 @@ void check_header(const ImageBytes& file, const Imf::Header& header) {
                                 kMaxTileSide, " a side"));
         chunk_bytes = std::max(chunk_bytes, pixel * tile.xSize * tile.ySize);
     }
-    if (bytes > kMaxBytes || chunk_bytes > kMaxBytes)
+    if (std::max(bytes, chunk_bytes) > kMaxExrBytes)
         throw Error(message(file.name, ": ", pixel, " bytes a pixel at ", window.width, " x ", window.height,
-                            " pixels, expected at most 4 GiB in all"));
+                            " pixels, expected at most 8 GiB in all"));
 }
 
 Imf::Header read_header(const ImageBytes& file) {

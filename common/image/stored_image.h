@@ -32,6 +32,8 @@ struct StoredImage {
 /// file whose header claims more is rejected before any memory is allocated.
 inline constexpr int kMaxImageSide = 32768;
 inline constexpr long long kMaxImagePixels = 90'000'000;
+/// This limits the bytes of all channels of an EXR file, so that the largest film (raytrace --film) can be read again.
+inline constexpr double kMaxExrBytes = 0x1p33;
 
 /// Holds the options of the formats that have any.
 struct WriteOptions {

@@ -65,6 +65,13 @@ StoredFilm film_of(const Scene& scene, PathTracerSettings settings, const std::f
 
 TEST_SUITE("unit") {
 
+    TEST_CASE("the film of the largest image that can be rendered with one is a file that can be read") {
+        const ScratchFolder folder;
+        write_film(folder / "film.exr", StoredFilm{Film(1, 1), {}, 0});
+        const double pixel = 4.0 * static_cast<double>(read_exr(folder / "film.exr").channels.size());
+        CHECK(pixel * static_cast<double>(kMaxImagePixels) <= kMaxExrBytes);
+    }
+
     TEST_CASE("a film comes back from its file with every bit, and any viewer sees its means") {
         const ScratchFolder folder;
         StoredFilm kept{Film(3, 2), {{"seed", "7"}, {"sampler", "sobol"}}, 12};
