@@ -15,11 +15,6 @@ using Cell = std::array<int, 3>;
 // A block has this many cells along each axis.
 constexpr int kBlockSide = 8;
 
-// A ray in the coordinates of the grid, in which a cell has side 1. The parameter is the distance in meters.
-struct GridRay {
-    Vec3 origin, direction;
-};
-
 // Returns the cell of [low, high) that is nearest to a coordinate. NaN counts as the first.
 int cell_of(float coordinate, int side, int low, int high) {
     const float index = std::floor(coordinate / static_cast<float>(side));
@@ -60,15 +55,13 @@ bool visit_cells(const GridRay& ray, float s, float s_end, int side, const Cell&
     }
 }
 
-} // namespace
-
 /// Represents the density along a ray inside of one cell.
-class DensityGrid::OnRay {
+class CellOnRay {
 public:
-    OnRay(const DensityGrid& grid, const GridRay& ray, const Cell& cell) : ray_(ray) {
-        const auto sx = static_cast<std::size_t>(grid.size_[0]), sy = static_cast<std::size_t>(grid.size_[1]);
+    CellOnRay(const DensityGrid& grid, const GridRay& ray, const Cell& cell) : ray_(ray) {
+        const auto sx = static_cast<std::size_t>(grid.size()[0]), sy = static_cast<std::size_t>(grid.size()[1]);
         const auto index = [&](std::size_t axis) { return static_cast<std::size_t>(cell[axis]); };
-        const float* at = grid.densities_.data() + index(0) + sx * (index(1) + sy * index(2));
+        const float* at = grid.densities().data() + index(0) + sx * (index(1) + sy * index(2));
         for (std::size_t i = 0; i < 4; ++i) {
             const float* row = at + (i & 1u) * sx + (i >> 1) * sx * sy;
             low_[i] = row[0];
@@ -88,36 +81,53 @@ public:
         return lerp(lerp(along_x(0), along_x(1), y), lerp(along_x(2), along_x(3), y), z);
     }
 
-    /// Returns the column between both distances, by Simpson's rule.
+    /// Returns the column between both distances.
     double column(float begin, float end) const {
-        using Floats = FloatBatch<4>;
-        alignas(sizeof(Floats)) std::array<float, 4> at{begin, (begin + end) / 2, end, end};
-        density(Floats::load_aligned(at.data())).store_aligned(at.data());
-        return static_cast<double>(end - begin) * static_cast<double>(at[0] + 4 * at[1] + at[2]) * (1.0 / 6);
+        // Simpson's second rule is exact for polynomials of degree three.
+        const std::array<float, 4> f = densities(begin, end);
+        return static_cast<double>(end - begin) * static_cast<double>(f[0] + 3 * (f[1] + f[2]) + f[3]) * 0.125;
     }
 
     /// Returns where the column from `begin` on, which is more than `wanted` at `end`, equals it: by Newton's method,
-    /// kept inside of the bounds by bisection.
+    /// kept inside of the bounds by bisection. The density is a polynomial in u, which runs from 0 to 1.
     float find(float begin, float end, double wanted) const {
+        const std::array<float, 4> at = densities(begin, end);
+        std::array<double, 4> f{};
+        for (std::size_t i = 0; i < 4; ++i) f[i] = static_cast<double>(at[i]);
+        const double c1 = -5.5 * f[0] + 9 * f[1] - 4.5 * f[2] + f[3];
+        const double c2 = 9 * f[0] - 22.5 * f[1] + 18 * f[2] - 4.5 * f[3];
+        const double c3 = 4.5 * (f[3] - f[0] + 3 * (f[1] - f[2]));
+        const double length = static_cast<double>(end - begin), part = wanted / length;
         constexpr int kMostSteps = 30;
-        float low = begin, high = end, s = (begin + end) / 2;
+        double low = 0, high = 1, u = 0.5;
         for (int i = 0; i < kMostSteps; ++i) {
-            const double excess = column(begin, s) - wanted;
-            (excess > 0 ? high : low) = s;
-            float next = s - static_cast<float>(excess / static_cast<double>(density(s)));
-            if (!(next > low && next < high)) next = low + (high - low) / 2;
-            const bool found = std::abs(next - s) <= 1e-6f * (end - begin);
-            s = next;
+            const double excess = u * (f[0] + u * (c1 / 2 + u * (c2 / 3 + u * (c3 / 4)))) - part;
+            (excess > 0 ? high : low) = u;
+            double next = u - excess / (f[0] + u * (c1 + u * (c2 + u * c3)));
+            if (!(next > low && next < high)) next = (low + high) / 2;
+            const bool found = std::abs(next - u) <= 1e-7;
+            u = next;
             if (found) break;
         }
-        return s;
+        return begin + static_cast<float>(u * length);
     }
 
 private:
+    /// Returns the densities at both distances, and at a third and two thirds of the way.
+    std::array<float, 4> densities(float begin, float end) const {
+        using Floats = FloatBatch<4>;
+        const float third = (end - begin) / 3;
+        alignas(sizeof(Floats)) std::array<float, 4> at{begin, begin + third, end - third, end};
+        density(Floats::load_aligned(at.data())).store_aligned(at.data());
+        return at;
+    }
+
     const GridRay& ray_;
     Vec3 corner_;
     std::array<float, 4> low_{}, high_{}; ///< densities at the corners with the lower and the higher x
 };
+
+} // namespace
 
 DensityGrid::DensityGrid(std::array<int, 3> size, std::vector<float> densities)
     : size_(size), densities_(std::move(densities)) {
@@ -166,34 +176,85 @@ float DensityGrid::density(const Box3& box, Vec3 p) const {
     const GridRay at = grid_ray(size_, box, Ray{p, {0, 0, 0}}, 0);
     Cell cell{};
     for (std::size_t axis = 0; axis < 3; ++axis) cell[axis] = cell_of(at.origin[axis], 1, 0, size_[axis] - 1);
-    return OnRay(*this, at, cell).density(0.0f);
+    return CellOnRay(*this, at, cell).density(0.0f);
+}
+
+template <typename Visit>
+bool DensityGrid::visit_filled_cells(const GridRay& ray, float s, float s_end, Visit visit) const {
+    return visit_cells(ray, s, s_end, kBlockSide, {}, blocks_, [&](const Cell& block, float begin, float end) {
+        if (empty_[block_index(block[0], block[1], block[2])]) return true;
+        Cell low{}, high{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            low[axis] = block[axis] * kBlockSide;
+            high[axis] = std::min(low[axis] + kBlockSide, size_[axis] - 1);
+        }
+        return visit_cells(ray, begin, end, 1, low, high, visit);
+    });
 }
 
 DensityGrid::Reached DensityGrid::follow(const Box3& box, const Ray& ray, Interval inside, double column) const {
     const GridRay local = grid_ray(size_, box, ray, inside.begin);
     Reached reached{kInfinity, 0};
-    if (!is_finite(local.origin) || !is_finite(local.direction)) return reached; // the box is thinner than floats are
-    visit_cells(local, 0, inside.end - inside.begin, kBlockSide, {}, blocks_,
-                [&](const Cell& block, float s, float s_end) {
-                    if (empty_[block_index(block[0], block[1], block[2])]) return true;
-                    Cell low{}, high{};
-                    for (std::size_t axis = 0; axis < 3; ++axis) {
-                        low[axis] = block[axis] * kBlockSide;
-                        high[axis] = std::min(low[axis] + kBlockSide, size_[axis] - 1);
-                    }
-                    return visit_cells(local, s, s_end, 1, low, high, [&](const Cell& cell, float begin, float end) {
-                        const OnRay densities(*this, local, cell);
-                        const double more = densities.column(begin, end);
-                        if (reached.column + more <= column) {
-                            reached.column += more;
-                            return true;
-                        }
-                        reached.t = inside.begin + densities.find(begin, end, column - reached.column);
-                        reached.column = column;
-                        return false;
-                    });
-                });
+    if (!local.is_finite()) return reached;
+    visit_filled_cells(local, 0, inside.end - inside.begin, [&](const Cell& cell, float begin, float end) {
+        const CellOnRay densities(*this, local, cell);
+        const double more = densities.column(begin, end);
+        if (reached.column + more <= column) {
+            reached.column += more;
+            return true;
+        }
+        reached.t = inside.begin + densities.find(begin, end, column - reached.column);
+        reached.column = column;
+        return false;
+    });
     return reached;
+}
+
+DensityOnRay::DensityOnRay(const DensityGrid& grid, const Box3& box, const Ray& ray, Interval inside)
+    : grid_(&grid), ray_(grid_ray(grid.size(), box, ray, inside.begin)), inside_(inside) {
+    if (!ray_.is_finite()) followed_ = inside.end - inside.begin;
+}
+
+// Follows the ray until the column is above the given one, or up to the distance s_end if that is nearer.
+void DensityOnRay::extend(double column, float s_end) {
+    const float s_last = inside_.end - inside_.begin;
+    if (column_ > column || followed_ >= std::min(s_end, s_last)) return;
+    const bool to_the_end =
+        grid_->visit_filled_cells(ray_, followed_, s_last, [&](const Cell& cell, float begin, float end) {
+            const double before = column_;
+            column_ += CellOnRay(*grid_, ray_, cell).column(begin, end);
+            steps_.push_back({cell, begin, end, before, column_});
+            followed_ = end;
+            return column_ <= column && end < s_end;
+        });
+    if (to_the_end) followed_ = s_last;
+}
+
+std::vector<DensityOnRay::Step>::const_iterator DensityOnRay::step_that_passes(double column) {
+    extend(column, kInfinity);
+    return std::ranges::upper_bound(steps_, column, {}, &Step::column_after);
+}
+
+float DensityOnRay::passed_by(double column) {
+    const auto step = step_that_passes(column);
+    return step == steps_.end() ? kInfinity : inside_.begin + step->end;
+}
+
+DensityGrid::Reached DensityOnRay::follow(double column) {
+    const auto step = step_that_passes(column);
+    if (step == steps_.end()) return {kInfinity, column_};
+    const float s = CellOnRay(*grid_, ray_, step->cell).find(step->begin, step->end, column - step->column_before);
+    return {inside_.begin + s, column};
+}
+
+double DensityOnRay::column(float t) {
+    const float s = t - inside_.begin;
+    extend(std::numeric_limits<double>::infinity(), s);
+    const auto next = std::ranges::lower_bound(steps_, s, {}, &Step::begin); // the first that begins at s or behind
+    if (next == steps_.begin()) return 0;
+    const Step& step = *std::prev(next);
+    if (s >= step.end) return step.column_after;
+    return step.column_before + CellOnRay(*grid_, ray_, step.cell).column(step.begin, s);
 }
 
 } // namespace duet

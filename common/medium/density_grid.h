@@ -12,6 +12,14 @@
 
 namespace duet {
 
+/// A ray in the coordinates of a grid, in which a cell has side 1. The parameter is the distance in meters.
+struct GridRay {
+    Vec3 origin, direction;
+
+    /// Returns false where the box is thinner than floats are.
+    bool is_finite() const { return duet::is_finite(origin) && duet::is_finite(direction); }
+};
+
 /// The grid fills a box, which each function takes as an argument: its first and last points lie on the sides of the
 /// box. The density has no unit.
 class DensityGrid {
@@ -34,12 +42,13 @@ public:
     };
     /// Follows a ray through an interval on which it is inside of the box, until the integral of the density over the
     /// distance, which is called the column, has the given value, > 0 or infinite. In meters. It is as exact as floats
-    /// are: inside of a cell the density along a ray is a cubic polynomial, which Simpson's rule integrates exactly.
-    /// Blocks of cells without density are skipped.
+    /// are: inside of a cell the density along a ray is a cubic polynomial, which Simpson's second rule integrates
+    /// exactly. Blocks of cells without density are skipped.
     Reached follow(const Box3& box, const Ray& ray, Interval inside, double column) const;
 
 private:
-    class OnRay;
+    friend class DensityOnRay;
+    template <typename Visit> bool visit_filled_cells(const GridRay& ray, float s, float s_end, Visit visit) const;
     std::size_t block_index(int x, int y, int z) const {
         return static_cast<std::size_t>(x + blocks_[0] * (y + blocks_[1] * z));
     }
@@ -49,6 +58,36 @@ private:
     std::array<int, 3> blocks_{};      ///< number of blocks along each axis
     std::vector<unsigned char> empty_; ///< for each block, whether it has no density
     float largest_ = 0;
+};
+
+/// A DensityOnRay is the density of a grid along a ray. It follows the ray once, no farther than it is asked, and
+/// remembers the columns of the cells.
+class DensityOnRay {
+public:
+    /// Keeps a reference to the grid. On the interval the ray is inside of the box.
+    DensityOnRay(const DensityGrid& grid, const Box3& box, const Ray& ray, Interval inside);
+    /// Returns what DensityGrid::follow returns.
+    DensityGrid::Reached follow(double column);
+    /// Returns the distance by which a column has been passed, up to a cell too long; infinite if it never is.
+    float passed_by(double column);
+    /// Returns the column from the begin of the interval up to a t in it, in meters.
+    double column(float t);
+
+private:
+    struct Step { // through a cell
+        std::array<int, 3> cell;
+        float begin, end; // distances from the begin of the interval
+        double column_before, column_after;
+    };
+    void extend(double column, float s_end);
+    std::vector<Step>::const_iterator step_that_passes(double column);
+
+    const DensityGrid* grid_;
+    GridRay ray_;
+    Interval inside_;
+    std::vector<Step> steps_; // through cells of blocks that are not empty
+    float followed_ = 0;      // the distance up to which steps_ go
+    double column_ = 0;       // that of followed_
 };
 
 } // namespace duet

@@ -185,7 +185,8 @@ void collisions(Trial& trial) {
     const float t_end = random.coin() ? kInfinity : scale * random.log_uniform(1e-3f, 10);
     const Rgb before(random.uniform() + 1e-3f, random.coin() ? 0 : random.uniform(), random.uniform());
     Rgb after = before, emitted;
-    const auto collision = raytrace::sample_collision(media, ray, t_end, random.uniform(), after, emitted);
+    raytrace::MediaOnRay on_ray(media, ray, t_end);
+    const auto collision = raytrace::sample_collision(on_ray, random.uniform(), after, emitted);
     const auto sum = [](Rgb color) { return static_cast<double>(color.r) + static_cast<double>(color.g + color.b); };
     const double ratio = sum(after) / sum(before);
     const bool absorbs = std::ranges::any_of(media, [](const Medium& m) { return !is_black(m.absorption); });

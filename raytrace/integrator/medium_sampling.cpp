@@ -17,29 +17,29 @@ template <typename Function> Rgb for_channels(const Function& function) {
     return {function(0), function(1), function(2)};
 }
 
-// Returns the optical depth of all media but media[index] on [0, t_end] of the ray.
-Rgb depth_of_others(std::span<const Medium> media, std::size_t index, const Ray& ray, float t_end) {
-    return optical_depth(media.first(index), ray.origin, ray.direction, t_end) +
-           optical_depth(media.subspan(index + 1), ray.origin, ray.direction, t_end);
+// Returns the optical depth of all media but media[index] up to t.
+Rgb depth_of_others(MediaOnRay& media, std::size_t index, float t) {
+    Rgb depth;
+    for (std::size_t i = 0; i < media.size(); ++i)
+        if (i != index) depth += optical_depth(media[i].medium(), media[i].column(t));
+    return depth;
 }
 // Returns whether another medium than media[index] is on the interval of the ray.
-bool others_overlap(std::span<const Medium> media, std::size_t index, const Ray& ray, Interval interval) {
+bool others_overlap(MediaOnRay& media, std::size_t index, Interval interval) {
     for (std::size_t i = 0; i < media.size(); ++i) {
-        const Interval other = overlap(media[i].box, ray, interval.end);
+        const Interval other{media[i].inside().begin, std::min(media[i].inside().end, interval.end)};
         if (i != index && !other.empty() && other.end > interval.begin) return true;
     }
     return false;
 }
 
-// Returns the light that a medium emits on [0, t_end] of the ray, times the path's throughput. A medium alone is
-// integrated in closed form, whatever its density is. If others overlap it on the ray, the light of one random point
-// stands for all.
-Rgb sample_emission(std::span<const Medium> media, std::size_t index, const Ray& ray, float t_end, Rgb throughput,
-                    RandomSequence& random) {
-    const Medium& medium = media[index];
+// Returns the light that a medium emits on the ray, times the path's throughput. A medium alone is integrated in closed
+// form, whatever its density is. If others overlap it on the ray, the light of one random point stands for all.
+Rgb sample_emission(MediaOnRay& media, std::size_t index, Rgb throughput, RandomSequence& random) {
+    const Medium& medium = media[index].medium();
     if (is_black(throughput * medium.absorption * medium.radiance)) return {};
-    const Interval inside = overlap(medium.box, ray, t_end);
-    const float column = column_of(medium, ray.origin, ray.direction, inside);
+    const Interval inside = media[index].inside();
+    const float column = media[index].column(inside.end);
     if (!(column > 0)) return {};
     // Of the light that the medium stops, σa / (σs + σa) is absorbed, and it emits as much of its radiance.
     const Rgb extinction = medium.scattering + medium.absorption;
@@ -49,20 +49,20 @@ Rgb sample_emission(std::span<const Medium> media, std::size_t index, const Ray&
                        });
     const Rgb alone = source * stopped;
     if (is_black(alone)) return {};
-    if (!others_overlap(media, index, ray, inside))
-        return alone * transmittance(depth_of_others(media, index, ray, inside.begin));
+    if (!others_overlap(media, index, inside))
+        return alone * transmittance(depth_of_others(media, index, inside.begin));
 
     const ChosenChannel channel(alone, random());
     const float sigma = extinction[channel.index]; // > 0, because the medium emits in this channel
     const float passed = -std::log1p(-random() * stopped[channel.index]) / sigma;
-    const float t = std::min(follow(medium, ray, inside, passed).t, inside.end);
+    const float t = std::min(media[index].follow(inside.begin, passed).t, inside.end);
     const Rgb before = for_channels([&](std::size_t c) { return std::exp(-extinction[c] * passed); });
     const Rgb density =
         for_channels([&](std::size_t c) { return alone[c] > 0 ? extinction[c] * before[c] / stopped[c] : 0.0f; });
-    return source * extinction * before * transmittance(depth_of_others(media, index, ray, t)) / channel.mean(density);
+    return source * extinction * before * transmittance(depth_of_others(media, index, t)) / channel.mean(density);
 }
 
-// The optical depths of all media up to a point of a ray.
+// The optical depths of media up to a point of a ray.
 struct OpticalDepths {
     Rgb extinction, scattering;
 
@@ -72,38 +72,30 @@ struct OpticalDepths {
         scattering += Rgb(product(s.r, column), product(s.g, column), product(s.b, column));
     }
 };
-OpticalDepths optical_depths(std::span<const Medium> media, const Ray& ray, float t_end) {
-    OpticalDepths depths;
-    for (const Medium& medium : media)
-        depths.add(medium, column_of(medium, ray.origin, ray.direction, overlap(medium.box, ray, t_end)));
-    return depths;
-}
 
 } // namespace
 
-std::optional<MediumCollision> sample_collision(std::span<const Medium> media, const Ray& ray, float t_end, float u,
-                                                Rgb& throughput, Rgb& emitted) {
+std::optional<MediumCollision> sample_collision(MediaOnRay& media, float u, Rgb& throughput, Rgb& emitted) {
     if (is_black(throughput)) return std::nullopt;
     RandomSequence random(u);
-    for (std::size_t i = 0; i < media.size(); ++i) emitted += sample_emission(media, i, ray, t_end, throughput, random);
+    for (std::size_t i = 0; i < media.size(); ++i) emitted += sample_emission(media, i, throughput, random);
     const ChosenChannel channel(throughput, random());
-    OpticalDepths depths; // up to the first collision so far
+    float t_end = media.t_end(); // that of the first collision so far
     const Medium* collided = nullptr;
     bool first = true; // the given number, which samples spread evenly, is that of the first medium on the ray
-    for (std::size_t i = 0; i < media.size(); ++i) {
-        const Interval inside = overlap(media[i].box, ray, t_end);
-        if (inside.empty()) continue;
+    for (MediumOnRay& on_ray : media) {
+        const Interval inside = on_ray.inside();
+        if (inside.empty() || inside.begin > t_end) continue;
         const float depth = -std::log1p(first ? -u : -random());
         first = false;
-        const float sigma = media[i].scattering[channel.index];
-        const PassedColumn passed = follow(media[i], ray, inside, sigma > 0 ? depth / sigma : kInfinity);
-        if (passed.t < t_end) {
-            t_end = passed.t;
-            collided = &media[i];
-            depths = optical_depths(media.first(i), ray, t_end);
-        }
-        depths.add(media[i], passed.column);
+        const float sigma = on_ray.medium().scattering[channel.index];
+        const float t = sigma > 0 ? on_ray.follow(inside.begin, depth / sigma).t : kInfinity;
+        if (!(t < t_end)) continue;
+        t_end = t;
+        collided = &on_ray.medium();
     }
+    OpticalDepths depths;
+    for (MediumOnRay& on_ray : media) depths.add(on_ray.medium(), on_ray.column(t_end));
     Rgb value = transmittance(depths.extinction), density = transmittance(depths.scattering);
     if (collided != nullptr) {
         value *= collided->scattering;

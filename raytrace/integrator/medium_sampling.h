@@ -1,7 +1,7 @@
 // Where media scatter a path, and what they emit along its ray.
 #pragma once
 
-#include "common/medium/medium.h"
+#include "raytrace/integrator/media_on_ray.h"
 
 #include <optional>
 #include <span>
@@ -13,7 +13,7 @@ struct MediumCollision {
     float t = 0;
     float asymmetry = 0; ///< that of the medium
 };
-/// Follows a path along [0, t_end] of its ray. Returns where a medium scatters it, or nothing if it arrives at t_end.
+/// Follows a path along its ray. Returns where a medium scatters it, or nothing if it arrives at the ray's end.
 /// `throughput` is multiplied by the transmittance and, at a collision, by the coefficient of scattering, divided by
 /// the density of this outcome. `emitted` is increased by the mean of what the media emit on the way, times the
 /// throughput. The outcome is decided by u in [0, 1).
@@ -23,8 +23,7 @@ struct MediumCollision {
 /// needed. All channels share one path, even if a medium scatters them differently: depths are drawn for a channel that
 /// is chosen in proportion to the throughput, and the density is the mean over that choice, so that weights stay
 /// bounded (Wilkie et al. 2014, "Hero Wavelength Spectral Sampling"). Absorption only changes the weight.
-std::optional<MediumCollision> sample_collision(std::span<const Medium> media, const Ray& ray, float t_end, float u,
-                                                Rgb& throughput, Rgb& emitted);
+std::optional<MediumCollision> sample_collision(MediaOnRay& media, float u, Rgb& throughput, Rgb& emitted);
 
 /// Returns an unbiased estimate of the fraction of light that the media let through on [0, t_end] of a ray. It is exact
 /// for media of even density. Of what comes through deep clouds only a random part is followed: where less than 5 % of

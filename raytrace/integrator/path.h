@@ -286,15 +286,16 @@ private:
     // scatter from delta lights. Returns where they scatter the path itself, if they do.
     std::optional<MediumCollision> pass_media(const Ray& ray, float t_end, int depth, const VertexRandomSamples& u) {
         if (!plan_.scene.needs.media || medium_stack_.in_dielectric()) return std::nullopt;
-        if (plan_.delta_lights > 0 && depth < plan_.max_depth) add_scattered_light(ray, t_end, depth, u);
+        MediaOnRay media(plan_.scene.media, ray, t_end);
+        if (plan_.delta_lights > 0 && depth < plan_.max_depth) add_scattered_light(media, depth, u);
         Rgb emitted;
-        const auto collision = sample_collision(plan_.scene.media, ray, t_end, u.distance, state_.throughput, emitted);
+        const auto collision = sample_collision(media, u.distance, state_.throughput, emitted);
         if (!is_black(emitted)) sink_.add(emitted, LightSource::kOther, depth);
         return collision;
     }
 
-    void add_scattered_light(const Ray& ray, float t_end, int bounces, const VertexRandomSamples& u) {
-        const std::optional<ScatteredLight> s = sample_scattered_light(plan_, ray, t_end, u.light);
+    void add_scattered_light(MediaOnRay& media, int bounces, const VertexRandomSamples& u) {
+        const std::optional<ScatteredLight> s = sample_scattered_light(plan_, media, u.light);
         if (!s) return;
         ++counts_.shadow;
         const bool visible = unoccluded(plan_, s->vertex, s->light);

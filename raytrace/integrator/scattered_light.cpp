@@ -11,12 +11,12 @@ namespace duet::raytrace {
 
 namespace {
 
-// Returns the part of [0, t_end] from the first to the last point at which a medium scatters light, if there is any.
-Interval scattering_range(std::span<const Medium> media, const Ray& ray, float t_end) {
-    Interval range{t_end, 0};
-    for (const Medium& medium : media) {
-        const Interval inside = overlap(medium.box, ray, t_end);
-        if (inside.empty() || is_black(medium.scattering)) continue;
+// Returns the part of a ray from the first to the last point at which a medium scatters light, if there is any.
+Interval scattering_range(MediaOnRay& media) {
+    Interval range{media.t_end(), 0};
+    for (const MediumOnRay& medium : media) {
+        const Interval inside = medium.inside();
+        if (inside.empty() || is_black(medium.medium().scattering)) continue;
         range.begin = std::min(range.begin, inside.begin);
         range.end = std::max(range.end, inside.end);
     }
@@ -109,19 +109,19 @@ std::optional<ChosenLight> choose_light(const RenderPlan& plan, const Ray& ray, 
 
 } // namespace
 
-std::optional<ScatteredLight> sample_scattered_light(const RenderPlan& plan, const Ray& ray, float t_end, Vec2 u) {
+std::optional<ScatteredLight> sample_scattered_light(const RenderPlan& plan, MediaOnRay& on_ray, Vec2 u) {
     const std::vector<Medium>& media = plan.scene.media;
-    const Interval range = scattering_range(media, ray, t_end);
+    const Ray& ray = on_ray.ray();
+    const Interval range = scattering_range(on_ray);
     if (range.empty()) return std::nullopt;
-    const StoppedDistance stopped(media, ray, range);
+    StoppedDistance stopped(on_ray, range);
     const std::optional<ChosenLight> chosen = choose_light(plan, ray, range, stopped, u.y);
     if (!chosen) return std::nullopt;
-    const LightOnRay& on_ray = chosen->on_ray;
-    const bool lights_all = on_ray.range.begin == range.begin && on_ray.range.end == range.end;
+    const Interval lit = chosen->on_ray.range;
     std::optional<StoppedDistance> stopped_there;
-    if (!lights_all) stopped_there.emplace(media, ray, on_ray.range);
+    if (lit.begin != range.begin || lit.end != range.end) stopped_there.emplace(on_ray, lit);
     if (!(stopped_there ? *stopped_there : stopped).possible()) return std::nullopt;
-    const ScatteringDistance distance(stopped_there ? *stopped_there : stopped, on_ray.angle);
+    ScatteringDistance distance(stopped_there ? *stopped_there : stopped, chosen->on_ray.angle);
     const float t = distance.sample(u.x);
     if (t == kInfinity) return std::nullopt;
     const MediumVertex vertex{ray.at(t), ray.direction, ray.time, 0};
@@ -160,59 +160,60 @@ float EquiangularDistance::pdf(float t) const {
     return height_ / (angle_ * (sqr(height_) + sqr(begin_ + (t - range_.begin))));
 }
 
-StoppedDistance::StoppedDistance(std::span<const Medium> media, const Ray& ray, Interval range)
-    : media_(media), ray_(ray), range_(range), lit_length_(range.end - range.begin) {
+StoppedDistance::StoppedDistance(MediaOnRay& media, Interval range)
+    : media_(media), range_(range), lit_length_(range.end - range.begin) {
     constexpr float kDeep = 4; // an optical depth behind which 2 % of the light are left
     for (std::size_t i = 0; i < media_.size(); ++i) {
-        const Medium& medium = media_[i];
+        const Medium& medium = media_[i].medium();
         shares_[i] = Rgb();
-        const Interval in = inside(medium);
+        const Interval in = inside(media_[i]);
         if (in.empty() || is_black(medium.scattering)) continue;
         const Rgb sigma = medium.scattering + medium.absorption;
         float least = max_component(sigma);
         for (std::size_t c = 0; c < 3; ++c)
             if (sigma[c] > 0) least = std::min(least, sigma[c]);
-        const PassedColumn passed = follow(medium, ray_, in, kDeep / least);
-        const bool deep = passed.t < kInfinity;
+        const float passed_by = media_[i].passed_by(in.begin, kDeep / least);
+        const bool deep = passed_by < in.end;
+        const float column = deep ? kInfinity : media_[i].column(in.end) - media_[i].column(in.begin);
         for (std::size_t c = 0; c < 3; ++c) {
-            shares_[i][c] = sigma[c] == 0 ? 0 : deep ? 1 : -std::expm1(-sigma[c] * passed.column);
+            shares_[i][c] = sigma[c] == 0 ? 0 : -std::expm1(-sigma[c] * column);
             stopped_ += shares_[i][c];
         }
         const float largest = medium.density ? medium.density->largest() : 1;
-        if (deep) lit_length_ = std::min(lit_length_, std::max(passed.t - range_.begin, kDeep / (least * largest)));
+        if (deep) lit_length_ = std::min(lit_length_, std::max(passed_by - range_.begin, kDeep / (least * largest)));
     }
 }
 
-Interval StoppedDistance::inside(const Medium& medium) const {
-    const Interval all = overlap(medium.box, ray_, range_.end);
-    return {std::max(all.begin, range_.begin), all.end};
+Interval StoppedDistance::inside(const MediumOnRay& medium) const {
+    return {std::max(medium.inside().begin, range_.begin), std::min(medium.inside().end, range_.end)};
 }
 
-float StoppedDistance::sample(float u) const {
+float StoppedDistance::sample(float u) {
     float left = u * stopped_;
     for (std::size_t i = 0; i < media_.size(); ++i)
         for (std::size_t c = 0; c < 3; ++c) {
             if (left < shares_[i][c]) {
-                const float sigma = media_[i].scattering[c] + media_[i].absorption[c];
-                return follow(media_[i], ray_, inside(media_[i]), -std::log1p(-left) / sigma).t;
+                const float sigma = media_[i].medium().scattering[c] + media_[i].medium().absorption[c];
+                const Interval in = inside(media_[i]);
+                const float t = media_[i].follow(in.begin, -std::log1p(-left) / sigma).t;
+                return t < in.end ? t : kInfinity;
             }
             left -= shares_[i][c];
         }
     return kInfinity;
 }
 
-PointOnRay StoppedDistance::at(float t) const {
+PointOnRay StoppedDistance::at(float t) {
     PointOnRay point;
     Rgb depth;
     for (std::size_t i = 0; i < media_.size(); ++i) {
-        const Medium& medium = media_[i];
-        const Interval all = overlap(medium.box, ray_, t);
-        const Interval in{std::max(all.begin, range_.begin), all.end},
-            earlier{all.begin, std::min(all.end, range_.begin)};
-        const float column = column_of(medium, ray_.origin, ray_.direction, in);
-        depth += optical_depth(medium, column + column_of(medium, ray_.origin, ray_.direction, earlier));
+        const Medium& medium = media_[i].medium();
+        const float all = media_[i].column(t);
+        depth += optical_depth(medium, all);
+        const Interval in = inside(media_[i]);
         if (!(in.begin <= t) || in.end < t) continue; // t is not in the medium; it may be its begin
-        const float density = density_at(medium, ray_.at(t));
+        const float column = all - media_[i].column(range_.begin);
+        const float density = density_at(medium, media_.ray().at(t));
         for (std::size_t c = 0; c < 3; ++c)
             if (const float sigma = medium.scattering[c] + medium.absorption[c]; shares_[i][c] > 0)
                 point.pdf += sigma * density * std::exp(-sigma * column);
@@ -222,12 +223,12 @@ PointOnRay StoppedDistance::at(float t) const {
     return point;
 }
 
-float ScatteringDistance::sample(float u) const {
+float ScatteringDistance::sample(float u) {
     if (!angle_) return stopped_.sample(u);
     return u < 0.5f ? angle_->sample(2 * u) : stopped_.sample(2 * u - 1);
 }
 
-PointOnRay ScatteringDistance::at(float t) const {
+PointOnRay ScatteringDistance::at(float t) {
     PointOnRay point = stopped_.at(t);
     if (angle_) point.pdf = (angle_->pdf(t) + point.pdf) / 2;
     return point;

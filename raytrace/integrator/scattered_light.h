@@ -1,12 +1,11 @@
 // Light of points and suns that media scatter towards a path, looked for along a whole ray.
 #pragma once
 
-#include "common/medium/medium.h"
+#include "raytrace/integrator/media_on_ray.h"
 #include "raytrace/integrator/medium_vertex.h"
 
 #include <array>
 #include <optional>
-#include <span>
 
 namespace duet::raytrace {
 
@@ -16,9 +15,9 @@ struct ScatteredLight {
     LightLiSample light;
     Rgb radiance; ///< what arrives at the begin of the ray over the density of the sample, unless light is occluded
 };
-/// Samples the light of the plan's delta lights that media scatter on [0, t_end] of the ray. u in [0, 1)² chooses the
-/// distance and the light. Returns nothing if the sample is dark.
-std::optional<ScatteredLight> sample_scattered_light(const RenderPlan& plan, const Ray& ray, float t_end, Vec2 u);
+/// Samples the light of the plan's delta lights that media scatter along a ray. u in [0, 1)² chooses the distance and
+/// the light. Returns nothing if the sample is dark.
+std::optional<ScatteredLight> sample_scattered_light(const RenderPlan& plan, MediaOnRay& media, Vec2 u);
 
 /// Draws a distance along a ray with a density in proportion to 1 / (distance to a light)², which cancels the falloff
 /// of its light (Kulla and Fajardo 2012, "Importance Sampling Techniques for Path Tracing in Participating Media", §4).
@@ -49,19 +48,19 @@ struct PointOnRay {
 /// if it never ended, so that it is not followed to its end. Then a sample may lie behind its end, and is none.
 class StoppedDistance {
 public:
-    StoppedDistance(std::span<const Medium> media, const Ray& ray, Interval range);
+    /// Keeps a reference to the media.
+    StoppedDistance(MediaOnRay& media, Interval range);
     bool possible() const { return stopped_ > 0; } ///< whether media stop any light on the range
-    float sample(float u) const;                   ///< for u in [0, 1); infinite if there is none
-    PointOnRay at(float t) const;                  ///< for a t of the range
+    float sample(float u);                         ///< for u in [0, 1); infinite if there is none
+    PointOnRay at(float t);                        ///< for a t of the range
     /// Returns the length that a light lights from aside, roughly: that of the range, less what lies behind dense
     /// media.
     float lit_length() const { return lit_length_; }
 
 private:
-    Interval inside(const Medium& medium) const;
+    Interval inside(const MediumOnRay& medium) const;
 
-    std::span<const Medium> media_;
-    Ray ray_;
+    MediaOnRay& media_;
     Interval range_;
     std::array<Rgb, kMaxMedia> shares_; ///< by channel, the fraction of light that each medium would stop
     float stopped_ = 0;                 ///< their sum
@@ -73,14 +72,14 @@ private:
 class ScatteringDistance {
 public:
     /// Keeps references to both.
-    ScatteringDistance(const StoppedDistance& stopped, const std::optional<EquiangularDistance>& angle)
+    ScatteringDistance(StoppedDistance& stopped, const std::optional<EquiangularDistance>& angle)
         : stopped_(stopped), angle_(angle) {}
     /// Returns a distance t of the range, for u in [0, 1), or infinity for no sample. Media must stop some light there.
-    float sample(float u) const;
-    PointOnRay at(float t) const; ///< for a t of the range
+    float sample(float u);
+    PointOnRay at(float t); ///< for a t of the range
 
 private:
-    const StoppedDistance& stopped_;
+    StoppedDistance& stopped_;
     const std::optional<EquiangularDistance>& angle_;
 };
 

@@ -160,8 +160,8 @@ TEST_SUITE("unit") {
             for (std::uint64_t i = 0; i < 200000; ++i) {
                 Rgb throughput(1, 0.5f, 2), emitted;
                 const float u = unit_float(high_bits(stream_number(mix_bits(seed), i)));
-                const auto collision =
-                    sample_collision(media, Ray{{0, 0, 0}, {0, 0, 1}}, distance, u, throughput, emitted);
+                MediaOnRay on_ray(media, Ray{{0, 0, 0}, {0, 0, 1}}, distance);
+                const auto collision = sample_collision(on_ray, u, throughput, emitted);
                 CHECK(is_black(emitted));
                 if (collision) CHECK((collision->t >= 0 && collision->t <= distance));
                 if (collision) asymmetry.add(static_cast<double>(collision->asymmetry));
@@ -210,11 +210,12 @@ TEST_SUITE("unit") {
         for (std::size_t i = 0; i < std::size(cases); ++i) {
             CAPTURE(i);
             const auto& [light, range, media] = cases[i];
-            const StoppedDistance stopped(media, ray, range);
+            MediaOnRay on_ray(media, ray, range.end);
+            StoppedDistance stopped(on_ray, range);
             REQUIRE(stopped.possible());
             std::optional<EquiangularDistance> angle;
             if (light) angle.emplace(ray, range, *light);
-            const ScatteringDistance distance(stopped, angle);
+            ScatteringDistance distance(stopped, angle);
             constexpr int kSamples = 20000;
             std::vector<float> samples;
             for (int k = 0; k < kSamples; ++k)
@@ -276,7 +277,8 @@ TEST_SUITE("unit") {
         for (std::uint64_t i = 0; i < kSamples; ++i) {
             Rgb throughput(1, 1, 1), emitted;
             const float u = unit_float(high_bits(stream_number(mix_bits(9), i)));
-            const auto collision = sample_collision(media, ray, 3, u, throughput, emitted);
+            MediaOnRay on_ray(media, ray, 3);
+            const auto collision = sample_collision(on_ray, u, throughput, emitted);
             for (std::size_t c = 0; c < 3; ++c) {
                 arrived[c].add(collision ? 0 : static_cast<double>(throughput[c]));
                 scattered[c].add(collision ? static_cast<double>(throughput[c]) : 0);
@@ -312,7 +314,8 @@ TEST_SUITE("unit") {
         WeightMean found[3];
         for (std::uint64_t i = 0; i < 100000; ++i) {
             Rgb throughput(1, 1, 1), emitted;
-            sample_collision(media, ray, 2, unit_float(high_bits(stream_number(mix_bits(10), i))), throughput, emitted);
+            MediaOnRay on_ray(media, ray, 2);
+            sample_collision(on_ray, unit_float(high_bits(stream_number(mix_bits(10), i))), throughput, emitted);
             for (std::size_t c = 0; c < 3; ++c) found[c].add(static_cast<double>(emitted[c]));
         }
         Rgbd truth;

@@ -47,6 +47,26 @@ Ray random_ray(Random& random, const Box3& box, int kind) {
     return Ray{point() - direction * (kind % 2 == 0 ? 0 : 3 * size.x), direction};
 }
 
+// Asks a ray that remembers what it has passed for near and far points in turn.
+void check_remembered_columns(const Medium& medium, const Ray& ray, Interval inside, float whole) {
+    DensityOnRay on_ray(*medium.density, medium.box, ray, inside);
+    const float rounding = medium.density->largest() * inside.end * 2e-7f; // of t
+    for (const float part : {0.01f, 0.7f, 0.3f, 0.95f, 1.01f}) {
+        CAPTURE(part);
+        const double wanted = static_cast<double>(part * whole);
+        const DensityGrid::Reached reached = on_ray.follow(wanted);
+        const PassedColumn expected = follow(medium, ray, inside, part * whole);
+        REQUIRE((reached.t < kInfinity) == (expected.t < kInfinity));
+        CHECK(static_cast<float>(reached.column) == doctest::Approx(expected.column).epsilon(1e-5));
+        CHECK(on_ray.passed_by(wanted) >= reached.t);
+        if (reached.t == kInfinity) continue;
+        for (const float t : {reached.t, expected.t})
+            CHECK(std::abs(static_cast<float>(on_ray.column(t)) - part * whole) <= 1e-5f * whole + rounding);
+    }
+    CHECK(static_cast<float>(on_ray.column(inside.begin)) == 0);
+    CHECK(static_cast<float>(on_ray.column(inside.end)) == doctest::Approx(whole).epsilon(1e-5));
+}
+
 } // namespace
 
 TEST_SUITE("unit") {
@@ -105,6 +125,7 @@ TEST_SUITE("unit") {
                             CHECK(std::abs(before - part * found) <= 1e-5f * found + rounding);
                         }
                         CHECK(follow(medium, ray, inside, 1.01f * found).t == kInfinity);
+                        check_remembered_columns(medium, ray, inside, found);
                     }
                 }
     }
