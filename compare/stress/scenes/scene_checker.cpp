@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 namespace duet::compare {
 
@@ -12,12 +13,15 @@ namespace {
 /// Returns the next line of JSON, or the reason why there is none. Other lines, such as a sanitizer's, go to `output`.
 Subprocess::Read read_result(Subprocess& process, SceneTimeLimits limits, std::string& output) {
     constexpr std::chrono::milliseconds kPoll{50}; // between two looks at the processor time
-    const auto deadline = std::chrono::steady_clock::now() + limits.clock;
     const auto processor_limit = process.processor_time() + limits.processor;
+    auto processor_time = process.processor_time();
+    auto last_progress = std::chrono::steady_clock::now();
     for (;;) {
         Subprocess::Read read = process.read_line(kPoll);
-        const bool in_time =
-            std::chrono::steady_clock::now() < deadline && process.processor_time() < processor_limit;
+        const auto now = std::chrono::steady_clock::now();
+        const auto before = std::exchange(processor_time, process.processor_time());
+        if (processor_time > before) last_progress = now;
+        const bool in_time = processor_time < processor_limit && now - last_progress < limits.waiting;
         if (read.status == Subprocess::Status::kTimeout && in_time) continue;
         if (read.status != Subprocess::Status::kLine || read.line.starts_with('{')) return read;
         output += (output.empty() ? "" : " | ") + read.line;
@@ -34,9 +38,9 @@ SceneVerdict SceneChecker::check(const std::filesystem::path& scene) {
     if (read.status != Subprocess::Status::kLine) {
         const std::unique_ptr<Subprocess> ended(process.release()); // cannot check another scene
         if (read.status == Subprocess::Status::kEnd) return {.failure = "crash", .details = output};
-        const std::chrono::duration<double> processor = limits_.processor, clock = limits_.clock;
+        const std::chrono::duration<double> processor = limits_.processor, waiting = limits_.waiting;
         return {.failure = "hang",
-                .details = message("more than ", processor.count(), " processor seconds or ", clock.count(), " s")};
+                .details = message(processor.count(), " processor seconds, or ", waiting.count(), " s without any")};
     }
     const auto result = nlohmann::json::parse(read.line);
     if (result["verdict"] == "refused") return {.refused = true, .failure = {}, .details = result["details"]};

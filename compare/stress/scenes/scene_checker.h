@@ -21,10 +21,10 @@ struct SceneVerdict {
 };
 
 /// Holds how long a scene may take before it counts as one that hangs. Processor time does not depend on what else the
-/// machine does. A deadlock takes none, so time by the clock has a limit, too.
+/// machine does. A deadlock takes none, so there is a limit to how long a process may wait.
 struct SceneTimeLimits {
     std::chrono::milliseconds processor{10'000}; ///< of all threads together
-    std::chrono::milliseconds clock = 12 * processor;
+    std::chrono::milliseconds waiting{60'000};   ///< by the clock, without any processor time
 };
 
 /// Runs processes that read names of scenes and print a line of JSON for each, as `compare check -` does. Each checks

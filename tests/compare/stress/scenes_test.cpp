@@ -137,7 +137,7 @@ TEST_SUITE("unit") {
             wait) exec sleep 100;;
             loop) while :; do :; done;; esac; done)";
         using namespace std::chrono_literals;
-        SceneChecker checker({"sh", "-c", script}, {.processor = 1s, .clock = 60s});
+        SceneChecker checker({"sh", "-c", script}, {.processor = 1s, .waiting = 60s});
         CHECK_FALSE(checker.check("good").failed());
         const SceneVerdict bad = checker.check("bad"), refused = checker.check("refused");
         CHECK(bad.failure == "invalid samples");
@@ -150,6 +150,6 @@ TEST_SUITE("unit") {
         CHECK(crash.details == "overflow");
         CHECK(checker.check("loop").failure == "hang");
         CHECK_FALSE(checker.check("good").failed()); // by a new process
-        CHECK(SceneChecker({"sh", "-c", script}, {.processor = 60s, .clock = 1s}).check("wait").failure == "hang");
+        CHECK(SceneChecker({"sh", "-c", script}, {.processor = 60s, .waiting = 1s}).check("wait").failure == "hang");
     }
 }
