@@ -90,12 +90,12 @@ def cornell(run):
             {"gallery/cornell-cycles.svg": plot})
 
 
-@figure("cycles", 4)
+@figure("cycles", 12)
 def cycles(run):
     """more scenes beside Cycles"""
     rows = []
-    for name in ("veach", "glass", "daylight"):
-        result = beside_cycles(run, name, "8,32,64", "1", 512).data["scenes"][0]
+    for name in ("veach", "glass", "daylight", "hall", "fog", "smoke", "cloud", "candle"):
+        result = beside_cycles(run, name, "2,8,32,64", "1", 512).data["scenes"][0]
         check = next(each for each in result["checks"] if "ycles" in each["other"]["estimator"])
         bias = max(abs(value) for value in check["relative_bias"])
         rows.append([f"`{name}`"] + [number(to_peer(result, technique, 1)) for technique in ("path", "adaptive")]

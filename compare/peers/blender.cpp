@@ -8,10 +8,12 @@
 
 #include <charconv>
 #include <deque>
+#include <span>
 
 namespace duet::compare {
 
-extern const std::string_view kBlenderScript; // compare/peers/blender.py, embedded by CMakeLists.txt
+/// The scripts in compare/peers/blender/, embedded by CMakeLists.txt.
+extern const std::span<const std::pair<std::string_view, std::string_view>> kBlenderScripts; // names and texts
 
 namespace {
 
@@ -66,8 +68,7 @@ public:
 
 private:
     static std::vector<std::string> command(BlenderEngine engine, const fs::path& folder, int threads) {
-        const fs::path script = folder / "blender.py";
-        write_file(script, kBlenderScript);
+        for (const auto& [name, text] : kBlenderScripts) write_file(folder / name, text);
         const bool eevee = engine == BlenderEngine::kEevee;
         std::vector<std::string> all;
         if (eevee) {
@@ -76,7 +77,7 @@ private:
         }
         const std::vector<std::string> blender{
             "blender", "-b", "--factory-startup", "-noaudio", "--debug-cycles", "--python-exit-code", "3", "--python",
-            script.string(), "--", folder.string(), eevee ? "eevee" : "cycles"};
+            (folder / "main.py").string(), "--", folder.string(), eevee ? "eevee" : "cycles"};
         all.insert(all.end(), blender.begin(), blender.end());
         return all;
     }
@@ -106,7 +107,11 @@ void check_blender(BlenderEngine engine) {
 }
 
 BlenderPeer::BlenderPeer(BlenderEngine engine, const Scene& scene, const View& view, const ExportSettings& settings)
-    : engine_(engine), process_(std::make_unique<Process>(engine, scene, view, settings)) {}
+    : engine_(engine) {
+    if (engine == BlenderEngine::kEevee && !scene.media.empty())
+        throw Error(message(scene.path.string(), ": cannot be exported: EEVEE is not set up for media"));
+    process_ = std::make_unique<Process>(engine, scene, view, settings);
+}
 
 BlenderPeer::~BlenderPeer() = default;
 

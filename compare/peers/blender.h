@@ -19,7 +19,7 @@ void check_blender(BlenderEngine engine);
 class BlenderPeer {
 public:
     /// Exports the scene to a temporary folder and starts Blender with it (see check_blender). EEVEE draws with Mesa's
-    /// llvmpipe, on the CPU. Throws Error if the scene cannot be exported (see export_scene).
+    /// llvmpipe, on the CPU. Throws Error if the scene cannot be exported (see export_scene), to EEVEE if it has media.
     BlenderPeer(BlenderEngine engine, const Scene& scene, const View& view, const ExportSettings& settings);
     ~BlenderPeer();
     BlenderPeer(const BlenderPeer&) = delete;
@@ -59,7 +59,7 @@ private:
 
 /// Version of the export and settings that determine what Cycles converges to, like raytrace::kEstimatorVersion
 /// for Duet. Reference images are cached under it.
-inline constexpr int kCyclesExportVersion = 4;
+inline constexpr int kCyclesExportVersion = 5;
 
 /// Returns the peer's renderers, which share it: Cycles with and without adaptive sampling, or EEVEE.
 std::vector<BenchRenderer> blender_renderers(const std::shared_ptr<BlenderPeer>& peer, const std::vector<int>& spps);

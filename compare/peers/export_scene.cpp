@@ -1,6 +1,7 @@
 #include "compare/peers/export_scene.h"
 
 #include "common/image/image_file.h"
+#include "common/medium/density_grid.h"
 #include "common/program/statistics.h"
 #include "common/system/file.h"
 #include "compare/peers/export_geometry.h"
@@ -49,7 +50,8 @@ public:
         const fs::path geometry = folder_ / "geometry.bin";
         geometry_.open(geometry, std::ios::binary);
         json file = {
-            {"materials", materials()}, {"lights", lights()}, {"environment", environment()}, {"camera", camera()}};
+            {"materials", materials()}, {"lights", lights()}, {"environment", environment()},
+            {"media", media()},         {"camera", camera()}};
         add_objects(file);
         file["render"] = {{"width", view_.width},
                           {"height", view_.height},
@@ -224,6 +226,33 @@ private:
                 {"file", "environment.exr"},
                 {"scale", image.scale},
                 {"rows", {{-s, 0, -c}, {-c, 0, s}, {0, 1, 0}}}};
+    }
+
+    json media() {
+        json list = json::array();
+        for (const Medium& medium : scene_.media) {
+            json m = {{"scattering", rgb_json(medium.scattering)},
+                      {"absorption", rgb_json(medium.absorption)},
+                      {"radiance", rgb_json(medium.radiance)},
+                      {"asymmetry", medium.asymmetry},
+                      {"box", nullptr},
+                      {"density", nullptr}};
+            if (is_finite(medium.box.low)) {
+                m["box"] = json::array({vec_json(Vec3d(medium.box.low)), vec_json(Vec3d(medium.box.high))});
+                if (!medium.density) notes_.insert("boxes of media are larger by 1e-4 of their size on each side");
+            }
+            if (medium.density) {
+                m["density"] = {{"size", medium.density->size()}, {"values", write_array(medium.density->densities())}};
+                notes_.insert("it marches through grids of density in steps, and fades them out beyond their box, "
+                              "within a cell");
+            }
+            list.push_back(std::move(m));
+        }
+        const auto other = [&](const Medium& m) { return m.asymmetry != scene_.media.front().asymmetry; };
+        if (std::ranges::any_of(scene_.media, other)) // a single scattering, integrated numerically, agrees with ours
+            notes_.insert("where media of different asymmetry overlap, Cycles is off by some percent");
+        if (!scene_.media.empty() && scene_.needs.transmission) notes_.insert("media are inside of glass, too");
+        return list;
     }
 
     // Camera ---------------------------------------------------------------------------------------------------------

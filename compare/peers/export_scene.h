@@ -1,4 +1,4 @@
-// Export of a scene in a form from which a Blender script (compare/peers/blender.py) can rebuild it.
+// Export of a scene in a form from which a Blender script (compare/peers/blender/main.py) can rebuild it.
 #pragma once
 
 #include "common/camera/camera.h"

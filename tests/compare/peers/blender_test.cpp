@@ -89,6 +89,33 @@ TEST_SUITE("image") {
         CHECK(check.detectable < 0.02);
     }
 
+    // A red ball in the light of a point light, a sun and a sky, in two overlapping boxes of fog and in smoke.
+    TEST_CASE("fog and smoke: both images agree within their noise") {
+        if (!can_run(BlenderEngine::kCycles)) return;
+        const ScratchFolder scratch;
+        const fs::path smoke = fs::path(DUET_SOURCE_DIR) / "models" / "textures" / "smoke.raw";
+        json scene = json::parse(R"({
+            "camera": {"eye": [0, 1, 6], "look_at": [0, 1, 0], "fov_degrees": 40},
+            "materials": {"white": {"type": "diffuse", "albedo": 0.7},
+                          "red": {"type": "diffuse", "albedo": [0.7, 0.1, 0.1]}},
+            "objects": [{"type": "quad", "corner": [-5, 0, 5], "u": [10, 0, 0], "v": [0, 0, -10], "material": "white"},
+                        {"type": "sphere", "center": [0.5, 0.8, 0.5], "radius": 0.5, "material": "red"}],
+            "lights": [{"type": "point", "position": [-1.5, 2.6, 1.4], "intensity": 10},
+                       {"type": "sun", "direction": [1, -1, -0.5], "irradiance": [1, 1, 0.8]}],
+            "environment": {"type": "constant", "radiance": [0.2, 0.3, 0.4]},
+            "media": [{"type": "fog", "low": [-2, 0, -2], "high": [2, 2, 2], "scattering": [0.3, 0.4, 0.6],
+                       "absorption": [0.1, 0.05, 0.2], "asymmetry": 0.4},
+                      {"type": "fog", "low": [-1, -1, -1], "high": [0, 4, 1], "scattering": 0.2, "absorption": 0.1,
+                       "radiance": [1, 0.5, 0], "asymmetry": 0.4},
+                      {"type": "smoke", "low": [-1, 0, 0.5], "high": [-0.5, 1.5, 1], "resolution": [48, 112, 48],
+                       "scattering": 10, "absorption": 3, "asymmetry": 0.4}]})");
+        scene["media"][2]["file"] = smoke.string();
+        write_file(scratch / "fog.json", scene.dump());
+        const BiasCheck check = against_cycles(scratch / "fog.json", 64, 48, 512);
+        CHECK(check.consistent());
+        CHECK(check.detectable < 0.01);
+    }
+
     TEST_CASE("EEVEE draws the Cornell box, as bright as the path tracer within a third, and says its time") {
         if (!can_run(BlenderEngine::kEevee)) return;
         const Scene scene = load_scene(fs::path(DUET_SOURCE_DIR) / "models" / "cornell.json");

@@ -2,6 +2,7 @@
 
 #include "common/geometry/sphere.h"
 #include "common/image/image_file.h"
+#include "common/medium/density_grid.h"
 #include "common/system/file.h"
 #include "compare/peers/export_geometry.h"
 #include "compare/peers/subprocess.h"
@@ -205,6 +206,31 @@ TEST_SUITE("unit") {
         }
         const double scale = file["objects"][999]["matrix"][0][0].get<double>();
         CHECK(sum * scale * scale == doctest::Approx(4 * kPiDouble).epsilon(1e-5));
+    }
+
+    TEST_CASE("media: boxes, all of space, and grids of densities") {
+        SceneBuilder builder;
+        Medium everywhere, box, cloud;
+        everywhere.scattering = {1, 2, 3}, everywhere.asymmetry = 0.5f;
+        box.box = {{0, 1, 2}, {3, 4, 5}}, box.absorption = Rgb(1), box.radiance = {4, 0, 0};
+        cloud.box = {{-1, -1, -1}, {1, 1, 1}}, cloud.scattering = Rgb(2);
+        cloud.density = std::make_shared<const DensityGrid>(std::array{2, 2, 3},
+                                                            std::vector<float>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 1, 0});
+        builder.scene.media = {everywhere, box, cloud};
+        const ScratchFolder scratch;
+        ExportNotes notes;
+        const json media = exported(scratch, builder.finish(), &notes)["media"];
+        REQUIRE(media.size() == 3);
+        CHECK(media[0]["scattering"] == json({1, 2, 3}));
+        CHECK(media[0]["asymmetry"] == 0.5);
+        CHECK(media[0]["box"].is_null());
+        CHECK(media[1]["box"] == json({{0, 1, 2}, {3, 4, 5}}));
+        CHECK(media[1]["absorption"] == json({1, 1, 1}));
+        CHECK(media[1]["radiance"] == json({4, 0, 0}));
+        CHECK(media[1]["density"].is_null());
+        CHECK(media[2]["density"]["size"] == json({2, 2, 3}));
+        CHECK(numbers<float>(scratch, media[2]["density"]["values"]) == cloud.density->densities());
+        CHECK(notes.size() == 3); // on boxes, on grids, and on asymmetries
     }
 
     TEST_CASE("what has no counterpart is refused by name") {
