@@ -35,7 +35,8 @@ struct BaselineComparison {
 /// sample count.
 struct BenchConditions {
     int depth = 0, threads = 0;
-    int reference_spp = 0; ///< matters because a measured error includes the reference's own
+    int reference_spp = 0;            ///< matters because a measured error includes the reference's own
+    std::string reference_by{"path"}; ///< the integrator of the reference
 };
 
 /// Throws Error if `earlier` is not a report of the bench or was made with other settings. Call it before a long run.

@@ -32,6 +32,7 @@ BlenderEngine engine_of(const BenchOptions& options) {
 /// Checks options before the long renders.
 void check(const BenchOptions& options) {
     check_renderer_choice(options.choice);
+    check_reference_integrator(options.reference_by);
     if (!options.peer.empty() && options.peer != "cycles" && options.peer != "eevee")
         throw Error(message("--peer: found ", options.peer, ", expected cycles or eevee"));
     if (!options.peer.empty()) check_blender(engine_of(options));
@@ -98,7 +99,11 @@ private:
     }
 
     void find_references() {
-        result_.reference = reference("path", options_.reference_spp);
+        result_.reference = reference(options_.reference_by, options_.reference_spp);
+        if (options_.reference_by != "path") { // whose pixels are not independent, as the check requires
+            result_.no_naive = "the reference is by " + options_.reference_by;
+            return;
+        }
         result_.no_naive = naive_limitation(scene_);
         if (!interrupt_.raised() && result_.no_naive.empty()) check_against(reference("naive", options_.check_spp), {});
         if (!interrupt_.raised() && peer_ && peer_->engine() == BlenderEngine::kCycles)
@@ -169,7 +174,8 @@ int bench(const BenchOptions& given) {
     std::optional<json> earlier;
     if (!options.baseline.empty()) {
         earlier = read_baseline(options.baseline);
-        check_baseline(*earlier, {options.choice.depth, threads_of(options), options.reference_spp});
+        check_baseline(*earlier,
+                       {options.choice.depth, threads_of(options), options.reference_spp, options.reference_by});
     }
 
     const InterruptFlag interrupt;

@@ -17,7 +17,7 @@ void add_bench(CommandLine& program) {
         .add("--techniques", options.choice.techniques,
              "Of raster, path, adaptive (path with more samples where the error is), denoised (path, then the "
              "denoiser, its time included), no-roulette (path, no path ended early), naive (no light sampling), "
-             "direct, unshadowed (default raster,path,naive)")
+             "bidirectional, vcm, photons, metropolis, direct, unshadowed (default raster,path,naive)")
         .comma_separated();
     bench
         .add("--samplers", options.choice.samplers,
@@ -49,6 +49,9 @@ void add_bench(CommandLine& program) {
         "above 1; may be given more than once");
     bench.add("--references", options.references,
               "The folder where references are kept (default: duet/references below $XDG_CACHE_HOME or ~/.cache)");
+    bench.add("--reference-by", options.reference_by,
+              "The integrator that renders references: path (default), or where that is lost bidirectional, vcm or "
+              "photons. Only path's are checked against others");
     bench
         .add("--reference-spp", options.reference_spp,
              "The references' samples a pixel (default: 16 times the most of --spp)")

@@ -152,6 +152,7 @@ json bench_json(const BenchOptions& options, const std::vector<SceneResult>& res
                    {"depth", options.choice.depth},
                    {"seed", options.measure.seed},
                    {"reference_spp", options.reference_spp},
+                   {"reference_by", options.reference_by},
                    {"confidence", 0.95},
                    {"excluded", excluded_json(options.excluded)},
                    {"scenes", scenes}};

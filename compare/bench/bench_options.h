@@ -23,6 +23,7 @@ struct BenchOptions {
     std::string peer;            ///< "cycles" or "eevee"; empty: none
     std::vector<double> equal_times_seconds; ///< times in seconds at which errors are compared; empty: none
     BenchMeasureSettings measure;
+    std::string reference_by = "path"; ///< the integrator that renders references
     int reference_spp = 0; ///< 0: 16 × the maximum of choice.spps
     int check_spp = 0;     ///< spp of the references by independent estimators; 0: reference_spp
     std::vector<ExcludedRectangle> excluded;

@@ -32,6 +32,9 @@ std::string note_of(raytrace::Integrator integrator, const Scene& scene) {
         return "Light after more than one scattering is missing.";
     case Integrator::kUnshadowed:
         return "Direct light only, without shadows.";
+    case Integrator::kVcm:
+    case Integrator::kPhotons:
+        return "Light is blurred by merging paths, less with more samples.";
     case Integrator::kNaive:
         return delta_lights ? "Point, spot and sun lights are missing." : "";
     default:
@@ -82,8 +85,11 @@ BenchRenderer path_tracer_bench_renderer(const raytrace::PathTracerScene& prepar
 }
 
 /// The techniques that estimate light, in the order of --help.
-constexpr std::string_view kTechniques[] = {"raster",    "path",  kAdaptive, kDenoised,
-                                            kNoRoulette, "naive", "direct",  "unshadowed"};
+constexpr std::string_view kTechniques[] = {"raster",    "path",       kAdaptive,       kDenoised,
+                                            kNoRoulette, "naive",      "bidirectional", "vcm",
+                                            "photons",   "metropolis", "direct",        "unshadowed"};
+/// The integrators that may render references: they find all light, some of them by blurring it less and less.
+constexpr std::string_view kReferenceIntegrators[] = {"path", "bidirectional", "vcm", "photons"};
 constexpr std::string_view kSamplers[] = {"sobol", "stratified", "independent"};
 
 template <typename Names>
@@ -112,6 +118,10 @@ TimedImage time_render(const std::function<ImageRgb()>& render, const Control& c
 void check_renderer_choice(const RendererChoice& choice) {
     check_names("--techniques", choice.techniques, kTechniques);
     check_names("--samplers", choice.samplers, kSamplers);
+}
+
+void check_reference_integrator(const std::string& name) {
+    check_names("--reference-by", {name}, kReferenceIntegrators);
 }
 
 std::vector<BenchRenderer> duet_renderers(const Scene& scene, const View& view, const RendererChoice& choice) {

@@ -46,6 +46,9 @@ struct RendererChoice {
 /// Throws Error for an unknown technique or sampler.
 void check_renderer_choice(const RendererChoice& choice);
 
+/// Throws Error unless an integrator may render references.
+void check_reference_integrator(const std::string& name);
+
 /// Prepares both pipelines as needed and returns a renderer for each technique × sampler; "raster" is a single
 /// renderer. The scene must outlive them.
 std::vector<BenchRenderer> duet_renderers(const Scene& scene, const View& view, const RendererChoice& choice);

@@ -52,8 +52,8 @@ def techniques(run):
     return table(["left out or replaced"] + [f"`{name}`" for name in scenes], rows)
 
 
-def beside_cycles(run, name, spp, seconds, reference, *more):
-    return run("compare", "bench", scene(name), "--techniques", "path,adaptive", "--samplers", "sobol", "--spp", spp,
+def beside_cycles(run, name, spp, seconds, reference, *more, techniques="path,adaptive"):
+    return run("compare", "bench", scene(name), "--techniques", techniques, "--samplers", "sobol", "--spp", spp,
                "--repeats", 2, "--size", "256x256", "--peer", "cycles", "--at-seconds", seconds, "--reference-spp",
                reference, "--check-spp", 64, *more, output="")
 
@@ -99,8 +99,11 @@ def cycles(run):
         check = next(each for each in result["checks"] if "ycles" in each["other"]["estimator"])
         bias = max(abs(value) for value in check["relative_bias"])
         rows.append([f"`{name}`"] + [number(to_peer(result, technique, 1)) for technique in ("path", "adaptive")]
-                    + [f"{number(100 * bias)} %"])
-    return table(["scene", "path", "adaptive", "difference of the means"], rows)
+                    + ["", f"{number(100 * bias)} %"])
+    result = beside_cycles(run, "caustics", "1,4,16,64", "1", 1024, "--reference-by", "vcm",
+                           techniques="path,vcm").data["scenes"][0]
+    rows.append(["`caustics`", number(to_peer(result, "path", 1)), "", number(to_peer(result, "vcm", 1)), ""])
+    return table(["scene", "path", "adaptive", "vcm", "difference of the means"], rows)
 
 
 @figure("embree", 4)

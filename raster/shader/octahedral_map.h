@@ -47,8 +47,8 @@ public:
     /// Looks up the first `count` channels bilinearly in directions of any length.
     template <std::size_t kCount> std::array<Floats, kCount> at(const Vec3T<Floats>& w) const;
     /// Looks up kCount channels from the one with index `first` on, at the texels nearest to directions of any length.
-    template <std::size_t kCount> std::array<Floats, kCount> nearest(const Vec3T<Floats>& w,
-                                                                     std::size_t first = 0) const;
+    template <std::size_t kCount>
+    std::array<Floats, kCount> nearest(const Vec3T<Floats>& w, std::size_t first = 0) const;
     std::size_t memory_bytes() const { return texels_.size() * sizeof(Texel); }
 
 private:
@@ -79,8 +79,8 @@ template <std::size_t kCount> std::array<Floats, kCount> OctahedralMap::at(const
     return result;
 }
 
-template <std::size_t kCount> std::array<Floats, kCount> OctahedralMap::nearest(const Vec3T<Floats>& w,
-                                                                                std::size_t first) const {
+template <std::size_t kCount>
+std::array<Floats, kCount> OctahedralMap::nearest(const Vec3T<Floats>& w, std::size_t first) const {
     const Vec2T<Floats> p = octahedral(w);
     const Floats half(0.5f * static_cast<float>(side_)), last(static_cast<float>(side_ - 1));
     const auto cell = [&](const Floats& v) {

@@ -248,6 +248,7 @@ TEST_SUITE("unit") {
         CHECK_NOTHROW(check_baseline(report_of(then), {64, 2, 0}));
         CHECK_THROWS_AS(check_baseline(report_of(then), {64, 4, 0}), Error);
         CHECK_THROWS_AS(check_baseline(report_of(then), {64, 2, 512}), Error);
+        CHECK_THROWS_AS(check_baseline(report_of(then), {64, 2, 0, "vcm"}), Error);
         CHECK_THROWS_AS(check_baseline(json::array(), {64, 2, 0}), Error);
         CHECK_THROWS_AS(check_baseline(report_of(then), {8, 2, 0}), Error);
         CHECK_THROWS_AS(compare_with_baseline({result_of(then)}, json{{"scenes", 1}}, 0.15), Error);
@@ -318,6 +319,20 @@ TEST_SUITE("unit") {
         CHECK(bench(options) == 1);
     }
 
+    TEST_CASE("a reference by another integrator is used, and not checked as if its pixels were independent") {
+        const ScratchFolder scratch;
+        BenchOptions options = small_bench(scratch);
+        options.choice.techniques = {"bidirectional", "vcm"};
+        options.choice.spps = {16};
+        options.reference_by = "bidirectional";
+        REQUIRE(bench(options) == 0);
+        const json scene = json::parse(read_file(options.folder / "report.json"))["scenes"][0];
+        CHECK(scene["reference"]["estimator"] == "bidirectional");
+        CHECK(scene["checks"].empty());
+        REQUIRE(scene["rows"].size() == 2);
+        for (const json& row : scene["rows"]) CHECK(row["relmse"]["value"] < 0.02); // measured: 0.004
+    }
+
     TEST_CASE("unknown techniques and samplers are refused before anything is rendered") {
         const ScratchFolder scratch;
         BenchOptions options = small_bench(scratch);
@@ -325,6 +340,9 @@ TEST_SUITE("unit") {
         CHECK_THROWS_AS(bench(options), Error);
         options = small_bench(scratch);
         options.choice.samplers = {"halton"};
+        CHECK_THROWS_AS(bench(options), Error);
+        options = small_bench(scratch);
+        options.reference_by = "raster";
         CHECK_THROWS_AS(bench(options), Error);
         CHECK_FALSE(fs::exists(options.references));
     }
