@@ -169,7 +169,8 @@ void LiveView::show_raster(const Wish& wish, const LoadedScene& scene) {
         return;
     }
     const bool moving = raster_started_.version != wish.version || raster_started_.load != scene.raster->load;
-    if (!moving && raster_started_.scale < 1 && raster_.busy()) return;
+    // The whole image waits for the first look at the scene, and while an edit is loaded, which makes it outdated.
+    if (!moving && raster_started_.scale < 1 && (raster_.busy() || loader_.busy())) return;
     Started next = full;
     if (moving && pixel_seconds_ > 0)
         next.scale =
