@@ -1,8 +1,9 @@
 #include "compare/view/edits.h"
 
+#include "common/scene/json/read_transform.h"
+
 #include <nlohmann/json.hpp>
 
-#include <array>
 #include <cstdio>
 #include <cstdlib>
 
@@ -43,9 +44,15 @@ std::vector<std::string> places(const ordered_json& element) {
     const std::string type = element.at("type");
     if (type == "sphere") return {"center"};
     if (type == "quad") return {"corner"};
-    if (type == "box") return {"low", "high"};
+    if (type == "point" || type == "spot") return {"position"};
+    if (element.contains("low")) return {"low", "high"}; // a box, or a medium
     return {};
 }
+
+const ordered_json& value_at(const ordered_json& scene, const JsonPath& element) {
+    return scene.at(element.front()).at(std::stoul(element.back()));
+}
+bool is_object(const JsonPath& element) { return element.front() == "objects"; }
 
 /// Adds a step to the transform of an element, or changes its last step. `merged` returns the step that replaces the
 /// last one, or null where both must stay.
@@ -95,7 +102,7 @@ std::string moved(const std::string& text, const JsonPath& element, Vec3d by) {
     std::string result = text;
     for (const std::string& point : points)
         result = with_value(result, element / point, vector(vector(object.at(point)) + by));
-    if (!points.empty()) return result;
+    if (!points.empty() || !is_object(element)) return result;
     return with_step(text, element, {{"translate", vector(by)}}, [&](const ordered_json& last) {
         if (!last.contains("translate")) return ordered_json();
         return ordered_json{{"translate", vector(vector(last.at("translate")) + by)}};
@@ -103,16 +110,55 @@ std::string moved(const std::string& text, const JsonPath& element, Vec3d by) {
 }
 
 std::string transformed(const std::string& text, const JsonPath& element, const Mat4d& map) {
+    if (!is_object(element)) {
+        const ordered_json own = parsed(text, element);
+        std::string result = text;
+        for (const std::string& point : places(own))
+            result = with_value(result, element / point, vector(transform_point(map, vector(own.at(point)))));
+        if (!own.contains("direction")) return result;
+        const Vec3d before = vector(own.at("direction")), after = transform_vector(map, before);
+        return with_value(result, element / "direction", vector(after * (length(before) / length(after))));
+    }
     return with_step(text, element, {{"matrix", matrix(map)}}, [&](const ordered_json& last) {
         if (!last.contains("matrix")) return ordered_json();
         return ordered_json{{"matrix", matrix(map * matrix(last.at("matrix")))}};
     });
 }
 
+Handles handles(const ordered_json& scene, const JsonPath& element) {
+    if (is_object(element)) return {true, true, true};
+    const ordered_json& own = value_at(scene, element);
+    return {.move = !places(own).empty(), .turn = own.contains("direction"), .scale = own.contains("low")};
+}
+
+Box3 place(const ordered_json& scene, const JsonPath& element) {
+    const ordered_json& own = value_at(scene, element);
+    Box3 box;
+    for (const std::string& point : places(own)) box.extend(Vec3(vector(own.at(point))));
+    return box;
+}
+
+std::array<Vec3d, 3> local_axes(const ordered_json& scene, const JsonPath& element) {
+    const std::filesystem::path no_file;
+    const JsonNode own = parse_json(no_file, value_at(scene, element).dump());
+    const Mat4d map = is_object(element) ? read_motion(JsonValue(own, no_file)).start : Mat4d();
+    const Vec3d x = normalize(transform_vector(map, Vec3d(1, 0, 0))), y = transform_vector(map, Vec3d(0, 1, 0));
+    const Vec3d z = normalize(cross(x, y));
+    return {x, cross(z, x), z};
+}
+
 std::string duplicated(const std::string& text, const JsonPath& element) {
     ordered_json copy = parsed(text, element);
     if (copy.value("type", "") == "group") copy.erase("name"); // names of groups are unique
     return appended(text, element.front(), copy);
+}
+
+std::string with_own_material(const std::string& text, const JsonPath& element) {
+    const ordered_json scene = ordered_json::parse(text), &materials = scene.at("materials");
+    const std::string shared = value_at(scene, element).at("material");
+    std::string own = shared;
+    for (int i = 2; materials.contains(own); ++i) own = shared + " " + std::to_string(i);
+    return with_value(with_value(text, {"materials", own}, materials.at(shared)), element / "material", own);
 }
 
 std::string with_new_element(const std::string& text, NewElement element, Vec3d at, double size) {

@@ -1,18 +1,37 @@
 // The edits of a scene that the window offers: each takes the text of a scene file and returns the changed text.
 #pragma once
 
+#include "common/vec/box.h"
 #include "common/vec/matrix.h"
 #include "compare/view/scene_text.h"
 
+#include <array>
+#include <nlohmann/json_fwd.hpp>
+
 namespace duet::compare {
 
-/// Moves an element of "objects" by a vector, in meters. A shape without a transform gets another place, any other
-/// object a last translation.
+/// Moves an element of "objects", "lights" or "media" by a vector, in meters. A shape without a transform, a light and a
+/// medium get another place, any other object a last translation. What is everywhere stays as it is.
 std::string moved(const std::string& text, const JsonPath& element, Vec3d by);
-/// Applies an affine map to an element of "objects" after its own transform. Successive maps become one matrix.
+/// Applies an affine map to an element of "objects" after its own transform; successive maps become one matrix. Of a
+/// light, it changes the position and the direction, of a medium the corners of its box.
 std::string transformed(const std::string& text, const JsonPath& element, const Mat4d& map);
+
+/// What can be done to an element.
+struct Handles {
+    bool move = false, turn = false, scale = false;
+};
+Handles handles(const nlohmann::ordered_json& scene, const JsonPath& element);
+/// Returns the box of the points that say where a light or a medium is; empty for one that is everywhere.
+Box3 place(const nlohmann::ordered_json& scene, const JsonPath& element);
+/// Returns an object's own axes after its transform, made orthonormal: the first keeps its direction.
+std::array<Vec3d, 3> local_axes(const nlohmann::ordered_json& scene, const JsonPath& element);
 /// Adds a copy of an element at the end of its list.
 std::string duplicated(const std::string& text, const JsonPath& element);
+
+/// Gives an object, which has a "material", a copy of that under a new name, so that changes of it change this object
+/// alone.
+std::string with_own_material(const std::string& text, const JsonPath& element);
 
 /// What can be added to a scene.
 enum class NewElement { kSphere, kBox, kQuad, kAreaLight, kPointLight, kCloud };

@@ -131,6 +131,28 @@ cp "$scratch/turned.json" "$scene"
 check_images "after another program has changed the file"
 [ -s "$scratch/view.png" ] || fail "F12 wrote no view.png"
 
+# A point light has a marker at (224, 294) and an arrow along x to the right of it.
+python3 - "$scratch/original.json" "$scene" <<'ADD'
+import json, sys
+scene = json.load(open(sys.argv[1]))
+scene["lights"] = [{"type": "point", "position": [-0.5, 1.3, 0.2], "intensity": 0.3}]
+json.dump(scene, open(sys.argv[2], "w"), indent=1)
+ADD
+cp "$scene" "$scratch/lit.json"
+check_images "with a light"
+click 224 294
+drag 300 294 60 0
+until_true 30 changed_from "$scratch/lit.json" || fail "moving the light changed nothing"
+python3 - "$scratch/lit.json" "$scene" <<'CHECK' || fail "the light was not moved along x alone"
+import json, sys
+before, after = (json.load(open(path)) for path in sys.argv[1:])
+x, y, z = after["lights"][0]["position"]
+assert -0.4 < x < -0.2 and [y, z] == [1.3, 0.2], (x, y, z)
+after["lights"][0]["position"] = before["lights"][0]["position"]
+assert before == after
+CHECK
+check_images "after the light has moved"
+
 key ctrl+q
 code=0
 wait $process || code=$?

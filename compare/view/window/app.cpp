@@ -103,7 +103,7 @@ void App::undo(bool back) {
     }
     follow_document();
     if (document_.text() == before) return;
-    selected_ = -1; // its index may stand for another object
+    selected_ = {}; // its index may stand for another object
     load(true);
 }
 
@@ -135,7 +135,7 @@ void App::open(const std::filesystem::path& path) {
         quantity_ = kWholeImage;
         use_settings();
         window_.set_title(window_title(path));
-        selected_ = -1;
+        selected_ = {};
         file_time_ = write_time(path);
         follow_document();
         load();
@@ -162,7 +162,7 @@ void App::reload() {
         if (!may_lose_changes("reads the file anew")) return;
         document_.reload();
         file_time_ = write_time(document_.path());
-        selected_ = -1;
+        selected_ = {};
         follow_document();
         load();
         message_ = "Read the file anew.";
@@ -213,7 +213,8 @@ void App::handle_keys() {
         if (press.key == GLFW_KEY_SPACE) live_.pause(!live_.paused());
         if (press.key == GLFW_KEY_F) frame_selected();
         if (press.key == GLFW_KEY_DELETE) delete_selected();
-        if (press.key == GLFW_KEY_ESCAPE) selected_ = -1;
+        if (press.key == GLFW_KEY_ESCAPE) selected_ = {};
+        if (press.key == GLFW_KEY_L) local_axes_ = !local_axes_;
         if (press.key == GLFW_KEY_P) write_images();
         if (press.key == GLFW_KEY_F12) wants_screenshot_ = true;
         if (press.key == GLFW_KEY_R) reload();

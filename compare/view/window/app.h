@@ -40,6 +40,18 @@ struct Comparison {
 /// Returns the title of the window that shows a scene.
 inline std::string window_title(const std::filesystem::path& scene) { return "Duet: " + scene.filename().string(); }
 
+/// The selected element of the scene file.
+struct Selection {
+    std::string list = "objects"; ///< or "lights" or "media"
+    int index = -1;               ///< in the list; −1: nothing is selected
+
+    bool any() const { return index >= 0; }
+    JsonPath path() const { return {list, std::to_string(index)}; }
+    friend bool operator==(const Selection&, const Selection&) = default;
+};
+/// The lists of a scene file whose elements can be selected.
+inline constexpr std::array<const char*, 3> kSelectableLists{"objects", "lights", "media"};
+
 /// The window's state. Each frame, draw() draws everything, and passes on to the live view what is wanted.
 class App {
 public:
@@ -71,6 +83,9 @@ private:
     void drag();
     bool fly_by_keys();
     void select_at(Vec2d pixel);
+    void draw_markers();
+    std::optional<Selection> marker_at(ImVec2 position) const;
+    template <typename Visit> void for_each_marker(const Visit& visit) const;
     // gizmo.cpp
     enum class Handle { kNone, kMove, kTurn, kScale };
     void place_gizmo(const Box3& box);
@@ -92,6 +107,8 @@ private:
     void draw_members(const char* list);
     void apply(const JsonPath& path, const nlohmann::ordered_json& changed);
     void draw_selected();
+    void draw_choice();
+    void drop_lost_selection();
     void draw_turns();
     void draw_additions();
     void draw_mesh_field();
@@ -99,6 +116,7 @@ private:
     void delete_selected();
     void frame_selected();
     Box3 selected_bounds();
+    std::array<Vec3d, 3> selected_axes() const;
 
     void handle_keys();
     void open(const std::filesystem::path& path);
@@ -117,7 +135,6 @@ private:
     void use_settings();
     void set_quantity(const RungRenderers& quantity);
     std::vector<RungRenderers> quantities() const;
-    JsonPath selected_path() const;
 
     ViewOptions options_;
     Window& window_;
@@ -134,16 +151,18 @@ private:
         raster::RasterSettings raster;
         raytrace::PathTracerSettings raytrace;
     } settings_;        // of the whole image
-    int selected_ = -1; // index in "objects"
+    Selection selected_;
+    bool local_axes_ = false; // handles and numbers turn and move along the object's own axes
     struct {
         std::shared_ptr<const Scene> scene;
-        int selected = -1;
+        Selection selected;
         Box3 box;
     } bounds_; // of the selected object, as it was found last
     struct Gizmo {
         Handle handle = Handle::kNone; // under the pointer or dragged
         std::size_t axis = 0;
         double angle = 0; // of the grabbed point of a ring
+        std::array<Vec3d, 3> axes{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};
         Vec3d center;
         double length = 0;  // of the arrows, in meters
         double dragged = 0; // in meters, in radians, or the logarithm of a factor

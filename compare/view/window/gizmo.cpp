@@ -1,5 +1,5 @@
-// The handles of the selected object: arrows move it along the world's axes, rings turn it about them, and the square
-// in the middle scales it.
+// The handles of what is selected: arrows move it along axes, rings turn it about them, and the square in the middle
+// scales it. Markers show lights and media, which cannot be seen themselves.
 #include "compare/view/camera_control.h"
 #include "compare/view/edits.h"
 #include "compare/view/window/app.h"
@@ -16,7 +16,7 @@ constexpr float kGrabPixels = 7;         // distance from which a handle is grab
 constexpr double kScalePerPixel = 0.01;  // logarithm of the factor
 constexpr double kSnapDegrees = 15, kSnapFactor = 0.1;
 constexpr int kRingPoints = 48;
-constexpr std::array<Vec3d, 3> kAxes{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};
+constexpr float kMarkerPixels = 6; // radius of a marker
 constexpr std::array<ImU32, 3> kColors{IM_COL32(235, 90, 70, 255), IM_COL32(120, 200, 80, 255),
                                        IM_COL32(80, 140, 240, 255)};
 
@@ -35,8 +35,8 @@ double along(ImVec2 mouse, ImVec2 from, ImVec2 to, float least) {
     return square > least * least ? static_cast<double>((mouse.x * x + mouse.y * y) / square) : 0;
 }
 
-Vec3d ring_point(std::size_t axis, double angle) {
-    return std::cos(angle) * kAxes[(axis + 1) % 3] + std::sin(angle) * kAxes[(axis + 2) % 3];
+Vec3d ring_point(const std::array<Vec3d, 3>& axes, std::size_t axis, double angle) {
+    return std::cos(angle) * axes[(axis + 1) % 3] + std::sin(angle) * axes[(axis + 2) % 3];
 }
 
 double snapped(double value, double step) { return std::round(value / step) * step; }
@@ -56,26 +56,31 @@ std::optional<ImVec2> App::on_screen(Vec3d point) const {
 
 void App::place_gizmo(const Box3& box) {
     const Camera& camera = wish_.view.camera;
-    gizmo_.handle = Handle::kNone;
+    gizmo_.axes = selected_axes();
     gizmo_.center = (Vec3d(box.low) + Vec3d(box.high)) / 2.0;
     gizmo_.length = kLengthOfHeight * shown_height(camera, length(gizmo_.center - camera.eye));
 }
 
 void App::draw_gizmo() {
+    drop_lost_selection();
     const Box3 box = selected_bounds();
-    if (drag_ != Drag::kObject) place_gizmo(box); // while a handle is dragged, the scene that is loaded lags behind
     const bool current = drag_ == Drag::kObject || live_.loaded().load == requested_load_;
-    if (selected_ < 0 || box.empty() || !document_.editable() || !current) return;
+    if (drag_ != Drag::kObject) gizmo_.handle = Handle::kNone;
+    if (!selected_.any() || box.empty() || !document_.editable() || !current) return;
+    if (drag_ != Drag::kObject) place_gizmo(box); // while a handle is dragged, the scene that is loaded lags behind
+    const Handles possible = handles(document_.json(), selected_.path());
     const bool moves = drag_ == Drag::kObject && gizmo_.handle == Handle::kMove;
-    const Vec3d center = moves ? gizmo_.center + gizmo_.dragged * kAxes[gizmo_.axis] : gizmo_.center;
+    const Vec3d center = moves ? gizmo_.center + gizmo_.dragged * gizmo_.axes[gizmo_.axis] : gizmo_.center;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        draw_handle(Handle::kMove, axis, {center, center + gizmo_.length * kAxes[axis]});
+        if (possible.move) draw_handle(Handle::kMove, axis, {center, center + gizmo_.length * gizmo_.axes[axis]});
+        if (!possible.turn) continue;
         std::vector<Vec3d> ring;
         for (int i = 0; i <= kRingPoints; ++i)
-            ring.push_back(center + kRingOfLength * gizmo_.length * ring_point(axis, 2 * kPiDouble * i / kRingPoints));
+            ring.push_back(center + kRingOfLength * gizmo_.length *
+                                        ring_point(gizmo_.axes, axis, 2 * kPiDouble * i / kRingPoints));
         draw_handle(Handle::kTurn, axis, ring);
     }
-    draw_handle(Handle::kScale, 0, {center, center});
+    if (possible.scale) draw_handle(Handle::kScale, 0, {center, center});
 }
 
 // Draws a handle, and takes it where it is the first under the pointer.
@@ -106,22 +111,53 @@ void App::draw_handle(Handle handle, std::size_t axis, const std::vector<Vec3d>&
         list.AddRectFilled({line[0].x - 5, line[0].y - 5}, {line[0].x + 5, line[0].y + 5}, color);
 }
 
+// Calls visit(selection, pixel) for each light and medium that has a place in the image.
+template <typename Visit> void App::for_each_marker(const Visit& visit) const {
+    const nlohmann::ordered_json& scene = document_.json();
+    for (const char* list : {"lights", "media"}) {
+        const int count = scene.contains(list) ? static_cast<int>(scene.at(list).size()) : 0;
+        for (Selection marked{list, 0}; marked.index < count; ++marked.index) {
+            const Box3 box = place(scene, marked.path());
+            if (box.empty()) continue;
+            const std::optional<ImVec2> pixel = on_screen((Vec3d(box.low) + Vec3d(box.high)) / 2.0);
+            if (pixel) visit(marked, *pixel);
+        }
+    }
+}
+
+void App::draw_markers() {
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    for_each_marker([&](const Selection& marked, ImVec2 pixel) {
+        const ImU32 color = marked == selected_ ? IM_COL32_WHITE : IM_COL32(250, 220, 120, 255);
+        list.AddCircle(pixel, kMarkerPixels, IM_COL32(0, 0, 0, 200), 0, 4);
+        list.AddCircle(pixel, kMarkerPixels, color, 0, 2);
+    });
+}
+
+std::optional<Selection> App::marker_at(ImVec2 position) const {
+    std::optional<Selection> found;
+    for_each_marker([&](const Selection& marked, ImVec2 pixel) {
+        if (std::hypot(pixel.x - position.x, pixel.y - position.y) <= kMarkerPixels + kGrabPixels / 2) found = marked;
+    });
+    return found;
+}
+
 void App::drag_object() {
     const ImVec2 mouse = ImGui::GetIO().MouseDelta;
-    const Vec3d center = gizmo_.center, axis = kAxes[gizmo_.axis];
+    const Vec3d center = gizmo_.center, axis = gizmo_.axes[gizmo_.axis];
     const bool snaps = ImGui::GetIO().KeyCtrl;
     Mat4d map;
     if (gizmo_.handle == Handle::kMove) {
         const std::optional<ImVec2> from = on_screen(center), to = on_screen(center + gizmo_.length * axis);
         if (from && to) gizmo_.dragged += gizmo_.length * along(mouse, *from, *to, 1);
         const double by = snaps ? snapped(gizmo_.dragged, snap_length(gizmo_.length)) : gizmo_.dragged;
-        attempt([&] { edit(moved(gizmo_.text, selected_path(), typed_number(by) * axis)); });
+        attempt([&] { edit(moved(gizmo_.text, selected_.path(), typed_number(by) * axis)); });
         return;
     }
     if (gizmo_.handle == Handle::kTurn) {
         constexpr double kStep = 0.01; // of the angle, along the tangent
         const auto point = [&](double angle) {
-            return on_screen(center + kRingOfLength * gizmo_.length * ring_point(gizmo_.axis, angle));
+            return on_screen(center + kRingOfLength * gizmo_.length * ring_point(gizmo_.axes, gizmo_.axis, angle));
         };
         const double angle = gizmo_.angle + gizmo_.dragged;
         const std::optional<ImVec2> from = point(angle - kStep / 2), to = point(angle + kStep / 2);
@@ -133,7 +169,7 @@ void App::drag_object() {
         const double size = snaps ? std::max(snapped(factor, kSnapFactor), kSnapFactor) : factor;
         map = scaling(Vec3d(size, size, size));
     }
-    attempt([&] { edit(transformed(gizmo_.text, selected_path(), translation(center) * map * translation(-center))); });
+    attempt([&] { edit(transformed(gizmo_.text, selected_.path(), translation(center) * map * translation(-center))); });
 }
 
 } // namespace duet::compare

@@ -1,5 +1,6 @@
 // The images of `compare view`, and the mouse on them.
 #include "compare/view/camera_control.h"
+#include "compare/view/edits.h"
 #include "compare/view/image_comparison.h"
 #include "compare/view/inspect.h"
 #include "compare/view/window/app.h"
@@ -67,6 +68,7 @@ void App::draw_images() {
                     area_.pixel.x < wish_.view.width && area_.pixel.y < wish_.view.height;
     update_textures();
     draw_textures();
+    if (document_.editable()) draw_markers();
     draw_gizmo();
     navigate();
 }
@@ -205,11 +207,16 @@ bool App::fly_by_keys() {
 }
 
 void App::select_at(Vec2d pixel) {
+    if (const std::optional<Selection> marked = marker_at(ImGui::GetIO().MousePos)) {
+        selected_ = *marked;
+        return;
+    }
     const LoadedScene loaded = live_.loaded();
     if (!loaded.raytrace || loaded.load != requested_load_) return; // objects of another text
     const Ray ray = CameraModel(wish_.view).ray({std::floor(pixel.x) + 0.5, std::floor(pixel.y) + 0.5});
     const Hit hit = trace(loaded.raytrace->prepared, ray);
-    selected_ = hit.valid() ? static_cast<int>(loaded.scene->objects[hit.object].entry) : -1;
+    selected_ = {};
+    if (hit.valid()) selected_.index = static_cast<int>(loaded.scene->objects[hit.object].entry);
     attempt([&] {
         path_log_ = raytrace::debug_pixel(loaded.raytrace->prepared, wish_.view, wish_.raytrace,
                                           {static_cast<int>(pixel.x), static_cast<int>(pixel.y), 0});
@@ -221,18 +228,26 @@ void App::select_at(Vec2d pixel) {
 
 Box3 App::selected_bounds() {
     const LoadedScene loaded = live_.loaded();
-    if (bounds_.scene == loaded.scene && bounds_.selected == selected_) return bounds_.box;
-    bounds_ = {loaded.scene, selected_, {}};
-    if (loaded.scene && selected_ >= 0)
-        bounds_.box = entry_bounds(*loaded.scene, static_cast<std::size_t>(selected_));
+    if (!selected_.any() || !loaded.scene) return {};
+    if (selected_.list != "objects") {
+        const Box3 box = place(document_.json(), selected_.path());
+        return box.empty() ? loaded.scene->bounds : box; // a sun is everywhere
+    }
+    if (bounds_.scene != loaded.scene || !(bounds_.selected == selected_))
+        bounds_ = {loaded.scene, selected_, entry_bounds(*loaded.scene, static_cast<std::size_t>(selected_.index))};
     return bounds_.box;
+}
+
+std::array<Vec3d, 3> App::selected_axes() const {
+    if (local_axes_) return local_axes(document_.json(), selected_.path());
+    return {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};
 }
 
 void App::frame_selected() {
     const LoadedScene loaded = live_.loaded();
     if (!loaded.scene) return;
     const double aspect = static_cast<double>(wish_.view.width) / wish_.view.height;
-    changed_camera(frame_box(document_.camera(), selected_ >= 0 ? selected_bounds() : loaded.scene->bounds, aspect));
+    changed_camera(frame_box(document_.camera(), selected_.any() ? selected_bounds() : loaded.scene->bounds, aspect));
     document_.commit();
 }
 

@@ -1,4 +1,4 @@
-// The part of the panel that edits the scene: the selected object, materials, lights, environment and camera.
+// The part of the panel that edits the scene: what is selected, materials, environment and camera.
 #include "compare/view/edits.h"
 #include "compare/view/window/app.h"
 
@@ -125,8 +125,6 @@ std::string name_of(const ordered_json& element, int index) {
 
 } // namespace
 
-JsonPath App::selected_path() const { return {"objects", std::to_string(selected_)}; }
-
 void App::draw_scene() {
     draw_camera();
     if (!document_.editable()) return ImGui::TextDisabled("A bare mesh: write a scene file to edit more.");
@@ -134,8 +132,6 @@ void App::draw_scene() {
     draw_mesh_field();
     draw_selected();
     draw_members("materials");
-    draw_members("lights");
-    draw_members("media");
     draw_members("environment");
     ImGui::Separator();
     ImGui::BeginDisabled(!document_.changed());
@@ -176,21 +172,9 @@ void App::draw_members(const char* list) {
     if (!scene.contains(list) || !ImGui::TreeNode(list)) return;
     const JsonEditor editor(scene);
     const ordered_json value = scene.at(list); // the document changes below
-    int index = 0;
     for (const auto& [key, child] : value.items()) {
-        const JsonPath path{list, key};
         ordered_json changed = child;
-        const std::string label = value.is_array() ? name_of(child, index++) : key;
-        if (editor.edit(label, changed)) apply(path, changed);
-        if (!value.is_array()) continue;
-        ImGui::PushID(label.c_str());
-        const bool copies = ImGui::SmallButton("duplicate");
-        ImGui::SameLine();
-        const bool deletes = ImGui::SmallButton("delete");
-        ImGui::PopID();
-        if (copies || deletes)
-            attempt([&] { edit(copies ? duplicated(document_.text(), path) : without_value(document_.text(), path)); });
-        if (deletes) break; // the indices of those behind have changed
+        if (editor.edit(key, changed)) apply({list, key}, changed);
     }
     ImGui::TreePop();
 }
@@ -202,58 +186,81 @@ void App::apply(const JsonPath& path, const ordered_json& changed) {
     });
 }
 
-void App::draw_selected() {
+// Selects nothing where the list has no such element any more.
+void App::drop_lost_selection() {
+    if (!selected_.any()) return;
     const ordered_json& scene = document_.json();
-    const ordered_json& objects = scene.at("objects");
-    if (selected_ >= static_cast<int>(objects.size())) selected_ = -1;
-    const std::string now =
-        selected_ < 0 ? "none" : name_of(objects.at(static_cast<std::size_t>(selected_)), selected_);
-    if (ImGui::BeginCombo("object", now.c_str())) {
+    if (!scene.contains(selected_.list) || selected_.index >= static_cast<int>(scene.at(selected_.list).size()))
+        selected_ = {};
+}
+
+void App::draw_choice() {
+    const ordered_json& scene = document_.json();
+    const auto label = [&](const Selection& one) {
+        const ordered_json& element = scene.at(one.list).at(static_cast<std::size_t>(one.index));
+        return (one.list == "objects" ? "" : one.list + ": ") + name_of(element, one.index);
+    };
+    if (!ImGui::BeginCombo("selected", selected_.any() ? label(selected_).c_str() : "none")) return;
+    for (const char* list : kSelectableLists) {
+        if (!scene.contains(list)) continue;
+        ImGui::PushID(list);
         ImGuiListClipper visible;
-        visible.Begin(static_cast<int>(objects.size()));
+        visible.Begin(static_cast<int>(scene.at(list).size()));
         while (visible.Step())
-            for (int i = visible.DisplayStart; i < visible.DisplayEnd; ++i) {
-                ImGui::PushID(i);
-                const std::string name = name_of(objects.at(static_cast<std::size_t>(i)), i);
-                if (ImGui::Selectable(name.c_str(), i == selected_)) selected_ = i;
+            for (Selection one{list, visible.DisplayStart}; one.index < visible.DisplayEnd; ++one.index) {
+                ImGui::PushID(one.index);
+                if (ImGui::Selectable(label(one).c_str(), one == selected_)) selected_ = one;
                 ImGui::PopID();
             }
-        ImGui::EndCombo();
+        ImGui::PopID();
     }
-    if (selected_ < 0) return;
-    ordered_json element = objects.at(static_cast<std::size_t>(selected_));
+    ImGui::EndCombo();
+}
+
+void App::draw_selected() {
+    drop_lost_selection();
+    draw_choice();
+    if (!selected_.any()) return;
+    const ordered_json& scene = document_.json();
+    ordered_json element = scene.at(selected_.list).at(static_cast<std::size_t>(selected_.index));
     const JsonEditor editor(scene);
     bool changed = false;
     ImGui::Indent();
     for (auto& [name, child] : element.items())
         if (name != "type") changed |= editor.edit(name, child);
-    if (changed) apply(selected_path(), element);
+    if (changed) apply(selected_.path(), element);
     draw_turns();
+    if (element.contains("material") && ImGui::Button("a material of its own"))
+        attempt([&] { edit(with_own_material(document_.text(), selected_.path())); });
     if (ImGui::Button("duplicate (Ctrl+D)")) duplicate_selected();
     ImGui::SameLine();
     if (ImGui::Button("delete (Del)")) delete_selected();
     ImGui::Unindent();
 }
 
-// Turns and scales the object about its center.
+// Turns and scales what is selected about its center.
 void App::draw_turns() {
     const Box3 box = selected_bounds();
+    const Handles possible = handles(document_.json(), selected_.path());
     if (box.empty()) return;
     const Vec3d center = (Vec3d(box.low) + Vec3d(box.high)) / 2.0;
     const auto apply_map = [&](const Mat4d& map) {
         attempt([&] {
-            edit(transformed(document_.text(), selected_path(), translation(center) * map * translation(-center)));
+            edit(transformed(document_.text(), selected_.path(), translation(center) * map * translation(-center)));
             document_.commit();
         });
     };
-    ImGui::SetNextItemWidth(120);
-    ImGui::InputDouble("degrees", &turn_degrees_, 0, 0, "%.4g");
-    constexpr std::array<const char*, 3> kTurns{"turn x", "turn y", "turn z"};
-    for (std::size_t i = 0; i < 3; ++i) {
-        const Vec3d axis(i == 0, i == 1, i == 2);
-        if (i > 0) ImGui::SameLine();
-        if (ImGui::Button(kTurns[i])) apply_map(rotation(axis, radians(turn_degrees_)));
+    if (selected_.list == "objects") ImGui::Checkbox("its own axes (L)", &local_axes_);
+    if (possible.turn) {
+        ImGui::SetNextItemWidth(120);
+        ImGui::InputDouble("degrees", &turn_degrees_, 0, 0, "%.4g");
+        constexpr std::array<const char*, 3> kTurns{"turn x", "turn y", "turn z"};
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (i > 0) ImGui::SameLine();
+            if (ImGui::Button(kTurns[i])) apply_map(rotation(selected_axes()[i], radians(turn_degrees_)));
+        }
     }
+    if (!possible.scale) return;
     ImGui::SetNextItemWidth(120);
     ImGui::InputDouble("factor", &scale_factor_, 0, 0, "%.4g");
     ImGui::SameLine();
@@ -267,10 +274,15 @@ void App::draw_additions() {
         if (!ImGui::Selectable(kNewElementNames[i])) continue;
         attempt([&] {
             const double size = 0.1 * length(camera.look_at - camera.eye);
-            const std::size_t before = document_.json().at("objects").size();
+            const ordered_json before = document_.json();
             edit(with_new_element(document_.text(), static_cast<NewElement>(i), camera.look_at, size));
             document_.commit();
-            if (document_.json().at("objects").size() > before) selected_ = static_cast<int>(before);
+            for (const char* list : kSelectableLists) {
+                const auto count = [&](const ordered_json& scene) {
+                    return scene.contains(list) ? static_cast<int>(scene.at(list).size()) : 0;
+                };
+                if (count(document_.json()) > count(before)) selected_ = {list, count(before)};
+            }
         });
     }
     ImGui::EndCombo();
@@ -283,20 +295,20 @@ void App::draw_mesh_field() {
 }
 
 void App::duplicate_selected() {
-    if (selected_ < 0 || !document_.editable()) return;
+    if (!selected_.any() || !document_.editable()) return;
     attempt([&] {
-        edit(duplicated(document_.text(), selected_path()));
+        edit(duplicated(document_.text(), selected_.path()));
         document_.commit();
-        selected_ = static_cast<int>(document_.json().at("objects").size()) - 1;
+        selected_.index = static_cast<int>(document_.json().at(selected_.list).size()) - 1;
     });
 }
 
 void App::delete_selected() {
-    if (selected_ < 0 || !document_.editable()) return;
+    if (!selected_.any() || !document_.editable()) return;
     attempt([&] {
-        edit(without_value(document_.text(), selected_path()));
+        edit(without_value(document_.text(), selected_.path()));
         document_.commit();
-        selected_ = -1;
+        selected_ = {};
     });
 }
 

@@ -75,6 +75,70 @@ TEST_SUITE("unit") {
         CHECK(scaled.high.y == doctest::Approx(2));
     }
 
+    TEST_CASE("lights and media move, turn and scale as far as they can") {
+        const nlohmann::ordered_json own = nlohmann::ordered_json::parse(R"({"lights": [
+            {"type": "spot", "position": [1, 2, 3], "direction": [0, -2, 0], "intensity": 1},
+            {"type": "sun", "direction": [0, -1, 0], "irradiance": 2}],
+            "media": [{"type": "fog", "low": [0, 0, 0], "high": [2, 2, 2], "scattering": 1},
+                      {"type": "fog", "scattering": 0.1}]})");
+        const std::string text = own.dump();
+        const JsonPath spot{"lights", "0"}, sun{"lights", "1"}, box{"media", "0"}, everywhere{"media", "1"};
+        const auto edited = [](const std::string& changed) { return nlohmann::ordered_json::parse(changed); };
+        using Numbers = std::vector<double>;
+
+        CHECK(edited(moved(text, spot, {1, 0, -1}))["lights"][0]["position"] == Numbers{2, 2, 2});
+        CHECK(edited(moved(text, box, {1, 0, -1}))["media"][0]["high"] == Numbers{3, 2, 1});
+        CHECK(moved(text, sun, {1, 0, -1}) == text);
+        CHECK(moved(text, everywhere, {1, 0, -1}) == text);
+
+        const Mat4d turn = rotation(Vec3d(0, 0, 1), radians(90.0)); // (x, y, z) becomes (−y, x, z)
+        const auto turned = edited(transformed(text, spot, turn))["lights"][0];
+        CHECK(turned["position"] == Numbers{-2, 1, 3});
+        for (std::size_t i = 0; i < 3; ++i)
+            CHECK(turned["direction"][i].get<double>() == doctest::Approx(i == 0 ? 2 : 0));
+        CHECK(edited(transformed(text, sun, turn))["lights"][1]["direction"][0].get<double>() == doctest::Approx(1));
+        const auto scaled = edited(transformed(text, box, scaling(Vec3d(3, 3, 3))))["media"][0];
+        CHECK(scaled["low"] == Numbers{0, 0, 0});
+        CHECK(scaled["high"] == Numbers{6, 6, 6});
+
+        const auto able = [&](const JsonPath& path) {
+            const Handles h = handles(own, path);
+            return std::array{h.move, h.turn, h.scale};
+        };
+        CHECK(able(spot) == std::array{true, true, false});
+        CHECK(able(sun) == std::array{false, true, false});
+        CHECK(able(box) == std::array{true, false, true});
+        CHECK(able(everywhere) == std::array{false, false, false});
+        CHECK(place(own, spot).low == Vec3(1, 2, 3));
+        CHECK(place(own, box).high == Vec3(2, 2, 2));
+        CHECK(place(own, sun).empty());
+        CHECK(place(own, everywhere).empty());
+    }
+
+    TEST_CASE("an object's own axes follow its transform, and stay orthonormal") {
+        const nlohmann::ordered_json scene = nlohmann::ordered_json::parse(R"({"objects": [{"type": "box"},
+            {"type": "box", "transform": [{"scale": [2, 3, 4]}, {"rotate_degrees": 90, "axis": [0, 0, 1]},
+                                          {"translate": [5, 6, 7]}]},
+            {"type": "box", "transform": [{"matrix": [1, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}]}]})");
+        const auto axes = [&](const char* index) { return local_axes(scene, {"objects", index}); };
+        const Vec3d x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+        CHECK(axes("0") == std::array{x, y, z});
+        const std::array expected{y, -x, z};
+        for (std::size_t i = 0; i < 3; ++i) CHECK(length(axes("1")[i] - expected[i]) < 1e-12);
+        for (std::size_t i = 0; i < 3; ++i) // a shear moves the y axis alone
+            CHECK(length(axes("2")[i] - std::array{x, y, z}[i]) < 1e-12);
+    }
+
+    TEST_CASE("a material of its own looks the same, and no other object has it") {
+        const std::string once = with_own_material(kText, {"objects", "1"});
+        const auto scene = nlohmann::json::parse(with_own_material(once, {"objects", "2"}));
+        CHECK(scene["objects"][0]["material"] == "white");
+        CHECK(scene["objects"][1]["material"] == "white 2");
+        CHECK(scene["objects"][2]["material"] == "white 3");
+        for (const char* name : {"white", "white 2", "white 3"}) CHECK(scene["materials"][name]["albedo"] == 0.7);
+        CHECK(bounds_of(once, 1).low == bounds_of(kText, 1).low);
+    }
+
     TEST_CASE("a copy is the same object once more") {
         const std::string text = duplicated(kText, {"objects", "1"});
         CHECK(bounds_of(text, 5).low == bounds_of(kText, 1).low);
