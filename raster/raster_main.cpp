@@ -16,7 +16,8 @@ struct Options {
 
 void add_options(CommandLine& command_line, Options& options) {
     command_line.add("--shading", options.shading,
-                     raster::shading_list() + " (default: lit, by materials and lights)");
+                     "lit (default: by materials and lights), phong, gouraud, flat, toon, wireframe, lines, edges, "
+                     "normal, albedo or depth");
     command_line.add(
         "--msaa", options.settings.multisamples,
         "Multisampling: coverage and depth at 2, 4, 8 or 16 samples a pixel, shading once a primitive (in place "
@@ -58,7 +59,7 @@ raster::RasterSettings settings_of(const Options& options, const RenderSettings&
     raster::RasterSettings settings = options.settings;
     static_cast<RenderSettings&>(settings) = common;
     settings.samples_per_pixel = spp.value_or(1);
-    settings.shading = raster::parse_shading(options.shading);
+    settings.shading = raster::kShadings.value(options.shading);
     if (settings.multisamples != 0) raster::multisample_pattern(settings.multisamples); // throws if unsupported
     settings.environment = !options.no_environment;
     settings.skips.frustum = settings.skips.back_faces = !options.no_culling;

@@ -83,12 +83,6 @@ std::uint8_t dithered_code(float linear, double noise) {
 
 } // namespace
 
-std::optional<Tone> parse_tone(std::string_view name) {
-    const auto found = std::ranges::find(kToneNames, name);
-    if (found == kToneNames.end()) return {};
-    return static_cast<Tone>(found - kToneNames.begin());
-}
-
 Rgb ToneMapping::operator()(Rgb linear) const {
     const auto valid = [](float x) { return x > 0 ? std::min(x, 1e30f) : 0; }; // the comparison is false for NaN
     const Rgb mixed = inset * Rgb(valid(linear.r), valid(linear.g), valid(linear.b));
@@ -96,7 +90,7 @@ Rgb ToneMapping::operator()(Rgb linear) const {
 }
 
 const ToneMapping& tone_mapping(Tone tone) {
-    static const std::array<ToneMapping, kToneNames.size()> mappings{{
+    static const std::array<ToneMapping, kTones.entries.size()> mappings{{
         {kIdentity, clip_curve, kIdentity},
         {kIdentity, filmic_curve, kIdentity},
         {kAgxInset, agx_curve, inverse(kAgxInset)},

@@ -3,11 +3,10 @@
 #pragma once
 
 #include "common/image/image.h"
+#include "common/system/name_table.h"
 
 #include <array>
 #include <cstdint>
-#include <optional>
-#include <string_view>
 #include <vector>
 
 namespace duet {
@@ -21,9 +20,8 @@ namespace duet {
 ///   Middle gray becomes half of the display's code range.
 enum class Tone { kNone, kFilmic, kAgx };
 /// The names of the tone curves in scene files and on command lines, in the order of Tone.
-inline constexpr std::array<std::string_view, 3> kToneNames{"none", "filmic", "agx"};
-/// Returns the tone curve of a name, or nothing for an unknown name.
-std::optional<Tone> parse_tone(std::string_view name);
+inline constexpr NameTable<Tone, 3> kTones{"tone",
+                                           {{{"none", Tone::kNone}, {"filmic", Tone::kFilmic}, {"agx", Tone::kAgx}}}};
 
 /// The exposure of a view transform is in [−kMaxExposure, kMaxExposure] stops.
 inline constexpr float kMaxExposure = 32;

@@ -1,7 +1,5 @@
 #include "common/program/view_transform_options.h"
 
-#include "common/system/error.h"
-
 namespace duet {
 
 ViewTransform ViewTransformOptions::applied_to(ViewTransform scene) const {
@@ -14,12 +12,7 @@ void add_view_transform(CommandLine& program, ViewTransformOptions& options) {
         .number_range(-kMaxExposure, kMaxExposure, "a number of stops in [-32, 32]");
     program
         .add_parsed(
-            "--tone",
-            [&options](const std::vector<std::string>& names) {
-                options.tone = parse_tone(names.back());
-                if (!options.tone)
-                    throw Error(message("--tone: found ", names.back(), ", expected none, filmic or agx"));
-            },
+            "--tone", [&options](const std::vector<std::string>& names) { options.tone = kTones.value(names.back()); },
             "Tone curve of 8-bit images: none, filmic or agx (default: the scene's, or none, which clips)")
         .repeatable();
     program.add_flag("--dither,!--no-dither", options.dither,

@@ -28,8 +28,7 @@ void read_image_settings(const JsonValue& image, Scene& scene) {
             message("found ", pixels, " pixels, expected at most ", kMaxImagePixels, "; --size may ask for more"));
     ViewTransform& view = scene.view_transform;
     view.exposure = static_cast<float>(image.number_or("exposure", 0, {-kMaxExposure, kMaxExposure}));
-    if (image.has("tone"))
-        view.tone = static_cast<Tone>(image.at("tone").one_of({kToneNames.begin(), kToneNames.end()}));
+    if (image.has("tone")) view.tone = static_cast<Tone>(image.at("tone").one_of(kTones.names()));
     view.dither = image.boolean_or("dither", false);
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "common/system/error.h"
-#include "common/system/escape.h"
 #include "common/system/suggestion.h"
 
 #include <algorithm>
@@ -17,12 +16,12 @@ template <typename Value, std::size_t N> struct NameTable {
     std::array<std::pair<std::string_view, Value>, N> entries;
 
     /// Returns the value of a name. Throws Error for an unknown name, with the nearest known one or a list.
-    Value value(std::string_view name) const {
-        const auto found = std::ranges::find(entries, name, [](const auto& entry) { return entry.first; });
-        if (found != entries.end()) return found->second;
-        std::vector<std::string_view> names;
-        for (const auto& [known, value] : entries) names.push_back(known);
-        throw Error(message(what, ": found ", quoted_text(name), suggestion_or_list(name, names)));
+    Value value(std::string_view name) const { return entries[name_index(what, name, names())].second; }
+    /// Returns all names, in their order.
+    std::vector<std::string_view> names() const {
+        std::vector<std::string_view> list;
+        for (const auto& entry : entries) list.push_back(entry.first);
+        return list;
     }
     /// Returns the name of a value, which must be in the table.
     std::string_view name(Value value) const {

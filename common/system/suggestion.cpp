@@ -1,5 +1,6 @@
 #include "common/system/suggestion.h"
 
+#include "common/system/error.h"
 #include "common/system/escape.h"
 
 #include <algorithm>
@@ -50,6 +51,13 @@ std::string listed(const std::vector<std::string_view>& names) {
 std::string suggestion_or_list(std::string_view name, const std::vector<std::string_view>& known) {
     const std::string nearest = suggestion(name, known);
     return nearest.empty() ? "; expected one of " + listed(known) : nearest;
+}
+
+std::size_t name_index(const char* what, std::string_view name, const std::vector<std::string_view>& known) {
+    const auto found = std::ranges::find(known, name);
+    if (found == known.end())
+        throw Error(message(what, ": found ", quoted_text(name), suggestion_or_list(name, known)));
+    return static_cast<std::size_t>(found - known.begin());
 }
 
 } // namespace duet

@@ -1,4 +1,4 @@
-// This file suggests what a user may have meant by an unknown name.
+// This file looks up names, and suggests what a user may have meant by an unknown one.
 #pragma once
 
 #include <string>
@@ -13,5 +13,8 @@ std::string suggestion(std::string_view name, const std::vector<std::string_view
 std::string listed(const std::vector<std::string_view>& names);
 /// Returns suggestion(), or "; expected one of …" with all known names where none is near.
 std::string suggestion_or_list(std::string_view name, const std::vector<std::string_view>& known);
+/// Returns the index of a name among the known ones. Throws Error for an unknown name, with suggestion_or_list();
+/// `what` says what is named, "integrator", or the option that takes the name.
+std::size_t name_index(const char* what, std::string_view name, const std::vector<std::string_view>& known);
 
 } // namespace duet

@@ -98,12 +98,12 @@ json side_json(const ReportImage& side) {
 json tones_json() {
     constexpr int kLow = -20, kHigh = 20, kStepsPerStop = 32;
     json tones = json::object();
-    for (std::size_t i = 0; i < kToneNames.size(); ++i) {
-        const ToneMapping& mapping = tone_mapping(static_cast<Tone>(i));
+    for (const auto& [name, tone] : kTones.entries) {
+        const ToneMapping& mapping = tone_mapping(tone);
         std::vector<float> curve;
         for (int k = kLow * kStepsPerStop; k <= kHigh * kStepsPerStop; ++k)
             curve.push_back(mapping.curve(std::exp2(static_cast<float>(k) / kStepsPerStop)));
-        tones[std::string(kToneNames[i])] = {
+        tones[std::string(name)] = {
             {"inset", mapping.inset}, {"outset", mapping.outset}, {"curve", curve}, {"log2_range", {kLow, kHigh}}};
     }
     return tones;
@@ -129,7 +129,7 @@ std::string report_page(const ReportPage& page) {
                        {"height", page.a.image.height()},
                        {"eight_bit", page.encoding == Encoding::kEncoded},
                        {"tones", tones_json()},
-                       {"tone", kToneNames[static_cast<std::size_t>(page.view.tone)]},
+                       {"tone", kTones.name(page.view.tone)},
                        {"exposure", page.view.exposure},
                        {"sides", {side_json(page.a), side_json(page.b)}},
                        {"difference", difference_planes(page.a.image, page.b.image)},

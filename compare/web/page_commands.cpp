@@ -3,6 +3,7 @@
 
 #include "common/system/error.h"
 #include "common/system/stopwatch.h"
+#include "common/system/suggestion.h"
 #include "compare/view/camera_control.h"
 #include "compare/view/edits.h"
 #include "compare/view/inspect.h"
@@ -27,11 +28,6 @@ constexpr int kMaxSide = 4096;
 
 JsonPath path_of(const Json& command) { return command.at("path").get<JsonPath>(); }
 Vec3d vector_of(const Json& v) { return {v.at(0).get<double>(), v.at(1).get<double>(), v.at(2).get<double>()}; }
-template <typename Names> Json names_of(const Names& names) {
-    Json list = Json::array();
-    for (const auto& name : names) list.push_back(name);
-    return list;
-}
 
 /// Returns the map that turns and scales about a point: {"axis": 0 to 2, "degrees": …} or {"factor": …}.
 Mat4d map_about(Vec3d center, const Json& command) {
@@ -85,11 +81,7 @@ struct PageCommands {
     }
     // {"exposure"} or {"tone"}: shows the image in another way
     static Json display(Session& s, const Json& command) {
-        if (command.contains("tone")) {
-            const auto tone = parse_tone(command["tone"].get<std::string>());
-            if (!tone) throw Error("unknown tone curve");
-            s.view_transform_.tone = *tone;
-        }
+        if (command.contains("tone")) s.view_transform_.tone = kTones.value(command["tone"].get<std::string>());
         if (command.contains("exposure"))
             s.view_transform_.exposure = std::clamp(command["exposure"].get<float>(), -kMaxExposure, kMaxExposure);
         return s.shown();
@@ -191,9 +183,8 @@ struct PageCommands {
         if (command.contains("mesh"))
             return edited(s, [&](const std::string& text) { return with_new_mesh(text, command["mesh"]); });
         const auto what = command.at("what").get<std::string>();
-        const auto name = std::find(kNewElementNames.begin(), kNewElementNames.end(), what);
-        if (name == kNewElementNames.end()) throw Error(message("nothing that could be added: ", what));
-        const auto element = static_cast<NewElement>(name - kNewElementNames.begin());
+        const auto element =
+            static_cast<NewElement>(name_index("what", what, {kNewElementNames.begin(), kNewElementNames.end()}));
         const Camera camera = s.document().camera();
         const double size = shown_height(camera, length(camera.look_at - camera.eye)) / 5;
         return edited(s,
@@ -224,7 +215,7 @@ struct PageCommands {
         const std::string quantity = command.value("quantity", s.quantity_);
         try {
             if (command.contains("shading"))
-                s.whole_image_.raster.shading = raster::parse_shading(std::string(command["shading"]));
+                s.whole_image_.raster.shading = raster::kShadings.value(std::string(command["shading"]));
             if (command.contains("integrator"))
                 s.whole_image_.raytrace.integrator = raytrace::integrator(std::string(command["integrator"]));
             s.settings_ = s.settings_of(quantity);
@@ -240,10 +231,10 @@ struct PageCommands {
     static Json choices(Session&, const Json&) {
         Json integrators = Json::array();
         for (const auto integrator : kIntegrators) integrators.push_back(raytrace::integrator_name(integrator));
-        return {{"shadings", names_of(raster::shading_names())},
+        return {{"shadings", raster::kShadings.names()},
                 {"integrators", integrators},
-                {"tones", names_of(kToneNames)},
-                {"additions", names_of(kNewElementNames)}};
+                {"tones", kTones.names()},
+                {"additions", kNewElementNames}};
     }
 
     // Returns the names of the quantities that choose() knows for this scene.

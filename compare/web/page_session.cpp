@@ -118,10 +118,10 @@ Json PageSession::state() {
             {"width", scene.image_size().width},
             {"height", scene.image_size().height},
             {"quantity", quantity_},
-            {"shading", raster::shading_names()[static_cast<std::size_t>(whole_image_.raster.shading)]},
+            {"shading", raster::kShadings.name(whole_image_.raster.shading)},
             {"integrator", raytrace::integrator_name(whole_image_.raytrace.integrator)},
             {"exposure", std::round(static_cast<double>(view_transform_.exposure) * 1000) / 1000},
-            {"tone", kToneNames[static_cast<std::size_t>(view_transform_.tone)]}};
+            {"tone", kTones.name(view_transform_.tone)}};
 }
 
 // Makes the bytes that the page shows.

@@ -1,21 +1,27 @@
 // Implements the built-in shadings as programs.
 #pragma once
 
+#include "common/system/name_table.h"
 #include "raster/settings.h"
 #include "raster/shader/packet_shader.h"
 
 #include <memory>
-#include <string>
-#include <vector>
 
 namespace duet::raster {
 
-/// Returns the shading of a name that shading_names() lists ("lit", "phong" …). Throws Error for any other name.
-Shading parse_shading(std::string_view name);
-/// Returns the names of all shadings, in the order of Shading.
-std::vector<std::string> shading_names();
-/// Returns the names as a list for people, "lit, phong … or depth".
-std::string shading_list();
+/// The names of all shadings.
+inline constexpr NameTable<Shading, 11> kShadings{"shading",
+                                                  {{{"lit", Shading::kLit},
+                                                    {"phong", Shading::kPhong},
+                                                    {"gouraud", Shading::kGouraud},
+                                                    {"flat", Shading::kFlat},
+                                                    {"toon", Shading::kToon},
+                                                    {"wireframe", Shading::kWireframe},
+                                                    {"lines", Shading::kLines},
+                                                    {"edges", Shading::kEdges},
+                                                    {"normal", Shading::kNormal},
+                                                    {"albedo", Shading::kAlbedo},
+                                                    {"depth", Shading::kDepth}}}};
 
 /// Returns the program of a shading for a camera; null for Shading::kLit, which has no program
 /// (raster/shading/sample_attributes.h).

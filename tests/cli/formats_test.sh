@@ -56,7 +56,7 @@ for program in raster raytrace; do
     expect 0 "$bin/$program" models/cornell.json -o "$scratch/view.pfm" --size 24x16 --spp 2 --quiet $cheap --tone agx
     cmp -s "$scratch/plain.pfm" "$scratch/view.pfm" || fail "$program: --tone changed linear values"
     expect 2 "$bin/$program" models/cornell.json -o "$scratch/view.png" --tone warm
-    one_line_error "--tone: found warm, expected none, filmic or agx"
+    one_line_error 'tone: found "warm"; expected one of "none", "filmic", "agx"'
     expect 2 "$bin/$program" models/cornell.json -o "$scratch/view.png" --exposure nan
     one_line_error "expected a number of stops in"
 done

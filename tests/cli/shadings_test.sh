@@ -2,14 +2,15 @@
 # raster --shading, --msaa, --edges: each name shows something of its own; what there is not is refused.
 . "$(dirname "$0")/support.sh"
 
+names='lit phong gouraud flat toon wireframe lines edges normal albedo depth'
 expect 0 "$bin/raster" --help
-for word in gouraud wireframe --msaa --sample-shading --edges Example; do
+for word in $names --msaa --sample-shading --edges Example; do
     grep -q -e "$word" "$scratch/stdout" || fail "raster --help does not mention $word"
 done
 
 scene=models/amphora.json
 sums=
-for name in lit phong gouraud flat toon wireframe lines edges normal albedo depth; do
+for name in $names; do
     expect 0 "$bin/raster" $scene --size 96x64 --quiet --shading $name -o "$scratch/$name.ppm"
     sum=$(cksum < "$scratch/$name.ppm")
     case "$sums" in
@@ -18,7 +19,7 @@ for name in lit phong gouraud flat toon wireframe lines edges normal albedo dept
     sums="$sums $sum"
 done
 expect 2 "$bin/raster" $scene --shading fancy -o "$scratch/no.ppm"
-one_line_error "lit, phong, gouraud, flat, toon, wireframe, lines, edges, normal, albedo or depth"
+one_line_error '"lit", "phong", "gouraud", "flat", "toon", "wireframe", "lines", "edges", "normal", "albedo", "depth"'
 
 expect 0 "$bin/raster" $scene --size 96x64 --quiet --shading phong --msaa 8 -o "$scratch/msaa.ppm" --stats \
     "$scratch/msaa.json"

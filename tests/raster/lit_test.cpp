@@ -247,7 +247,7 @@ TEST_SUITE("unit") {
                 CHECK(normal.samples(x, y) == 1);
             }
         CHECK(normal.variance.empty());
-        CHECK_THROWS_AS(raster::parse_shading("fancy"), Error);
-        CHECK(raster::parse_shading("depth") == raster::Shading::kDepth);
+        CHECK_THROWS_AS(raster::kShadings.value("fancy"), Error);
+        CHECK(raster::kShadings.value("depth") == raster::Shading::kDepth);
     }
 }

@@ -70,10 +70,10 @@ void App::draw_display() {
     if (show_ == Show::kFlip && shown_comparison_ && shown_comparison_->show == show_)
         row("mean FLIP", number_text(shown_comparison_->figure));
     ImGui::SliderFloat("exposure", &view_transform_.exposure, -8, 8, "%.2f EV");
-    const std::string now(kToneNames[static_cast<std::size_t>(view_transform_.tone)]);
+    const std::string now(kTones.name(view_transform_.tone));
     if (!ImGui::BeginCombo("tone", now.c_str())) return;
-    for (std::size_t i = 0; i < kToneNames.size(); ++i)
-        if (ImGui::Selectable(std::string(kToneNames[i]).c_str())) view_transform_.tone = static_cast<Tone>(i);
+    for (const auto& [name, tone] : kTones.entries)
+        if (ImGui::Selectable(std::string(name).c_str())) view_transform_.tone = tone;
     ImGui::EndCombo();
 }
 
@@ -84,11 +84,10 @@ void App::draw_renderers() {
         ImGui::EndCombo();
     }
     ImGui::BeginDisabled(quantity_ != kWholeImage);
-    const std::vector<std::string> shadings = raster::shading_names();
-    if (ImGui::BeginCombo("raster", shadings[static_cast<std::size_t>(settings_.raster.shading)].c_str())) {
-        for (const std::string& shading : shadings) {
-            if (!ImGui::Selectable(shading.c_str())) continue;
-            settings_.raster.shading = raster::parse_shading(shading);
+    if (ImGui::BeginCombo("raster", std::string(raster::kShadings.name(settings_.raster.shading)).c_str())) {
+        for (const auto& [shading_name, shading] : raster::kShadings.entries) {
+            if (!ImGui::Selectable(std::string(shading_name).c_str())) continue;
+            settings_.raster.shading = shading;
             use_settings();
         }
         ImGui::EndCombo();

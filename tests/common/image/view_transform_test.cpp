@@ -45,7 +45,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("tone curves rise from 0 to at most 1, and keep gray") {
         for (const Tone tone : {Tone::kNone, Tone::kFilmic, Tone::kAgx}) {
-            CAPTURE(kToneNames[static_cast<std::size_t>(tone)]);
+            CAPTURE(kTones.name(tone));
             const ToneMapping& mapping = tone_mapping(tone);
             CHECK(mapping.curve(0) == doctest::Approx(0).epsilon(1e-6));
             float last = 0;
