@@ -1,5 +1,6 @@
 #include "compare/bench/bench_renderer.h"
 
+#include "common/system/suggestion.h"
 #include "compare/renderer.h"
 #include "compare/report/text.h"
 #include "compare/timing.h"
@@ -94,9 +95,7 @@ constexpr std::string_view kSamplers[] = {"sobol", "stratified", "independent"};
 
 template <typename Names>
 void check_names(const char* option, const std::vector<std::string>& found, const Names& known) {
-    for (const std::string& name : found)
-        if (std::find(std::begin(known), std::end(known), name) == std::end(known))
-            throw Error(message(option, ": found ", name, ", expected one or more of ", joined(known)));
+    for (const std::string& name : found) name_index(option, name, {std::begin(known), std::end(known)});
 }
 
 } // namespace

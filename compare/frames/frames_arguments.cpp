@@ -1,27 +1,20 @@
 // Command-line arguments of `compare frames`.
 #include "common/program/command_line.h"
-#include "common/system/error.h"
+#include "common/system/suggestion.h"
 #include "compare/arguments.h"
 #include "compare/frames/frames.h"
-
-#include <algorithm>
 
 namespace duet::compare {
 
 namespace {
 
-// Returns the values of the names that an option was given, in their order. Throws Error for a name that is not among
-// `all`.
+// Returns the values of the names that an option was given. Throws Error for a name that is not among `all`, which are
+// in the order of the values.
 template <typename Value>
 std::vector<Value> parse_names(const char* option, const std::vector<std::string>& names,
-                               const std::vector<std::pair<std::string, Value>>& all) {
+                               const std::vector<std::string_view>& all) {
     std::vector<Value> values;
-    for (const std::string& name : names) {
-        const auto found = std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.first == name; });
-        if (found == all.end())
-            throw Error(message(option, ": found ", name, ", expected ", all.front().first, " or ", all.back().first));
-        values.push_back(found->second);
-    }
+    for (const std::string& name : names) values.push_back(static_cast<Value>(name_index(option, name, all)));
     return values;
 }
 
@@ -36,8 +29,7 @@ void add_frames(CommandLine& program) {
         .add_parsed(
             "--view",
             [&](const auto& names) {
-                options.views = parse_names<FrameView>("--view", names,
-                                                       {{"whole", FrameView::kWhole}, {"close", FrameView::kClose}});
+                options.views = parse_names<FrameView>("--view", names, {"whole", "close"});
             },
             "whole, close (it fills most of the image) or both (default)")
         .comma_separated();
@@ -45,8 +37,7 @@ void add_frames(CommandLine& program) {
         .add_parsed(
             "--work",
             [&](const auto& names) {
-                options.works = parse_names<FrameWork>("--work", names,
-                                                       {{"phong", FrameWork::kPhong}, {"depth", FrameWork::kDepth}});
+                options.works = parse_names<FrameWork>("--work", names, {"phong", "depth"});
             },
             "phong, depth (a depth-only pass) or both (default)")
         .comma_separated();

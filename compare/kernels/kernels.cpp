@@ -4,9 +4,8 @@
 #include "common/program/statistics.h"
 #include "common/system/parallel.h"
 #include "common/system/stopwatch.h"
-#include "compare/report/text.h"
+#include "common/system/suggestion.h"
 
-#include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -21,9 +20,7 @@ constexpr const char* kEmbreeMissing =
     "configure and build again";
 
 std::vector<std::string> chosen_works(const std::vector<std::string>& works) {
-    for (const std::string& work : works)
-        if (std::ranges::find(kWorks, work) == kWorks.end())
-            throw Error("--work: found " + work + ", expected some of " + joined(kWorks));
+    for (const std::string& work : works) name_index("--work", work, {kWorks.begin(), kWorks.end()});
     return works.empty() ? kWorks : works;
 }
 
@@ -37,12 +34,8 @@ std::vector<EmbreeQuality> chosen_peers(const std::vector<std::string>& names) {
     std::vector<std::string> known;
     for (const EmbreeQuality& quality : all) known.push_back(name_of(quality));
     std::vector<EmbreeQuality> chosen;
-    for (const std::string& name : names) {
-        const auto found = std::ranges::find(known, name);
-        if (found == known.end())
-            throw Error("--peers: found " + name + ", expected none, or some of " + joined(known));
-        chosen.push_back(all[static_cast<std::size_t>(found - known.begin())]);
-    }
+    for (const std::string& name : names)
+        chosen.push_back(all[name_index("--peers", name, {known.begin(), known.end()})]);
     return names.empty() ? all : chosen;
 }
 
