@@ -1,5 +1,7 @@
 #include "common/scene/file_cache.h"
 
+#include "common/system/file.h"
+
 #include <algorithm>
 #include <chrono>
 
@@ -8,13 +10,6 @@ namespace duet {
 namespace fs = std::filesystem;
 
 namespace {
-
-/// Returns when a file was written; a file that is gone has the earliest time.
-fs::file_time_type write_time(const fs::path& file) {
-    std::error_code missing;
-    const fs::file_time_type time = fs::last_write_time(file, missing);
-    return missing ? fs::file_time_type::min() : time;
-}
 
 /// Files are dated by a clock that is up to a hundredth of a second behind on Linux, and up to two on other systems.
 constexpr std::chrono::milliseconds kFileClockTick{20};

@@ -19,6 +19,12 @@ std::string lower_case_extension(const fs::path& path) {
     return extension;
 }
 
+fs::file_time_type write_time(const fs::path& path) {
+    std::error_code missing;
+    const fs::file_time_type time = fs::last_write_time(path, missing);
+    return missing ? fs::file_time_type::min() : time;
+}
+
 namespace {
 
 /// Returns the number of bytes of a file. It comes from the open stream, not from the path, because another program may

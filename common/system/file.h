@@ -15,6 +15,9 @@ namespace duet {
 /// are converted to lower case, independently of the locale.
 std::string lower_case_extension(const std::filesystem::path& path);
 
+/// Returns when a file was last written. A file that is gone, or cannot be examined, has the earliest time.
+std::filesystem::file_time_type write_time(const std::filesystem::path& path);
+
 /// Opens a regular file for reading its bytes. Throws an Error that names the path if the file is missing, is not a
 /// regular file, is larger than `limit` bytes or cannot be read.
 std::ifstream open_file(const std::filesystem::path& path, std::uint64_t limit = std::uint64_t{1} << 32);

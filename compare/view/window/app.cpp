@@ -15,12 +15,6 @@ namespace {
 /// How often the scene file is looked at for changes by another program, in seconds.
 constexpr double kFileCheckSeconds = 1;
 
-std::filesystem::file_time_type write_time(const std::filesystem::path& path) {
-    std::error_code error;
-    const auto time = std::filesystem::last_write_time(path, error);
-    return error ? std::filesystem::file_time_type() : time;
-}
-
 } // namespace
 
 App::App(const ViewOptions& options, Window& window)
