@@ -20,7 +20,6 @@ ImageRgb image(const RasterScene& prepared, const Scene& scene, const RasterSett
 
 Scene with_first_object_moved(Scene scene) {
     scene.objects.front().place(Mat4(translation(Vec3d(0.05, 0.02, 0.1))));
-    scene.objects.front().identity = false;
     finish_scene(scene);
     return scene;
 }

@@ -98,7 +98,6 @@ TEST_SUITE("unit") {
         bool seen_with_old_probes = false;
         for (int step = 1; step <= 10; ++step) {
             edited.objects.front().place(Mat4(translation(Vec3d(0.01 * step, 0, 0))));
-            edited.objects.front().identity = false;
             finish_scene(edited);
             const unsigned load = live.load(wish.view, [&] { return edited; }, true);
             while (live.loaded().load != load || live.loaded().raster->load != load) {
