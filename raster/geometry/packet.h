@@ -107,15 +107,7 @@ inline Floats narrowed(const Doubles& low, const Doubles& high) {
 }
 
 /// Rounds doubles to float precision.
-inline Doubles round_to_float(const Doubles& value) {
-#if defined(__AVX512F__)
-    return _mm512_cvtps_pd(_mm512_cvtpd_ps(value));
-#elif defined(__AVX__)
-    return _mm256_cvtps_pd(_mm256_cvtpd_ps(value));
-#else
-    return _mm_cvtps_pd(_mm_cvtpd_ps(value));
-#endif
-}
+inline Doubles round_to_float(const Doubles& value) { return to_doubles(to_floats(value)); }
 
 /// Converts doubles with integer values to 32-bit integers and stores them.
 inline void store_ints(const Doubles& value, std::int32_t* to) {
