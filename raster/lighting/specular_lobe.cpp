@@ -1,8 +1,8 @@
 #include "raster/lighting/specular_lobe.h"
 
-#include "common/material/metal.h"
-
 #include "common/material/ggx_albedo_table.h"
+#include "common/material/metal.h"
+#include "raster/geometry/packet_lookup.h"
 #include "raster/lighting/ggx_fit.h"
 
 namespace duet {

@@ -1,6 +1,7 @@
 #include "raster/shader/srgb_packet.h"
 
 #include "common/image/srgb.h"
+#include "raster/geometry/packet_lookup.h"
 
 #include <algorithm>
 #include <bit>

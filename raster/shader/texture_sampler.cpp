@@ -3,6 +3,7 @@
 #include "common/system/error.h"
 #include "common/texture/anisotropic_probes.h"
 #include "common/texture/texel_index.h"
+#include "raster/geometry/packet_lookup.h"
 
 namespace duet::raster {
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "raster/geometry/geometry.h"
+#include "raster/geometry/packet_lookup.h"
 #include "raster/geometry/planes.h"
 #include "raster/geometry/triangles.h"
 #include "raster/visibility/shader.h"
