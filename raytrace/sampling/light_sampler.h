@@ -10,8 +10,7 @@
 
 namespace duet {
 
-/// Chooses among the lights and the environment. Indices below light_count() are lights; index light_count() is the
-/// environment.
+/// Chooses among the lights and the environment. Indices below environment_index() are lights.
 class LightSampler {
 public:
     LightSampler() = default;
@@ -24,7 +23,6 @@ public:
     /// Returns the probability with which sample chooses `index`. It is 0 for an index beyond the last.
     float probability(const LightReceiver& receiver, std::size_t index) const;
 
-    std::size_t light_count() const { return light_count_; }
     std::size_t environment_index() const { return light_count_; }
     /// Returns whether there is no light to sample.
     bool empty() const { return choice_count_ == 0; }
