@@ -27,14 +27,12 @@ void add_options(CommandLine& command_line, Options& options) {
              "Scattering events at most: 0 = emission only, 1 = direct light (default 64)")
         .range(0, raytrace::PathTracerSettings::kMostDepth);
     command_line.add("--integrator", options.integrator,
-                     "path (default), naive (no light sampling), bidirectional (paths from the camera and from the"
-                     " lights, connected), vcm (the same, also merged where they nearly meet), photons "
-                     "(progressive photon mapping), metropolis (Markov chains of connected paths), "
-                     "whitted (mirrors, glass and hard shadows), direct, "
-                     "unshadowed (direct light without visibility), lights "
-                     "(emission and direct light of lights), environment"
-                     " (its light on diffuse surfaces), reflection (what is seen by way of metal and glass), "
-                     "normal or albedo");
+                     "path (default), naive (no light sampling), bidirectional (paths from the camera and from the "
+                     "lights, connected), vcm (the same, also merged where they nearly meet), photons (progressive "
+                     "photon mapping), metropolis (Markov chains of connected paths), whitted (mirrors, glass and hard "
+                     "shadows), direct, unshadowed (direct light without visibility), lights (emission and direct "
+                     "light of lights), environment (its light on diffuse surfaces), reflection (what is seen by way "
+                     "of metal and glass), normal or albedo");
     command_line.add(
         "--sampler", options.sampler,
         "sobol (default: Owen-scrambled), blue-noise (the same, ordered so that what noise is left at few "

@@ -110,8 +110,7 @@ void print_differences(std::ostream& out, const KernelResults& table) {
     if (rows.empty()) return;
     const std::vector<int> widths{2, -12, 11, 8, 8, 10, 10, 11, 11, 10, 10, 2, 0};
     out << "  where both differ: ties, outlines and ends within rounding; edge faults and wrong answers of each; rays "
-           "lost "
-           "from the closed room\n";
+           "lost from the closed room\n";
     print_cells(out, widths,
                 {"", "work", "rays", "ties", "edges", "our e.f.", "its e.f.", "our wrong", "its wrong", "we lose",
                  "it loses", "", "the peer's setting with the most"});

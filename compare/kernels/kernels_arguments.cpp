@@ -20,14 +20,12 @@ void add_kernels(CommandLine& program) {
         .comma_separated();
     kernels
         .add("--work", settings.works,
-             "Of build (seconds, and bytes a triangle), camera (single rays), camera-bulk (packets and "
-             "streams), "
+             "Of build (seconds, and bytes a triangle), camera (single rays), camera-bulk (packets and streams), "
              "bounce, shadow (default: all)")
         .comma_separated();
     kernels
         .add("--peers", options.peers,
-             "Embree's settings: medium, high (build quality), medium-robust, high-robust, where there is "
-             "AVX-512 "
+             "Embree's settings: medium, high (build quality), medium-robust, high-robust, where there is AVX-512 "
              "medium-avx2 and high-avx2, or none (default: all)")
         .comma_separated();
     kernels.add("--size", settings.size, "One camera ray a pixel of WIDTHxHEIGHT (default 1920x1080)");
@@ -40,10 +38,8 @@ void add_kernels(CommandLine& program) {
         .number_range(1e-4, 1e4, "seconds from 1e-4 to 1e4");
     kernels
         .add("--watertight", settings.watertight,
-             "Rays aimed at points, edges and vertices from within, each judged in double precision, where the "
-             "mesh "
-             "or room is closed; 0: none (default "
-             "1000000)")
+             "Rays aimed at points, edges and vertices from within, each judged in double precision, where the mesh or "
+             "room is closed; 0: none (default 1000000)")
         .range(std::int64_t{0}, std::int64_t{1} << 40);
     kernels.add("--seed", settings.seed, "Seed of all random numbers (default 0)");
     kernels.add("--stats", options.stats, "Write the rows as JSON to this file (-: standard output)");

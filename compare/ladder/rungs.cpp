@@ -100,9 +100,8 @@ std::array<RungPlan, kRungCount> plan_rungs(const Scene& scene, const PreparedPa
         ""};
     const RungPlan reflections{
         {light_renderers("reflections", pair, kReflection, Integrator::kReflection, true)},
-        "Looks up the mirrored and the refracted ray in the image, else in probes that see the scene from one "
-        "point per "
-        "object, blurred where metal is rough.",
+        "Looks up the mirrored and the refracted ray in the image, else in probes that see the scene from one point "
+        "per object, blurred where metal is rough.",
         "Follows the path on from metal and glass to whatever it meets.",
         ""};
     const RungPlan everything{{light_renderers("everything", pair, {}, Integrator::kPath, true)},

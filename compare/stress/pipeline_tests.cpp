@@ -118,9 +118,8 @@ StressResult threads(const StressTest& test, const StressSetting& setting) {
 }
 
 constexpr std::string_view kHitSource =
-    "where they differ (16 such pixels a trial at most), rays in double precision "
-    "within 1/128 pixel see the one and the "
-    "other, or a tie (compare/hits); distances within 1e-5 of the primitive's reach";
+    "where they differ (16 such pixels a trial at most), rays in double precision within 1/128 pixel see the one and "
+    "the other, or a tie (compare/hits); distances within 1e-5 of the primitive's reach";
 constexpr std::string_view kTextbookMethod =
     "Moeller-Trumbore and t > 0.001 in float; four such pixels a trial at most";
 

@@ -63,8 +63,7 @@ void list_shadow_approximations(const RasterSceneData& data, const RasterSetting
     if (scene.needs.surface_lights)
         result.emplace_back(
             "Soft shadows are estimated from the depths that the light's center sees, by few taps per pixel that "
-            "neighbors "
-            "share.");
+            "neighbors share.");
     if (std::any_of(scene.maps.begin(), scene.maps.end(),
                     [](const SurfaceMaps& maps) { return maps.has_transparency() && !(maps.cutoff > 0); }))
         result.emplace_back(

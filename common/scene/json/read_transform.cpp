@@ -112,8 +112,7 @@ const char* transform_error(const MotionTransform& transform) {
         for (const double t : critical_times(transform))
             is_regular = is_regular && sign * determinant3(lerp(transform.start, transform.end, t)) > least;
         if (!is_regular)
-            return "the motion passes through a singular transform (matrix entries are interpolated: turn by less "
-                   "than "
+            return "the motion passes through a singular transform (matrix entries are interpolated: turn by less than "
                    "180 degrees)";
     }
     if (!within_limits(transform.start) || !within_limits(transform.end))
