@@ -118,7 +118,7 @@ template <int kWidth> std::vector<PacketRays<kWidth>> packets_of(std::span<const
     for (std::size_t i = 0; i < packets.size() * kWidth; ++i) {
         PacketRays<kWidth>& packet = packets[i / kWidth];
         const std::size_t lane = i % kWidth;
-        const Ray& ray = rays[std::min(i, rays.size() - 1)]; // lanes beyond the end are mrequested off
+        const Ray& ray = rays[std::min(i, rays.size() - 1)]; // lanes beyond the end are masked off
         packet.org_x[lane] = ray.origin.x, packet.org_y[lane] = ray.origin.y, packet.org_z[lane] = ray.origin.z;
         packet.dir_x[lane] = ray.direction.x, packet.dir_y[lane] = ray.direction.y;
         packet.dir_z[lane] = ray.direction.z;
