@@ -88,16 +88,11 @@ struct Frame1 {
         settings.ambient_occlusion = settings.indirect_light = false;
         settings.threads = 1;
         prepared.emplace(prepare(scene, settings));
-        const View view{scene.camera, width, height};
-        const Pinhole pinhole = CameraModel(view).pinhole();
-        const PassView pass{.pinhole = pinhole,
-                            .time = 0,
-                            .viewport = viewport_of(view, pinhole),
-                            .samples = std::vector<SampleOffset>(1)};
+        const PassView pass = center_view({scene.camera, width, height});
         const TileGrid grid{{0, 0, width, height}};
         const auto geometry = prepared->data().geometries->take();
         process_geometry(prepared->data(), grid, pass, settings, *geometry);
-        gbuffer.emplace(ScreenProjection(pinhole, SampleOffset()), width, height, any_clear_coat(scene));
+        gbuffer.emplace(ScreenProjection(pass.pinhole, SampleOffset()), width, height, any_clear_coat(scene));
         Planes3 emission(width, height);
         fill_gbuffer(prepared->data(), settings, *geometry, pass, grid, SampleOffset(), Control{}, *gbuffer, emission);
     }

@@ -34,14 +34,11 @@ private:
 
 /// Returns the G-buffer of a scene from its camera.
 GBuffer gbuffer_of(const RasterSceneData& data, int width, int height) {
-    const View view{data.scene.camera, width, height};
-    const Pinhole pinhole = CameraModel(view).pinhole();
-    const std::vector<SampleOffset> samples(1);
-    const PassView pass{.pinhole = pinhole, .time = 0, .viewport = viewport_of(view, pinhole), .samples = samples};
+    const PassView pass = center_view({data.scene.camera, width, height});
     const TileGrid grid{{0, 0, width, height}};
     const auto geometry = data.geometries->take();
     process_geometry(data, grid, pass, {}, *geometry);
-    GBuffer gbuffer(ScreenProjection(pinhole, SampleOffset()), width, height, any_clear_coat(data.scene));
+    GBuffer gbuffer(ScreenProjection(pass.pinhole, SampleOffset()), width, height, any_clear_coat(data.scene));
     Planes3 emission(width, height);
     fill_gbuffer(data, {}, *geometry, pass, grid, SampleOffset(), Control{}, gbuffer, emission);
     return gbuffer;
