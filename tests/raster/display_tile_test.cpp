@@ -209,20 +209,16 @@ TEST_SUITE("unit") {
     TEST_CASE("hits found side by side are those found one by one") {
         const Scene scene = varied_scene(200);
         for (const View& view : {perspective(), orthographic()}) {
-            const raster::RasterSettings settings;
-            const raster::RasterScene prepared = raster::prepare(scene, settings);
-            const Pinhole pinhole = CameraModel(view).pinhole();
-            const std::vector<raster::SampleOffset> samples{{37, 201}};
-            const raster::PassView pass{pinhole, 0, raster::viewport_of(view, pinhole), samples};
-            const raster::TileGrid grid{{0, 0, view.width, view.height}};
-            raster::Geometry geometry;
-            process_geometry(prepared.data(), grid, pass, settings, geometry);
+            const ImageGeometry drawn(scene, view);
+            const raster::Geometry& geometry = drawn.geometry;
+            const Pinhole& pinhole = drawn.pinhole;
+            const raster::SampleOffset offset = drawn.samples[0];
             double worst = 0;
             int compared = 0;
-            for (std::size_t t = 0; t < grid.size(); ++t) {
+            for (std::size_t t = 0; t < drawn.grid.size(); ++t) {
                 raster::DepthTile depths;
-                rasterize_tile(geometry, pass, samples[0], grid.tile(t), t, depths);
-                const raster::HitTile tile(depths, geometry, pass);
+                rasterize_tile(geometry, drawn.pass, offset, drawn.grid.tile(t), t, depths);
+                const raster::HitTile tile(depths, geometry, drawn.pass);
                 const raster::PixelRect& r = tile.rect();
                 for (int y = r.y0; y < r.y1; ++y)
                     for (int x = r.x0; x < r.x1; ++x) {
@@ -231,7 +227,7 @@ TEST_SUITE("unit") {
                         if (!hit.valid() || scene.objects[hit.object].shape == 2) continue;
                         const raster::Run& run = geometry.triangles.run_of(depths.id(x, y));
                         if (run.sphere) continue;
-                        const Vec2d pixel = samples[0].position(x, y);
+                        const Vec2d pixel = offset.position(x, y);
                         const Hit naive =
                             hit_triangle(geometry.triangles.unclipped(depths.id(x, y)), {hit.object, hit.primitive},
                                          pixel, pinhole.ray(pixel).t_min / pinhole.near, pinhole.near);

@@ -70,21 +70,8 @@ Scene shuffled_wall() {
 }
 
 /// Holds the geometry of an image and its sample batches, tile by tile.
-struct PacketImage {
-    const Scene scene;
-    const raster::RasterSettings settings;
-    const raster::RasterScene prepared;
-    const Pinhole pinhole;
-    const std::vector<raster::SampleOffset> samples{{37, 201}};
-    const raster::PassView pass;
-    const raster::TileGrid grid;
-    raster::Geometry geometry;
-
-    PacketImage(const Scene& scene_, const View& view)
-        : scene(scene_), prepared(raster::prepare(scene, settings)), pinhole(CameraModel(view).pinhole()),
-          pass{pinhole, 0, raster::viewport_of(view, pinhole), samples}, grid{{0, 0, view.width, view.height}} {
-        process_geometry(prepared.data(), grid, pass, settings, geometry);
-    }
+struct PacketImage : ImageGeometry {
+    using ImageGeometry::ImageGeometry;
     /// Calls use(rect, packets) for each tile.
     template <typename Use> void for_each_tile(const Use& use) const {
         for (std::size_t t = 0; t < grid.size(); ++t) {

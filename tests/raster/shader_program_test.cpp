@@ -91,26 +91,22 @@ struct Compared {
 };
 
 Compared packets_against_single(const Scene& scene, const View& view, const raster::ShaderProgram& program) {
-    raster::RasterSettings settings;
-    const raster::RasterScene prepared = raster::prepare(scene, settings);
-    const Pinhole pinhole = CameraModel(view).pinhole();
-    const std::vector<raster::SampleOffset> samples{{37, 201}};
-    const raster::PassView pass{pinhole, 0, raster::viewport_of(view, pinhole), samples};
-    const raster::TileGrid grid{{0, 0, view.width, view.height}};
-    raster::Geometry geometry;
-    process_geometry(prepared.data(), grid, pass, settings, geometry);
+    const ImageGeometry drawn(scene, view);
+    const raster::RasterSceneData& data = drawn.prepared.data();
+    const raster::PassView& pass = drawn.pass;
+    const raster::Geometry& geometry = drawn.geometry;
     Compared found;
-    for (std::size_t t = 0; t < grid.size(); ++t) {
-        const raster::PixelRect& r = grid.tile(t);
+    for (std::size_t t = 0; t < drawn.grid.size(); ++t) {
+        const raster::PixelRect& r = drawn.grid.tile(t);
         raster::DepthTile depths;
-        rasterize_tile(geometry, pass, samples[0], r, t, depths);
+        rasterize_tile(geometry, pass, drawn.samples[0], r, t, depths);
         std::vector<raster::SamplePacket> packets;
         for (int y = r.y0; y + 2 <= r.y1; y += 2)
             for (int x = r.x0; x + 8 <= r.x1; x += 8) packets.push_back(raster::sample_packet(depths, x, y));
         std::vector<raster::ColorPacket> together(packets.size());
         std::vector<std::uint32_t> seen(packets.size());
-        program.for_tile(prepared.data(), geometry, pass, r)->shade(packets, together.data(), seen.data());
-        const auto one_by_one = program.for_tile(prepared.data(), geometry, pass, r);
+        program.for_tile(data, geometry, pass, r)->shade(packets, together.data(), seen.data());
+        const auto one_by_one = program.for_tile(data, geometry, pass, r);
         for (std::size_t s = 0; s < packets.size(); ++s) {
             const raster::SamplePacket& packet = packets[s];
             raster::ColorPacket by_itself;
@@ -123,7 +119,7 @@ Compared packets_against_single(const Scene& scene, const View& view, const rast
                 if (id == raster::kNoTriangle) continue;
                 const Vec2d pixel = packet.position(i);
                 const Hit hit = find_hit(geometry, pass, id, pixel);
-                const Rgb alone = program.shade_hit(prepared.data(), pass, hit, pixel);
+                const Rgb alone = program.shade_hit(data, pass, hit, pixel);
                 const auto shown = [&](const raster::ColorPacket& c) {
                     return std::array<float, 3>{c.r[i], c.g[i], c.b[i]};
                 };

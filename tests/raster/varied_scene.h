@@ -1,6 +1,7 @@
 // This header builds a scene of everything that the rasterizer draws, for tests that compare two shading paths.
 #pragma once
 
+#include "raster/geometry/geometry.h"
 #include "tests/raster/scenes.h"
 
 namespace duet::test {
@@ -37,5 +38,23 @@ inline View orthographic() {
     view.camera.height = 4;
     return view;
 }
+
+/// Holds the geometry of an image with one sample per pixel, which is not at its center.
+struct ImageGeometry {
+    const Scene scene;
+    const raster::RasterSettings settings;
+    const raster::RasterScene prepared;
+    const Pinhole pinhole;
+    const std::vector<raster::SampleOffset> samples{{37, 201}};
+    const raster::PassView pass;
+    const raster::TileGrid grid;
+    raster::Geometry geometry;
+
+    ImageGeometry(const Scene& scene_, const View& view)
+        : scene(scene_), prepared(raster::prepare(scene, settings)), pinhole(CameraModel(view).pinhole()),
+          pass{pinhole, 0, raster::viewport_of(view, pinhole), samples}, grid{{0, 0, view.width, view.height}} {
+        process_geometry(prepared.data(), grid, pass, settings, geometry);
+    }
+};
 
 } // namespace duet::test
