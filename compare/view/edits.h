@@ -10,8 +10,8 @@
 
 namespace duet::compare {
 
-/// Moves an element of "objects", "lights" or "media" by a vector, in meters. A shape without a transform, a light and a
-/// medium get another place, any other object a last translation. What is everywhere stays as it is.
+/// Moves an element of "objects", "lights" or "media" by a vector, in meters. A shape without a transform, a light and
+/// a medium get another place, any other object a last translation. What is everywhere stays as it is.
 std::string moved(const std::string& text, const JsonPath& element, Vec3d by);
 /// Applies an affine map to an element of "objects" after its own transform; successive maps become one matrix. Of a
 /// light, it changes the position and the direction, of a medium the corners of its box.

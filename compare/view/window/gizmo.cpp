@@ -137,7 +137,8 @@ void App::draw_markers() {
 std::optional<Selection> App::marker_at(ImVec2 position) const {
     std::optional<Selection> found;
     for_each_marker([&](const Selection& marked, ImVec2 pixel) {
-        if (std::hypot(pixel.x - position.x, pixel.y - position.y) <= kMarkerPixels + kGrabPixels / 2) found = marked;
+        const float distance = std::hypot(pixel.x - position.x, pixel.y - position.y);
+        if (distance <= kMarkerPixels + kGrabPixels / 2) found = marked;
     });
     return found;
 }
