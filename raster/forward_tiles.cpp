@@ -5,6 +5,7 @@
 #include "raster/visibility/hit_tile.h"
 #include "raster/visibility/multisample.h"
 #include "raster/visibility/packet_primitives.h"
+#include "raster/visibility/rasterize_tile.h"
 
 #include "common/system/stopwatch.h"
 

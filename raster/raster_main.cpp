@@ -1,4 +1,5 @@
-// Implements the program `raster SCENE -o OUT`, which renders a scene by rasterization.
+// Implements the program `raster SCENE -o OUT`, which renders a scene by rasterization. This file holds its options.
+// run_render_program() loads the scene, calls prepare() and render() of the pipeline, and writes the image.
 #include "common/program/render_program.h"
 #include "raster/render.h"
 #include "raster/shading/built_in_shaders.h"

@@ -9,6 +9,7 @@
 #include "raster/visibility/depth_image.h"
 #include "raster/visibility/hit_tile.h"
 #include "raster/visibility/multisample.h"
+#include "raster/visibility/rasterize_tile.h"
 
 #include "common/image/srgb.h"
 #include "common/system/error.h"

@@ -1,4 +1,5 @@
-// The program `raytrace SCENE -o OUT` renders a scene with the path tracer.
+// The program `raytrace SCENE -o OUT` renders a scene with the path tracer. This file holds its options.
+// run_render_program() loads the scene, calls prepare() and render() of the pipeline, and writes the image.
 #include "common/image/image_file.h"
 #include "common/program/render_program.h"
 #include "common/system/error.h"

@@ -31,6 +31,25 @@ std::int64_t film_bytes(const Film& film) {
     return static_cast<std::int64_t>(sizeof(Film::Pixel)) * film.width() * film.height();
 }
 
+// Fills in what the statistics say about the image, the work done and the scene.
+void fill_statistics(const PathTracerSceneData& scene, const RenderState& state, RenderStatistics& statistics) {
+    const Film& film = state.checkpoint.film();
+    statistics.first_invalid = state.first_invalid;
+    statistics.camera_rays = state.rays.camera;
+    statistics.indirect_rays = state.rays.indirect;
+    statistics.shadow_rays = state.rays.shadow;
+    statistics.triangles = scene.accelerator.primitives();
+    statistics.memory_bytes = scene.accelerator.memory_bytes() + film_bytes(film) + state.aovs.memory_bytes();
+    statistics.bvh = scene.accelerator.statistics();
+    statistics.invalid_samples = film.invalid_samples();
+    statistics.estimated_relmse = film.estimated_relmse();
+    statistics.skipped = skipped(state.plan, state.settings);
+    if (state.plan.russian_roulette)
+        statistics.skipped.push_back(
+            {"paths ended by Russian roulette", "each carried little light", state.rays.ended});
+    statistics.approximations = approximations(state.plan, state.settings);
+}
+
 } // namespace
 
 Rendering render(const PathTracerScene& prepared, const View& view, const PathTracerSettings& settings,
@@ -69,21 +88,8 @@ Rendering render(const PathTracerScene& prepared, const View& view, const PathTr
 
     rendering.radiance = film.image();
     state.aovs.finish(film, rendering);
-    statistics.first_invalid = state.first_invalid;
     statistics.samples_per_pixel = static_cast<int>(std::lround(finished));
-    statistics.camera_rays = state.rays.camera;
-    statistics.indirect_rays = state.rays.indirect;
-    statistics.shadow_rays = state.rays.shadow;
-    statistics.triangles = prepared.data().accelerator.primitives();
-    statistics.memory_bytes = prepared.data().accelerator.memory_bytes() + film_bytes(film) + state.aovs.memory_bytes();
-    statistics.bvh = prepared.data().accelerator.statistics();
-    statistics.invalid_samples = film.invalid_samples();
-    statistics.estimated_relmse = film.estimated_relmse();
-    statistics.skipped = skipped(state.plan, settings);
-    if (state.plan.russian_roulette)
-        statistics.skipped.push_back(
-            {"paths ended by Russian roulette", "each carried little light", state.rays.ended});
-    statistics.approximations = approximations(state.plan, settings);
+    fill_statistics(prepared.data(), state, statistics);
     statistics.seconds.emplace_back("resolve", watch.lap());
     if (settings.denoise) {
         const Planes features = trace_features(state.plan, view, settings);

@@ -189,7 +189,7 @@ bool render_pass(const PassContext& context, double begin, double end) {
             return;
         }
         TileResult result;
-        context.checkpoint.add([&] { result = render_tile(context, camera, tiles[i]); });
+        context.checkpoint.run([&] { result = render_tile(context, camera, tiles[i]); });
         const std::lock_guard lock(mutex);
         context.counts += result.counts;
         context.first_invalid = earlier_sample(context.first_invalid, result.first_invalid);

@@ -1,6 +1,7 @@
 #include "raytrace/render_plan.h"
 
 #include "common/system/error.h"
+#include "raytrace/integrator/russian_roulette.h"
 
 #include <algorithm>
 

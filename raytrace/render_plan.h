@@ -10,10 +10,6 @@
 
 namespace duet::raytrace {
 
-/// The probability with which Russian roulette lets a path continue, over the path's throughput. Factors that suit a
-/// scene of models/ best, from 1 to 14, gain more than a tenth in one of them alone.
-inline constexpr float kSurvivalFactor = 4;
-
 /// Holds the decisions of one render. It refers to the prepared scene, which must outlive it.
 struct RenderPlan {
     RenderPlan(const PathTracerSceneData& prepared_, const View& view, const PathTracerSettings& settings);

@@ -2,6 +2,7 @@
 #include "common/scene/default_scene.h"
 #include "common/scene/file_cache.h"
 #include "common/scene/json/json_reader.h"
+#include "common/scene/json/read_camera.h"
 #include "common/scene/json/read_lights.h"
 #include "common/scene/json/read_materials.h"
 #include "common/scene/json/read_media.h"

@@ -3,6 +3,7 @@
 
 #include "compare/stress/exact_coverage.h"
 #include "raster/visibility/hit_tile.h"
+#include "raster/visibility/rasterize_tile.h"
 
 #include <memory>
 #include <vector>

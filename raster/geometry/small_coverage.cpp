@@ -1,3 +1,5 @@
+// Decides which samples small triangles cover, many triangles at a time. Those of large ones are decided by
+// DepthTile::BlockCoverage (raster/visibility/depth_tile.cpp). The top-left rule is that of EdgeFunction (setup.h).
 #include "raster/geometry/assemble.h"
 
 #include "raster/geometry/setup.h"

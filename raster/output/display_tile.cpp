@@ -3,6 +3,7 @@
 #include "raster/shader/packet_shader.h"
 #include "raster/visibility/image_blocks.h"
 #include "raster/visibility/packet_primitives.h"
+#include "raster/visibility/rasterize_tile.h"
 
 #include "common/image/srgb.h"
 #include "common/system/parallel.h"

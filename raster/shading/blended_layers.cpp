@@ -3,6 +3,7 @@
 #include "raster/gbuffer/gbuffer_pass.h"
 #include "raster/shader/single_hit.h"
 #include "raster/visibility/hit_lists.h"
+#include "raster/visibility/rasterize_tile.h"
 
 #include "common/scene/alpha_mask.h"
 #include "common/system/control.h"

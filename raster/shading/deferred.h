@@ -1,4 +1,5 @@
-// Deferred shading of Shading::kLit: each stage is a function over the whole G-buffer, and adds one effect.
+// Implements stage 8 of Shading::kLit, deferred shading. Each of its own stages is a function over the whole G-buffer,
+// and adds one effect.
 #pragma once
 
 #include "raster/fog/fog_grid.h"

@@ -3,6 +3,7 @@
 #include "raster/visibility/hit_lists.h"
 #include "raster/visibility/image_blocks.h"
 #include "raster/visibility/packet_primitives.h"
+#include "raster/visibility/rasterize_tile.h"
 
 #include "common/sampling/hash.h"
 #include "common/system/parallel.h"

@@ -15,15 +15,6 @@ namespace duet::raster {
 /// Rounds a ray to float.
 Ray rounded(const Rayd& exact, float time);
 
-/// Rasterizes all primitives that overlap a tile of the image into `tile`: reversed depth and the id of the visible
-/// primitive per sample. `index` is the tile's index in its grid. rasterize_tile() initializes every sample;
-/// rasterize_drawn_blocks() leaves the samples of blocks without any primitive undefined.
-void rasterize_drawn_blocks(const Geometry& geometry, const PassView& view, SampleOffset offset, const PixelRect& rect,
-                            std::size_t index, DepthTile& tile);
-/// Does the same as rasterize_drawn_blocks, and clears the blocks without any primitive.
-void rasterize_tile(const Geometry& geometry, const PassView& view, SampleOffset offset, const PixelRect& rect,
-                    std::size_t index, DepthTile& tile);
-
 /// Returns the hit of a triangle at one sample. This is the scalar reference that all faster paths must match.
 /// `pixel` is the sample position in pixels, `distance_per_depth` the ray length per meter of depth, `near` the
 /// distance of the near plane in meters.

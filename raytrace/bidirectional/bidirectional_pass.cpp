@@ -170,7 +170,7 @@ bool render_bidirectional_pass(const PassContext& context, double begin, double 
         const std::optional<Image<Rgbd>> sample =
             metropolis ? metropolis->sample(index) : SampleOfAllPixels(context, emission, radius, index).render();
         if (!sample) return false;
-        context.checkpoint.add([&] { add_to_film(context, *sample, index); });
+        context.checkpoint.run([&] { add_to_film(context, *sample, index); });
         context.control.report(lerp(begin, end, static_cast<double>(i + 1 - from) / static_cast<double>(to - from)));
     }
     return true;

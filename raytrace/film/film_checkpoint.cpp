@@ -81,7 +81,7 @@ FilmCheckpoint::FilmCheckpoint(const Scene& scene, const View& view, const PathT
     : path_(settings.film), interval_(settings.film_interval), lock_(lock_of(path_)),
       stored_(load_or_create(scene, view, settings)) {}
 
-void FilmCheckpoint::add(const std::function<void()>& work) {
+void FilmCheckpoint::run(const std::function<void()>& work) {
     {
         const std::shared_lock add_lock(pixels_mutex_);
         work();

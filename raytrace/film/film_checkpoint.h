@@ -29,10 +29,11 @@ public:
     FilmCheckpoint(const Scene& scene, const View& view, const PathTracerSettings& settings);
 
     Film& film() { return stored_.film; }
+    const Film& film() const { return stored_.film; }
 
     /// Runs `work`, which adds to some pixels, then writes the film if the interval has passed. Any thread may call
     /// it.
-    void add(const std::function<void()>& work);
+    void run(const std::function<void()>& work);
     /// Writes the film if there is a file to write to. Throws Error (exit code 1) if writing fails.
     void save();
 

@@ -10,7 +10,7 @@
 
 namespace duet::raytrace {
 
-/// Counts traced rays and ended rays and of ended paths, for the statistics.
+/// Counts traced rays, and paths that Russian roulette ended, for the statistics.
 struct RayCounts {
     std::int64_t camera = 0, indirect = 0, shadow = 0;
     std::int64_t ended = 0; ///< paths that roulette ended

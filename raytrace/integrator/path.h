@@ -24,7 +24,7 @@ namespace duet::raytrace {
 /// Returns the light that the vertex scatters from a light sample to the viewer, unless the light is occluded. It is
 /// not divided by the sample's density yet.
 template <typename AnyVertex, typename T>
-inline RgbT<T> scattered_light(const AnyVertex& vertex, const LightLiSampleT<T>& light) {
+inline RgbT<T> light_towards_viewer(const AnyVertex& vertex, const LightLiSampleT<T>& light) {
     return scattering(vertex, light.wi) * light.radiance;
 }
 
@@ -103,7 +103,8 @@ public:
     Path(const RenderPlan& plan, const Sampler& sampler, RayCounts& counts, Sink sink = {})
         : plan_(plan), counts_(counts), sink_(sink), medium_stack_(plan), footprint_(plan, sampler.sample()) {}
 
-    /// Traces a camera ray, and returns the result of the sink.
+    /// Traces a camera ray, and returns the result of the sink. Images do not call this function: Wavefront
+    /// (wavefront/wavefront.cpp) calls advance() for many paths. It is for one path alone, as of `--pixel`.
     auto trace(Sampler& sampler, Ray ray, Hit hit) {
         for (int depth = 0; advance(ray, hit, depth, random_samples_at(plan_, sampler, hit, depth)); ++depth)
             hit = plan_.prepared.accelerator.closest(ray);
@@ -183,7 +184,7 @@ private:
         if (!light_sample) return log_no_light_sample("the chosen light does not shine here");
         if constexpr (std::is_same_v<AnyVertex, MediumVertex>)
             if (light_sample->delta) return log_no_light_sample("the chosen light is sampled along the whole ray");
-        Rgb scattered = scattered_light(vertex, *light_sample);
+        Rgb scattered = light_towards_viewer(vertex, *light_sample);
         if constexpr (kHasMedia) scattered *= transmittance_to_light(vertex, *light_sample, u.light.y);
         if (is_black(scattered) && !plan_.black_shadow_rays)
             return log_no_light_sample("the surface does not scatter the chosen light towards here");

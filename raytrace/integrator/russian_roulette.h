@@ -3,9 +3,12 @@
 #pragma once
 
 #include "raytrace/integrator/path_state.h"
-#include "raytrace/render_plan.h"
 
 namespace duet::raytrace {
+
+/// The probability with which Russian roulette lets a path continue, over the path's throughput. Factors that suit a
+/// scene of models/ best, from 1 to 14, gain more than a tenth in one of them alone.
+inline constexpr float kSurvivalFactor = 4;
 
 /// Holds the outcome of Russian roulette.
 template <typename T> struct RouletteT {

@@ -70,13 +70,13 @@ template <template <typename> typename BsdfT> auto numbers_of_bsdfs(std::span<co
     for_lanes(paths, [&](std::size_t i, const BatchPath& path) {
         first[i] = reinterpret_cast<const float*>(&std::get<BsdfT<float>>(*path.bsdf));
     });
-    std::array<Floats, kNumbers> random_samples;
+    std::array<Floats, kNumbers> numbers;
     for (std::size_t done = 0; done < kNumbers; done += kRow) {
         const std::size_t k = std::min(done, kNumbers - kRow);
         const auto row = load_columns<kLanes>([&](std::size_t i) { return first[i] + k; });
-        std::copy(row.begin(), row.end(), random_samples.begin() + static_cast<std::ptrdiff_t>(k));
+        std::copy(row.begin(), row.end(), numbers.begin() + static_cast<std::ptrdiff_t>(k));
     }
-    return random_samples;
+    return numbers;
 }
 DiffuseBsdfT<Floats> diffuse_bsdfs(std::span<const BatchPath> paths) {
     const auto n = numbers_of_bsdfs<DiffuseBsdfT>(paths);
@@ -105,7 +105,7 @@ public:
         store_receivers();
         const BatchLightSamples samples(plan_, paths_, vertex_.point.p);
         const LightLiSampleT<Floats> light = samples.lanes();
-        const Color scattered = scattered_light(vertex_, light);
+        const Color scattered = light_towards_viewer(vertex_, light);
         unsigned lit = samples.valid() & ~lane_bits(is_black(scattered));
         if (lit == 0) return;
         const Floats weight = light_sample_weight(vertex_, light);

@@ -9,7 +9,7 @@
 
 namespace duet::raytrace {
 
-/// Says which pairs of VertexRandomSamples that are drawn for a batch.
+/// Says which pairs of VertexRandomSamples are drawn for a batch.
 struct UsedDimensions {
     bool direction = false, light = false, lobe = false, roulette = false;
 };

@@ -2,6 +2,7 @@
 #include "raster/draw.h"
 #include "raster/shader/srgb_packet.h"
 #include "raster/visibility/hit_tile.h"
+#include "raster/visibility/rasterize_tile.h"
 #include "tests/raster/varied_scene.h"
 
 #include "common/image/srgb.h"

@@ -3,6 +3,7 @@
 #include "raster/shader/sphere_packet.h"
 #include "raster/visibility/hit_tile.h"
 #include "raster/visibility/packet_interpolation.h"
+#include "raster/visibility/rasterize_tile.h"
 #include "tests/raster/varied_scene.h"
 
 #include <doctest/doctest.h>

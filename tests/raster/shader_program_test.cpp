@@ -1,6 +1,7 @@
 // These tests check programmable shading: custom shaders and the inputs that they receive.
 #include "raster/draw.h"
 #include "raster/shading/built_in_shaders.h"
+#include "raster/visibility/rasterize_tile.h"
 #include "tests/raster/varied_scene.h"
 
 #include <doctest/doctest.h>

@@ -2,7 +2,7 @@
 
 #include "common/medium/cloud.h"
 #include "common/scene/file_cache.h"
-#include "common/scene/json/read_materials.h"
+#include "common/scene/json/read_textures.h"
 #include "common/scene/json/scene_keys.h"
 #include "common/system/error.h"
 #include "common/system/file.h"

@@ -170,7 +170,8 @@ void App::drag_object() {
         const double size = snaps ? std::max(snapped(factor, kSnapFactor), kSnapFactor) : factor;
         map = scaling(Vec3d(size, size, size));
     }
-    attempt([&] { edit(transformed(gizmo_.text, selected_.path(), translation(center) * map * translation(-center))); });
+    const Mat4d about_center = translation(center) * map * translation(-center);
+    attempt([&] { edit(transformed(gizmo_.text, selected_.path(), about_center)); });
 }
 
 } // namespace duet::compare
