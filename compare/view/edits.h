@@ -21,6 +21,7 @@ std::string transformed(const std::string& text, const JsonPath& element, const 
 struct Handles {
     bool move = false, turn = false, scale = false;
 };
+/// Returns what can be done to an element of "objects", "lights" or "media".
 Handles handles(const nlohmann::ordered_json& scene, const JsonPath& element);
 /// Returns the box of the points that say where a light or a medium is; empty for one that is everywhere.
 Box3 place(const nlohmann::ordered_json& scene, const JsonPath& element);
