@@ -38,8 +38,8 @@ void shade_tile(const FrameContext& frame, const PassView& view, const DepthTile
     }
 }
 
-/// Returns true if the tile's samples are visited one by one: for auxiliary images, and for a program in front of whose
-/// surfaces there are transparent layers.
+/// Returns true if the tile's samples are visited one by one. Auxiliary images require it, and so do transparent layers
+/// in front of a program's surfaces.
 bool visits_samples(const FrameContext& frame, std::size_t tile) {
     return frame.settings.aovs.any() || (frame.program != nullptr && frame.has_layers_in(tile));
 }
@@ -49,7 +49,7 @@ bool visits_samples(const FrameContext& frame, std::size_t tile) {
 void shade_layer(const FrameContext& frame, const PassView& view, const LayeredTile& tile, std::size_t layer,
                  Framebuffer& framebuffer) {
     const PixelRect& rect = tile.rect();
-    const auto for_each = [&](const auto& visit) { // calls visit() for the pixels in the layer
+    const auto for_each = [&](const auto& visit) { // calls visit(x, y, count) for the pixels in the layer
         for (int y = rect.y0; y < rect.y1; ++y)
             for (int x = rect.x0; x < rect.x1; ++x)
                 if (const int count = tile.layer(layer).count(tile.sample_index(x, y)); count > 0) visit(x, y, count);

@@ -1,4 +1,4 @@
-// Renders tiles with a shader program (forward shading): coverage, then the colors of the visible samples.
+// Renders tiles with a shader program (forward shading): it determines coverage, then shades the visible samples.
 #pragma once
 
 #include "raster/frame_context.h"

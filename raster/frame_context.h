@@ -1,4 +1,4 @@
-// The state that all passes of a rendering share.
+// This header declares the state that all passes of a rendering share.
 #pragma once
 
 #include "raster/geometry/geometry.h"

@@ -1,4 +1,4 @@
-// prepare() computes what all views of a scene share.
+// prepare() computes the data that all views of a scene share.
 #include "raster/render.h"
 
 #include "raster/geometry/geometry.h"
@@ -42,7 +42,7 @@ std::optional<Rgb> uniform_color(const Scene& scene, const Object& object) {
     return base_color(material, scene.textures, SurfacePoint{});
 }
 
-/// Returns the slot of the image texture that colors all of an object, if the texture is filtered.
+/// Returns the texture slot that gives the base color all over an object, if one filtered image texture does.
 std::optional<RgbSlot> uniform_texture(const Scene& scene, const Object& object) {
     if (object.materials.size() != 1) return std::nullopt;
     const Material& material = scene.materials[object.materials.front()];
@@ -101,8 +101,8 @@ std::shared_ptr<const RadianceMap> environment_map(const RasterSettings& setting
     return std::make_shared<const RadianceMap>(side, arriving, RadianceMap::Source{}, settings.threads);
 }
 
-/// Renders the probes of deferred shading, if there is light that they could hold, and a surface that they could light.
-/// Those of the scene `before` are used again, if there is one.
+/// Renders the probes of deferred shading, if there is light that they can store and a surface that they can light. If
+/// `before` is not null, its probes are reused.
 void prepare_probes(const RasterSettings& settings, RasterSceneData& data, const RasterSceneData* before) {
     const Scene& scene = data.scene;
     if (scene.objects.empty() || is_dark(data, settings)) return;
@@ -121,7 +121,7 @@ void prepare_probes(const RasterSettings& settings, RasterSceneData& data, const
                                                    data.glass_shapes->memory_bytes());
 }
 
-/// Renders what Shading::kLit reads: shadow maps, then the probes, whose light they shadow.
+/// Renders the data that Shading::kLit reads: shadow maps, then the probes, whose light is shadowed by the maps.
 void prepare_lit(const RasterSettings& settings, RasterSceneData& data, const RasterSceneData* before) {
     if (settings.shadows && !data.scene.lights.empty()) {
         data.shadows = std::make_shared<const Shadows>(data, settings);
@@ -131,7 +131,7 @@ void prepare_lit(const RasterSettings& settings, RasterSceneData& data, const Ra
     prepare_probes(settings, data, before);
 }
 
-/// Returns what prepare() does, with the probes of the scene `before`, if there is one.
+/// Implements prepare(). If `before` is not null, its probes are reused.
 RasterScene prepare_after(const RasterSceneData* before, const Scene& scene, const RasterSettings& settings) {
     RasterSceneData data{.scene = scene,
                          .sky_irradiance = environment_irradiance(scene.environment, settings.threads),

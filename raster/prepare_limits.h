@@ -1,5 +1,5 @@
-// How fine the images are that prepare() renders once for all views: no finer than the scene's image can show. So a
-// small image of a scene with many lights and mirrors costs little.
+// Limits the resolution of the images that prepare() renders once for all views to what the scene's image can show.
+// Thus a small image of a scene with many lights and mirrors takes little time.
 #pragma once
 
 #include "common/scene/scene.h"
@@ -10,22 +10,23 @@
 
 namespace duet::raster {
 
-/// Limits by the number of pixels of the scene's image. An image of 256 × 256 pixels or more has none of them, but for
-/// the largest radiance maps.
+/// Derives limits from the number of pixels of the scene's image. For an image of at least 256 × 256 pixels, only the
+/// largest radiance maps are limited.
 struct PrepareLimits {
     explicit PrepareLimits(const Scene& scene)
         : pixels_(static_cast<std::int64_t>(scene.width) * scene.height) {}
 
-    /// Shadow maps have at most 64 texels for a pixel of the image.
+    /// Returns the side of shadow maps. They have at most 64 texels per pixel of the image.
     int shadow_map_side(int finest) const { return std::min(finest, power_of_two(8)); }
-    /// Radiance maps of reflections, and the shapes of glass objects, have at most 16 texels for a pixel; above a side
-    /// of 256 at most one, because a ball of few pixels shows a whole map, and would skip most of its texels.
+    /// Returns the side of radiance maps of reflections, and of the shapes of glass objects. They have at most 16
+    /// texels per pixel of the image. Above a side of 256 they have at most one, because a sphere of few pixels shows a
+    /// whole map and would skip most of its texels.
     int radiance_map_side(int finest) const {
         return std::min({finest, power_of_two(4), std::max(256, power_of_two(1))});
     }
-    /// There is at most one irradiance probe for 16 pixels.
+    /// Returns the number of irradiance probes, at most one per 16 pixels.
     int irradiance_probes(int most) const { return at_most(most, pixels_ / 16); }
-    /// There is at most one reflection probe for 64 pixels.
+    /// Returns the number of reflection probes, at most one per 64 pixels.
     int reflection_probes(int most) const { return at_most(most, pixels_ / 64); }
 
 private:

@@ -84,9 +84,9 @@ void render_pass(const FrameContext& frame, const CameraModel& camera, const Vie
 void add_edges(const FrameContext& frame, const CameraModel& camera, const View& view, const Pass& pass,
                Overlay& overlay) {
     EdgeBuffer edge_buffer(view.width, view.height);
-    const std::unique_ptr<ShaderProgram> normals = smooth_normal_program(); // bumps are not edges
+    const std::unique_ptr<ShaderProgram> normals = smooth_normal_program(); // bump maps do not create edges
     const PassView pass_view = pass_view_of(camera, view, frame.settings, pass);
-    const SampleOffset offset = pass_view.samples.front(); // the only one
+    const SampleOffset offset = pass_view.samples.front(); // the pass has one sample per pixel
     parallel_for(frame.grid.size(), frame.settings.threads, [&](std::size_t i) {
         DepthTile depths;
         rasterize_tile(frame.geometry, pass_view, offset, frame.grid.tile(i), i, depths);
@@ -147,7 +147,7 @@ void render_lit(const FrameContext& frame, const CameraModel& camera, const View
     });
 }
 
-/// Renders one pass per lens point or time, and averages them.
+/// Renders one pass per sample of the lens and of time, and averages them.
 Rendering render_image(const FrameContext& frame, const CameraModel& camera, const View& view,
                        const std::vector<Pass>& passes) {
     const bool lines = frame.settings.shading == Shading::kLines, edges = draws_edges(frame.settings);
@@ -254,7 +254,7 @@ void render(const RasterScene& prepared, const View& view, const RasterSettings&
 
 void render(const RasterScene& prepared, const View& view, const RasterSettings& settings, const ShaderProgram& program,
             Control& control, Rendering& result) {
-    RasterSettings other = settings; // the environment must not be in the background, which only kLit shows
+    RasterSettings other = settings; // only kLit shows the environment in the background, which must stay black here
     if (other.shading == Shading::kLit) other.shading = Shading::kAlbedo;
     render_with(prepared, view, other, &program, control, result);
 }

@@ -28,14 +28,14 @@ private:
 
 /// Prepares a scene. Throws Error if the shadow settings are out of range.
 RasterScene prepare(const Scene& scene, const RasterSettings& settings);
-/// Prepares a scene in which something was edited, for a first look at it: with the probes of the scene before, so that
-/// light between surfaces and reflections lag behind. All else is new, which takes a small part of the time. Returns
-/// nothing if the probes do not fit: the number of objects differs, or objects reflect in one of both scenes alone, or
-/// the settings want probes that the scene before lacks, or lack those that it has.
+/// Prepares an edited scene fast, for a preview. It reuses the probes of the scene before the edit, so indirect light
+/// and reflections lag behind. Everything else is computed anew, which takes a small part of the time. Returns nothing
+/// if the probes do not fit: the number of objects differs, or objects reflect in only one of the two scenes, or only
+/// one of them has the probes that the settings request.
 std::optional<RasterScene> prepare_edited(const Scene& scene, const RasterSettings& settings,
                                           const RasterScene& before);
-/// Returns one sentence for each way in which images with these settings differ from the path tracer's. Only those
-/// that apply to the scene and to the requested parts are included.
+/// Returns one sentence for each approximation in which images with these settings differ from the path tracer's. Only
+/// approximations that apply to the scene and the requested components are included.
 std::vector<std::string> approximations(const RasterScene& prepared, const RasterSettings& settings);
 /// Renders one image. If `control` stops it, the result contains the completed parts, and the rest is black.
 Rendering render(const RasterScene& prepared, const View& view, const RasterSettings& settings, Control& control);

@@ -26,7 +26,7 @@ Color mean_transmittance(const Color& depth) {
     return {mean_transmittance(depth.r), mean_transmittance(depth.g), mean_transmittance(depth.b)};
 }
 
-/// Returns the fraction of the light that a medium stops which it scatters.
+/// Returns the single-scattering albedo of a medium, scattering / (scattering + absorption), per channel.
 Rgb albedo(const Medium& medium) {
     const Rgb& s = medium.scattering;
     const Rgb all = s + medium.absorption;
@@ -67,9 +67,9 @@ struct FogGrid::PixelRays {
 /// Represents the rays through the middles of a batch of columns of froxels.
 struct FogGrid::Columns {
     Vec3s origin, direction;
-    std::vector<IntervalT<Floats>> inside; ///< where the rays are in each medium
+    std::vector<IntervalT<Floats>> inside; ///< intervals of the rays inside each medium
     Floats surface;                        ///< distance of the farthest surface in the columns themselves
-    float farthest = 0;                    ///< how far light is needed
+    float farthest = 0;                    ///< distance up to which light is needed
 };
 
 FogGrid::Columns FogGrid::columns(int x, int y) const {
@@ -81,15 +81,15 @@ FogGrid::Columns FogGrid::columns(int x, int y) const {
     for (const Medium& medium : media_)
         result.inside.push_back(overlap(medium.box, result.origin, result.direction, Floats(kInfinity)));
     result.surface = load(farthest_, x, y);
-    // Pixels interpolate between neighboring columns.
+    // Pixels interpolate between neighboring columns, so light is needed as far as the neighbors need it.
     for (int row = std::max(y - 1, 0); row <= std::min(y + 1, rows_ - 1); ++row)
         for (int i = std::max(x - 1, 0); i <= std::min(x + kBatch, columns_ - 1); ++i)
             result.farthest = std::max(result.farthest, farthest_(i, row));
     return result;
 }
 
-/// Finds the distances between which the view shows media, and divides them into slices: evenly up to what the camera
-/// looks at, and in proportion to the distance beyond.
+/// Finds the distances between which the view shows media, and divides them into slices. The slices are about equal up
+/// to the distance of the camera's look-at point, and grow in proportion to the distance beyond.
 void FogGrid::find_distances(const GBuffer& gbuffer, const FogOptions& options) {
     farthest_ = PlaneFloat(columns_, rows_);
     parallel_for(static_cast<std::size_t>(rows_), options.threads, [&](std::size_t i) {
@@ -118,7 +118,7 @@ void FogGrid::find_distances(const GBuffer& gbuffer, const FogOptions& options) 
             }
         }
     if (!(begin < end)) begin = end = 0;
-    if (end == kInfinity) { // of a medium without bounds, through which light comes no further than this
+    if (end == kInfinity) { // a medium has no bounds: cut it off where its transmittance is negligible
         constexpr float kDepths = 12;
         float least = kInfinity;
         for (const Medium& medium : media_)
@@ -127,7 +127,7 @@ void FogGrid::find_distances(const GBuffer& gbuffer, const FogOptions& options) 
                     least = std::min(least, extinction);
         end = begin + kDepths / least;
     }
-    end = std::min(end, 1e12f); // whose square is a float
+    end = std::min(end, 1e12f); // so that its square does not overflow a float
     nearest_ = begin;
     const float range = std::log1p((end - begin) / scale_);
     slices_per_log_ = range > 0 ? static_cast<float>(slices_) / range : 0;
@@ -136,7 +136,7 @@ void FogGrid::find_distances(const GBuffer& gbuffer, const FogOptions& options) 
         distances_[k] = begin + scale_ * std::expm1(range * static_cast<float>(k) / static_cast<float>(slices_));
 }
 
-/// Computes the light of one batch of columns after another, on one thread.
+/// Computes the light of the grid, one batch of columns after another. Each thread has its own.
 class FogGrid::Lighter {
 public:
     Lighter(const FogGrid& grid, std::span<const FrameLight> lights, const LightSet& light_set,
@@ -144,8 +144,8 @@ public:
         : grid_(grid), lights_(lights), light_set_(light_set), shadows_(shadows), ambient_(ambient),
           crossed_(grid.media_.size(), kNone) {}
 
-    /// Stores what arrives from before each slice's end, and the fraction of light that is stopped there, unless
-    /// `stopped` is empty.
+    /// Stores, for each slice's end, the in-scattered and emitted radiance between the eye and that distance and,
+    /// unless `stopped` is empty, the opacity of the media.
     void light_columns(int x, int y, Planes3& result, Planes3& stopped) {
         const Columns columns = grid_.columns(x, y);
         Color sum(kNone), through(kOne);
@@ -167,7 +167,8 @@ public:
 private:
     static constexpr int kClusterSlices = 4;
 
-    /// Finds the lights that reach the slices from the k-th on, as for surfaces that face all ways.
+    /// Finds the lights that reach the slices from the k-th on. The bounds admit all normals, because points in a
+    /// volume have none.
     void find_lights(const Columns& columns, int k) {
         const auto first = static_cast<std::size_t>(k),
                    last = std::min(first + kClusterSlices, static_cast<std::size_t>(grid_.slices_));
@@ -179,7 +180,7 @@ private:
             bounds.p_high = max(bounds.p_high, Vec3(reduce_max(p.x), reduce_max(p.y), reduce_max(p.z)));
         }
         light_set_.reach(bounds, 0, found_);
-        constexpr float kGoldenRatio = 0.618034f; // its multiples spread evenly
+        constexpr float kGoldenRatio = 0.618034f; // its multiples modulo 1 are evenly spread
         random_ += kGoldenRatio - (random_ + kGoldenRatio < 1 ? 0.0f : 1.0f);
         light_set_.choose(found_, kMostLights, random_, near_);
     }
@@ -189,7 +190,7 @@ private:
     /// Volumetric Rendering in Frostbite", §5).
     void add_slice(const Columns& columns, Interval slice, Color& sum, Color& through) {
         const Floats begin(slice.begin), end(slice.end);
-        IntervalT<Floats> piece{end, begin}; // with media
+        IntervalT<Floats> piece{end, begin}; // interval that contains media; empty at first
         Color depth(kNone), scattering(kNone), light(kNone);
         for (std::size_t i = 0; i < crossed_.size(); ++i) {
             const Medium& medium = grid_.media_[i];
@@ -207,7 +208,8 @@ private:
         if (lane_bits(any) == 0) return;
         if (lane_bits(max_component(scattering) > kNone) != 0) {
             const Floats width = grid_.projection_->pixel_size(begin) * Floats(static_cast<float>(grid_.side_));
-            // Behind the surfaces, where pixels interpolate, there is as much light as on them.
+            // Froxels behind a surface get the light at the surface, because pixels in front of it interpolate with
+            // them.
             piece = {min(xsimd::select(any, piece.begin, begin), columns.surface),
                      min(xsimd::select(any, piece.end, end), columns.surface)};
             const RayPieces rays{columns.origin, columns.direction, piece, width};
@@ -218,10 +220,10 @@ private:
         through *= transmittance(depth);
     }
 
-    /// Adds the light of a light that the slice scatters. Light that a cloud has scattered before is estimated by
-    /// octaves: as if it came through thinner media that scatter it more evenly (Wrenninge et al. 2013, "Oz: The Great
-    /// and Volumetric"). An octave counts by what the media stop. Light that even fog has scattered is the probes'
-    /// task.
+    /// Adds the radiance of a light that the slice scatters to the viewer. Multiple scattering in clouds is estimated
+    /// by octaves, as if the light came through thinner media that scatter more evenly (Wrenninge et al. 2013, "Oz: The
+    /// Great and Volumetric"). Each octave is weighted by the fraction of light that the media stop. Multiple
+    /// scattering in uniform fog is left to the probes.
     void add_light(const FrameLight& light, float weight, const RayPieces& rays, Color& sum) const {
         const Vec3s p = rays.p();
         const LightDirection to = direction_to(light, p);
@@ -239,7 +241,8 @@ private:
         }
     }
 
-    /// Returns the fraction of light from wi that the media of the slice scatter along the ray in an octave, 1/sr.
+    /// Returns the fraction of the light from direction wi that the slice scatters towards the viewer in an octave,
+    /// 1/sr.
     Color scattered(const Vec3s& direction, const Vec3s& wi, int octave) const {
         Color sum(kNone);
         for (std::size_t i = 0; i < crossed_.size(); ++i) {
@@ -260,7 +263,7 @@ private:
     const LightSet& light_set_;
     const SpaceShadows* shadows_;
     const AmbientLight& ambient_;
-    std::vector<Floats, xsimd::aligned_allocator<Floats>> crossed_; ///< column of each medium in the slice
+    std::vector<Floats, xsimd::aligned_allocator<Floats>> crossed_; ///< column_of() of each medium in the slice
     LightsOfCluster found_;
     std::vector<WeightedLight> near_;
     float random_ = 0;
@@ -272,7 +275,7 @@ void FogGrid::compute(const RasterSceneData& data, const RasterSettings& setting
     media_ = frame_media(data.scene.media, settings, *projection_);
     if (media_.empty()) return;
     side_ = options.side, slices_ = options.slices;
-    const auto count = [&](int pixels) { return (pixels + side_ - 2) / side_ + 1; }; // so that pixels lie between them
+    const auto count = [&](int pixels) { return (pixels + side_ - 2) / side_ + 1; }; // each pixel lies between two
     columns_ = count(gbuffer.width()), rows_ = count(gbuffer.height());
     const Camera& camera = data.scene.camera;
     scale_ = static_cast<float>(std::max(length(camera.look_at - camera.eye), 1e-6));
@@ -294,9 +297,8 @@ void FogGrid::compute(const RasterSceneData& data, const RasterSettings& setting
     });
 }
 
-/// Returns the light that arrives from before the surfaces. The slice in which they are counts as if it scattered light
-/// evenly.
-/// `depth` is the optical depth up to the surface.
+/// Returns the in-scattered and emitted radiance between the eye and the surfaces. Within the slice that contains the
+/// surface, the media are taken to be lit evenly. `depth` is the optical depth up to the surface.
 Color FogGrid::light_before(int x, int y, const PixelRays& rays, const Color& depth) const {
     const Floats distance = min(rays.distance, Floats(distances_.back()));
     const Floats slice =
@@ -314,16 +316,17 @@ Color FogGrid::light_before(int x, int y, const PixelRays& rays, const Color& de
     const Color fractions{fraction(whole.r, part.r), fraction(whole.g, part.g), fraction(whole.b, part.b)};
     const Color light = interpolate(light_, x, y, k, fractions);
     if (stopped_.empty()) return light;
-    // A cloud's edge is sharper than froxels. What it scatters to a pixel is in proportion to what it stops there.
+    // A cloud's edge is sharper than a froxel. Scale the light by the ratio of the pixel's own opacity to the
+    // interpolated opacity.
     const Color around = interpolate(stopped_, x, y, k, fractions);
     const auto share = [](const Floats& own_depth, const Floats& mean) {
-        const Floats least(1e-5f); // of both, so that thin haze keeps its light
+        const Floats least(1e-5f); // added to both opacities, so that thin haze keeps its light
         return min((least - xsimd::expm1(-own_depth)) / (least + mean), Floats(2.0f));
     };
     return light * Color(share(depth.r, around.r), share(depth.g, around.g), share(depth.b, around.b));
 }
 
-/// Interpolates between the rays of the four nearest columns, and linearly between both ends of each slice.
+/// Interpolates bilinearly between the rays of the four nearest columns, and linearly between both ends of each slice.
 Color FogGrid::interpolate(const Planes3& planes, int x, int y, const Ints& slices, const Color& within) const {
     const float per_pixel = 1 / static_cast<float>(side_);
     const Floats across = lane_offsets(static_cast<float>(x), 1) * Floats(per_pixel);
@@ -362,7 +365,7 @@ Planes3 FogGrid::haze(const GBuffer& gbuffer, int threads) const {
 }
 
 void FogGrid::apply(const GBuffer& gbuffer, int threads, bool scattered, Planes3& radiance) const {
-    if (media_.empty()) return; // all boxes are too thin for floats
+    if (media_.empty()) return; // the boxes of all media are too thin for floats
     for_each_batch(gbuffer.width(), gbuffer.height(), threads, [&](int x, int y) {
         const PixelRays rays(gbuffer, x, y);
         const Color depth = optical_depth<Floats>(media_, rays.origin, rays.direction, rays.distance);

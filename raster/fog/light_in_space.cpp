@@ -26,15 +26,15 @@ Floats solid_angle(const FrameLight& light, const LightDirection& to, const Vec3
     const Vec3s a = broadcast<Floats>(light.position) - p, b = a + broadcast<Floats>(light.u),
                 c = a + broadcast<Floats>(light.v);
     const bool quad = light.kind == Kind::kQuad;
-    // The determinant is negative in front of the light.
+    // The determinant of the corners in their own order is negative in front of the light, so two are exchanged.
     const Floats front =
         quad ? solid_angle(a, c, c + broadcast<Floats>(light.u)) + solid_angle(a, c + broadcast<Floats>(light.u), b)
              : solid_angle(a, c, b);
     return light.two_sided ? abs(front) : max(front, kNone);
 }
 
-/// Returns the mean of 1 / distance² to a light over the pieces, times the squared distance of their middles. Lights
-/// that a ray hits are taken as spread over the froxel, or over their own extent.
+/// Returns the mean of 1 / distance² to a light over each piece, times the squared distance of the piece's middle. A
+/// light close to the ray is treated as spread over the froxel's width or its own extent.
 Floats falloff(const FrameLight& light, const RayPieces& rays) {
     const Vec3s to_light = broadcast<Floats>(light.center()) - rays.p();
     const Floats along = dot(to_light, rays.direction), half = (rays.piece.end - rays.piece.begin) * Floats(0.5f);
@@ -44,11 +44,11 @@ Floats falloff(const FrameLight& light, const RayPieces& rays) {
     const Floats spread2 = max(height2, smallest), height = xsimd::sqrt(spread2);
     const Floats length = max(half + half, Floats(1e-15f));
     const Floats angle = xsimd::atan2(height * length, spread2 + (along - half) * (along + half));
-    // An extended light's own solid angle is bounded already.
+    // The solid angle of an extended light stays finite near the light, so its factor uses the spread distance, too.
     return angle / (height * length) * (extent2 > 0 ? spread2 + along * along : squared);
 }
 
-/// Returns a fraction of a spot's intensity, dimmed by its cone at four points of the froxel across the ray.
+/// Returns `fraction` dimmed by the spot's cone, averaged over four points of the froxel's cross section.
 Floats dimmed_by_cone(const FrameLight& spot, const RayPieces& rays, const Floats& fraction) {
     const FrameT<Floats> frame = frame_from_normal(rays.direction);
     const Vec3s across = frame.s * (rays.width * Floats(0.25f)), down = frame.t * (rays.width * Floats(0.25f));

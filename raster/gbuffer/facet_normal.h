@@ -6,23 +6,23 @@
 
 namespace duet::raster {
 
-/// Returns the unit normals of the flat surfaces in a batch of pixels, on the side of the shading normals n. They
-/// follow from the points p and those of one neighbor in the row and one in the column: of both, the one that is more
-/// nearly on a line with the next pixel, because reversed depth (in an orthographic view, depth) is linear over a
-/// triangle. Where it bends on both sides, as on spheres and fine meshes, and where the points are no image of a view,
-/// the normal is the shading normal.
+/// Returns the unit normals of the triangles that a batch of pixels shows, on the side of the shading normals n. A
+/// normal is the cross product of the offsets from the point p to a neighbor in its row and to one in its column.
+/// Reversed depth (in an orthographic view, depth) is linear over a triangle. Of two neighbors on opposite sides, the
+/// one with the smaller second difference of that depth is therefore used. Where both second differences exceed
+/// rounding, as on spheres and fine meshes, and where GBuffer::position holds the points, the result is n.
 inline Vec3T<Floats> facet_normals(const GBuffer& gbuffer, const Vec3T<Floats>& p, const Vec3T<Floats>& n, int x,
                                    int y) {
     if (!gbuffer.position.empty()) return n;
-    constexpr float kRounding = 0x1p-20f; // relative, of a second difference
+    constexpr float kRounding = 0x1p-20f; // relative rounding error of a second difference
     const bool perspective = gbuffer.projection.perspective();
     const Floats zero(0.0f), tiny(1e-37f), one(1.0f), here = load(gbuffer.reversed_depth, x, y);
     const auto linear = [&](const Floats& depth) { return perspective ? depth : one / depth; };
     const Floats column = Floats(static_cast<float>(x)) + load(kLanesAsFloats, 0),
                  last(static_cast<float>(gbuffer.width() - 1));
     struct Neighbor {
-        Vec3T<Floats> offset; ///< from p
-        Floats bend;          ///< of the linear quantity there, relative; above 1 where none is visible
+        Vec3T<Floats> offset; ///< vector from p to the neighbor's point
+        Floats bend;          ///< relative second difference of the linear depth; above 1 if nothing is visible
     };
     const auto neighbor = [&](int dx, int dy) -> Neighbor {
         const Floats depth = load_at(gbuffer.reversed_depth, x + dx, y + dy),

@@ -1,6 +1,6 @@
-// Defines the G-buffer of deferred shading: what each pixel's visible surface is, stored once, for stages that each
-// add one effect (Saito and Takahashi 1990, "Comprehensible Rendering of 3-D Shapes"; Akenine-Möller et al. 2018,
-// "Real-Time Rendering", §20.1).
+// Defines the G-buffer of deferred shading. It stores each pixel's visible surface once, for stages that each add one
+// effect (Saito and Takahashi 1990, "Comprehensible Rendering of 3-D Shapes"; Akenine-Möller et al. 2018, "Real-Time
+// Rendering", §20.1).
 #pragma once
 
 #include "raster/gbuffer/plane.h"
@@ -9,18 +9,18 @@
 namespace duet::raster {
 
 /// Holds one visible surface per pixel as a structure of arrays. Every opaque material is reduced to the same lobes:
-/// Lambert's diffuse lobe, a GGX specular lobe with Schlick's Fresnel term, and a clear coat. So every stage has one
+/// Lambert's diffuse lobe, a GGX specular lobe with Schlick's Fresnel term, and a clear coat. Each stage thus has one
 /// formula for all materials.
 struct GBuffer {
     ScreenProjection projection;
     PlaneFloat reversed_depth;  ///< near / depth, in (0, 1]; 0 for the background
     Planes3 normal;             ///< unit shading normal on the viewer's side, in world space
-    /// Height of the smooth surface above the flat triangle that stands for it, in meters along the normal; 0 in
-    /// hollows. Shadows are looked up there, or coarse meshes would shade themselves (Hanika 2021, "Hacking the Shadow
-    /// Terminator").
+    /// This is the height of the smooth surface above the flat triangle that approximates it, in meters along the
+    /// normal; 0 in hollows. Shadow maps are sampled at this height, because coarse meshes would shade themselves
+    /// otherwise (Hanika 2021, "Hacking the Shadow Terminator").
     PlaneFloat bulge;
-    /// Fraction of diffusely incident light that the diffuse lobe sends to this viewer; what layers above it absorb or
-    /// reflect is already taken off.
+    /// This is the fraction of diffusely incident light that the diffuse lobe reflects to this viewer. Light that the
+    /// layers above absorb or reflect is already subtracted.
     Planes3 diffuse;
     Planes3 specular;           ///< reflectance of the specular lobe at normal incidence; 0: no specular lobe
     PlaneFloat alpha;           ///< GGX width of the specular lobe, in [0, 1]; below MetalBsdf::kSmoothAlpha a mirror
@@ -28,8 +28,9 @@ struct GBuffer {
     PlaneFloat coat_alpha;      ///< GGX width of the coat; empty if no material has one
     PlaneInt object;            ///< index into Scene::objects; −1 for the background
     PlaneInt material;          ///< index into Scene::materials; −1 for the background
-    /// Points relative to the eye, for surfaces that a caller found along its own rays (raster/shading/hit_shader.h).
-    /// It is empty for rasterized surfaces, whose points follow from their pixels and depths.
+    /// These are points relative to the eye, for surfaces that a caller found along its own rays
+    /// (raster/shading/hit_shader.h). The planes are empty for rasterized surfaces, whose points follow from their
+    /// pixels and depths.
     Planes3 position;
 
     GBuffer(const ScreenProjection& view, int width, int height, bool coats);

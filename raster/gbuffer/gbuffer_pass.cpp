@@ -21,7 +21,7 @@ struct AttributeShader {
     static constexpr bool kTextureCoordinates = false;
     template <typename T> struct Varyings {
         Vec3T<T> n;
-        T plane; ///< of the tangent plane: its distance from the eye times the length of its normal
+        T plane; ///< distance of the tangent plane from the eye, times the length of its normal
     };
     template <typename T> Varyings<T> vertex(const VertexInput<T>& v) const {
         return {v.n, dot(v.object.normal(v.n), v.world_p() - broadcast<T>(v.object.eye))};
@@ -32,9 +32,9 @@ struct AttributeShader {
     }
 
 private:
-    /// Phong tessellation moves the point p along the normals nᵢ of the vertices vᵢ, with barycentric weights wᵢ, by
-    /// Σ wᵢ nᵢ·(vᵢ − p) (common/geometry/shading_terminator.h), which is Σ wᵢ nᵢ·vᵢ − p·Σ wᵢ nᵢ: the difference of what
-    /// is interpolated.
+    /// Returns GBuffer::bulge. Phong tessellation moves the point p along the normals nᵢ of the vertices vᵢ, with
+    /// barycentric weights wᵢ, by Σ wᵢ nᵢ·(vᵢ − p) (common/geometry/shading_terminator.h). This equals Σ wᵢ nᵢ·vᵢ − p·Σ
+    /// wᵢ nᵢ, whose two sums are interpolated attributes.
     template <typename T, typename F> static T bulge(const F& f, const Vec3T<T>& normal) {
         const Vec3T<T> n = f.object.normal(f.at.n);
         const Vec3T<T> p = (f.origin - broadcast<T>(f.object.eye)) + f.direction * f.depth; // relative to the eye
@@ -62,13 +62,13 @@ void store_lobes(const SurfaceLobes& lobes, int x, int y, GBuffer& gbuffer) {
     if (!gbuffer.coat.empty()) gbuffer.coat(x, y) = lobes.coat, gbuffer.coat_alpha(x, y) = lobes.coat_alpha;
 }
 
-/// Holds what all tiles share.
+/// Holds the state that all tiles share.
 struct Frame {
     const RasterSceneData& data;
     const Geometry& geometry;
     const PassView& view;
-    std::vector<std::optional<LobesOfColor>> of_color; ///< by material
-    std::vector<bool> emits;                           ///< by material, and whether emission is requested
+    std::vector<std::optional<LobesOfColor>> of_color; ///< indexed by material
+    std::vector<bool> emits;                           ///< indexed by material; all false unless emission is requested
     AttributeShader shader{};
 };
 
@@ -167,7 +167,8 @@ private:
         store_packet(shaded_.bulge, packet.x, packet.y, gbuffer_.bulge);
     }
 
-    /// Turns normals that interpolate to zero, between opposite ones, to the viewer.
+    /// Replaces normals of length zero, which interpolation between opposite normals yields, by the directions to the
+    /// viewer.
     void replace_zero_normals(const SamplePacket& packet) {
         Vec3T<PacketOf<float>>& n = shaded_.normal;
         for (std::size_t i = 0; i < kPacketSize; i += Floats::size) {
@@ -180,7 +181,7 @@ private:
         }
     }
 
-    /// Fills the lobes of a packet of one material, in lanes.
+    /// Fills the lobes of a packet of one material with SIMD.
     void fill_lobes(const SamplePacket& packet, const LobesOfColor& lobes) {
         ColorPacket diffuse, specular;
         PacketOf<float> constant;
@@ -206,7 +207,7 @@ private:
         return gbuffer_.projection.to_viewer(gbuffer_.projection.point(
             at(kColumns<float>, packet.x), at(kRows<float>, packet.y), Floats(gbuffer_.projection.near())));
     }
-    /// Returns the cosines between shading normal and viewer.
+    /// Returns the cosines between the shading normals and the directions to the viewer.
     Floats cosines(const SamplePacket& packet, std::size_t i) const {
         const Vec3T<PacketOf<float>>& n = shaded_.normal;
         return dot(Vec3T<Floats>{load(n.x, i), load(n.y, i), load(n.z, i)}, to_viewer(packet, i));
@@ -240,7 +241,7 @@ private:
     Planes3& emission_;
     PacketReader reader_;
     TileShader<AttributeShader> shader_;
-    // The current packet:
+    // The following members describe the current packet.
     PacketPrimitives samples_;
     PacketAttributes shaded_;
     PacketOf<std::int32_t> object_, material_;

@@ -1,4 +1,4 @@
-// The G-buffer pass: rasterizes one sample per pixel and stores the visible surfaces' attributes.
+// Declares the G-buffer pass, which rasterizes one sample per pixel and stores the visible surfaces' attributes.
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"
@@ -12,8 +12,8 @@ struct Control;
 namespace duet::raster {
 
 /// Fills the G-buffer of a view whose samples lie at `offset` in their pixels. `emission` receives the radiance that
-/// the visible surfaces emit towards the viewer, 0 elsewhere. Every pixel is written, unless `control` stops
-/// the pass: then the tiles that are left out keep what they held.
+/// the visible surfaces emit towards the viewer, 0 elsewhere. Every pixel is written, unless `control` stops the pass:
+/// then the remaining tiles keep their old contents.
 void fill_gbuffer(const RasterSceneData& data, const RasterSettings& settings, const Geometry& geometry,
                   const PassView& view, const TileGrid& grid, SampleOffset offset, const Control& control,
                   GBuffer& gbuffer, Planes3& emission);
@@ -31,7 +31,7 @@ void store_surface(const Scene& scene, const VisibleSurface& surface, bool emits
 /// Marks all pixels as background.
 void clear(GBuffer& gbuffer, Planes3& emission);
 
-/// Returns whether some material has a clear coat, which the G-buffer then needs planes for.
+/// Returns whether any material has a clear coat, which requires additional planes in the G-buffer.
 bool any_clear_coat(const Scene& scene);
 
 } // namespace duet::raster

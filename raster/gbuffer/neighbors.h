@@ -1,4 +1,5 @@
-// What edge-aware filters need: the neighbors of a batch of pixels, and whether they lie on the same surface.
+// This header serves edge-aware filters. It loads the neighbors of a batch of pixels, and tests whether they lie on the
+// same surface.
 #pragma once
 
 #include "raster/gbuffer/plane.h"
@@ -19,8 +20,8 @@ inline Vec3T<Floats> load_at(const Planes3& planes, int x, int y) {
     return {load_at(planes.x, x, y), load_at(planes.y, x, y), load_at(planes.z, x, y)};
 }
 
-/// Returns how alike two surface points are, in [0, 1]: 0 if q lies farther than `tolerance` meters from the plane
-/// through p, less the more the unit normals n and m differ.
+/// Returns the similarity of two surface points, in [0, 1]. It is 0 if q lies farther than `tolerance` meters from the
+/// plane through p, and decreases with the angle between the unit normals n and m.
 inline Floats likeness(const Vec3T<Floats>& p, const Vec3T<Floats>& n, const Floats& tolerance,
                        const Vec3T<Floats>& q, const Vec3T<Floats>& m) {
     const Floats off = abs(dot(q - p, n)) / tolerance, turn = max(dot(n, m), Floats(0.0f));

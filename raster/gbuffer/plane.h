@@ -47,7 +47,7 @@ using PlaneInt = Plane<std::int32_t>;
 template <typename T> xsimd::batch<T> load(const Plane<T>& plane, int x, int y) {
     return xsimd::batch<T>::load_aligned(plane.row(y) + x);
 }
-/// Stores a batch of values where load reads it.
+/// Stores a batch of values at the position from which load() reads it.
 template <typename T> void store(Plane<T>& plane, int x, int y, const xsimd::batch<T>& values) {
     values.store_aligned(plane.row(y) + x);
 }
@@ -77,7 +77,7 @@ struct Planes3 {
     void set(int column, int row, const RgbT<Floats>& c) {
         store(x, column, row, c.r), store(y, column, row, c.g), store(z, column, row, c.b);
     }
-    // Single pixels.
+    // The following functions access single pixels.
     Vec3 vector_at(int column, int row) const { return {x(column, row), y(column, row), z(column, row)}; }
     Rgb color_at(int column, int row) const { return {x(column, row), y(column, row), z(column, row)}; }
     void set_at(int column, int row, Vec3 v) { x(column, row) = v.x, y(column, row) = v.y, z(column, row) = v.z; }

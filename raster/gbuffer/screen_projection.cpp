@@ -14,7 +14,7 @@ ScreenProjection::ScreenProjection(const Pinhole& view, SampleOffset offset)
         const auto& m = view.world_to_pixel[row];
         double constant = m[0] * eye_.x + m[1] * eye_.y + m[2] * eye_.z + m[3];
         Vec3d linear(m[0], m[1], m[2]);
-        if (row < 2) { // so that the sample of pixel (x, y) projects to exactly (x, y)
+        if (row < 2) { // shift x and y so that the sample of pixel (x, y) projects to exactly (x, y)
             const auto& w = view.world_to_pixel[3];
             const double shift = row == 0 ? first.x : first.y;
             linear = linear - Vec3d(w[0], w[1], w[2]) * shift;

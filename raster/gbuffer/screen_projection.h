@@ -35,7 +35,7 @@ public:
         const Vec3T<T> v = perspective_ ? p : Vec3T<T>{T(direction_.x), T(direction_.y), T(direction_.z)};
         return v * -inverse_sqrt(dot(v, v));
     }
-    /// Returns the distance of a point from where the ray through it starts: the eye, or the camera's plane.
+    /// Returns the distance of a point from the origin of its camera ray: the eye, or a point on the camera's plane.
     template <typename T> T distance(Vec3T<T> p) const {
         if (perspective_) return sqrt(dot(p, p));
         return (p.x - T(origin_.x)) * T(direction_.x) + (p.y - T(origin_.y)) * T(direction_.y) +
@@ -61,7 +61,7 @@ public:
     template <typename T> T pixel_size(T depth) const {
         return perspective_ ? T(length(direction_dx_)) * depth : T(length(origin_dx_));
     }
-    /// Returns the unit directions of rows and of columns, in which pixels follow each other.
+    /// right() and down() return the world-space unit directions in which x and y of the pixels increase.
     Vec3 right() const { return normalize(perspective_ ? direction_dx_ : origin_dx_); }
     Vec3 down() const { return normalize(perspective_ ? direction_dy_ : origin_dy_); }
     float near() const { return near_; }
@@ -69,8 +69,7 @@ public:
 
 private:
     Vec3d eye_;
-    Vec3 origin_, origin_dx_, origin_dy_, direction_, direction_dx_, direction_dy_; ///< as in Pinhole, from pixel (0,
-                                                                                    ///< 0)
+    Vec3 origin_, origin_dx_, origin_dy_, direction_, direction_dx_, direction_dy_; ///< as in Pinhole, at pixel (0, 0)
     std::array<Vec4, 4> to_pixel_;
     float near_;
     bool perspective_;

@@ -9,7 +9,7 @@ struct LobesOf {
     float cosine;
 
     SurfaceLobes operator()(const DiffuseBsdf& b) const { return {.diffuse = b.albedo}; }
-    /// The directional albedo is exact under uniform light, and close under light from an area.
+    /// The directional albedo is exact under uniform light, and a good approximation under an area light.
     SurfaceLobes operator()(const RoughDiffuseBsdf& b) const { return {.diffuse = b.directional_albedo(cosine)}; }
     SurfaceLobes operator()(const MetalBsdf& b) const { return {.specular = b.reflectance, .alpha = b.alpha}; }
     SurfaceLobes operator()(const LayeredBsdf& b) const {
@@ -26,7 +26,7 @@ struct LobesOf {
         return {.specular = outer_reflectance(b.eta), .alpha = 0};
     }
     SurfaceLobes operator()(const ThinDielectricBsdf&) const { return {.alpha = 0}; }
-    /// bsdf_at(), which makes the BSDFs here, makes none of these.
+    /// bsdf_at() returns neither of these subsurface BSDFs, but std::visit needs their overloads.
     SurfaceLobes operator()(const SubsurfaceBsdf& b) const { return (*this)(b.surface); }
     SurfaceLobes operator()(const SubsurfaceExitBsdf& b) const { return (*this)(b.surface); }
 };

@@ -23,10 +23,11 @@ SurfaceLobes surface_lobes(const Bsdf& bsdf, float cosine);
 /// viewer's cosine alone. It agrees with surface_lobes() up to the interpolation of a table over the cosine.
 class LobesOfColor {
 public:
-    /// Returns nothing if other parameters vary too, or if the lobes depend on the color in another way.
+    /// Returns nothing if other parameters vary too, or if the lobes are not the functions of the color that diffuse()
+    /// and specular() compute.
     static std::optional<LobesOfColor> of(const Material& material);
 
-    /// Returns the diffuse and the specular lobe's color. T is float or Floats; cosine is in [0, 1].
+    /// diffuse() and specular() return the colors of the two lobes. T is float or Floats; cosine is in [0, 1].
     template <typename T> RgbT<T> diffuse(const RgbT<T>& color, const T& cosine) const {
         const T passed = passed_at(cosine);
         const auto channel = [&](const T& c) { return c * T(1 - back_) / (T(1) - c * T(back_)) * passed; };
@@ -39,16 +40,16 @@ public:
     float alpha = 1, coat = 0, coat_alpha = 1;
 
 private:
-    static constexpr int kSteps = 32; ///< of the cosine; the albedo of layers is smooth in it
+    static constexpr int kSteps = 32; ///< table intervals over the cosine, in which the albedo is smooth
     void tabulate(const LayeredBsdf& layers);
     template <typename T> T passed_at(const T& cosine) const;
 
     float metallic_ = 0;   ///< factor of the color in the specular lobe
     float dielectric_ = 0; ///< constant part of the specular lobe
     float back_ = 0;       ///< fraction of diffuse light that the boundary above reflects back down (Coated)
-    /// Fraction of the diffuse lobe that leaves through the layers above it, by the cosine.
+    /// The table holds the fraction of the diffuse lobe that leaves through the layers above it, by the cosine.
     std::array<float, kSteps + 2> passed_{};
-    bool layered_ = false; ///< false: passed_ is the same at any cosine
+    bool layered_ = false; ///< whether passed_ depends on the cosine
 };
 
 template <> inline float LobesOfColor::passed_at(const float& cosine) const {

@@ -26,7 +26,7 @@ constexpr std::int32_t kNarrow = 1 << 14;
 
 /// Stores sixteen snapped triangles in structure-of-arrays layout.
 struct Assembler::TrianglePacket {
-    std::uint32_t first = 0, count = 0; ///< index of the first triangle of the object, and how many lanes are used
+    std::uint32_t first = 0, count = 0; ///< index of the first triangle in the object, and number of used lanes
     std::array<PacketOf<std::int32_t>, 3> x, y;
     PacketOf<std::int32_t> any_outcode, common_outcode;
     PacketOf<std::int32_t> cull_result;

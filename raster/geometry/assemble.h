@@ -18,7 +18,7 @@ struct AssemblyPlan {
     std::vector<SampleOffset> samples;
     SkipFlags skips;
     bool front_faces_only = false;
-    /// If it is true, a small triangle's samples become one coverage mask (CoverageMask); else they become fragments.
+    /// With coverage masks, a small triangle's samples become one mask (CoverageMask); without, they become fragments.
     bool coverage_masks = true;
 };
 

@@ -20,7 +20,7 @@ std::size_t Batch::memory_bytes() const {
            bytes(mask_segments) + bytes(fragments) + bytes(fragment_segments);
 }
 
-// This is a counting sort that overlaps only the counters of tiles with items, so its cost is linear in the items.
+// Implements a counting sort that visits only the counters of tiles with items, so its cost is linear in the items.
 template <typename Item, typename TileOf, typename Put>
 void TileSorter::distribute(std::span<const Item> items, const TileOf& tile_of, std::vector<Segment>& segments,
                             const Put& put) {

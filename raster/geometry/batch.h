@@ -12,7 +12,7 @@
 
 namespace duet::raster {
 
-/// Represents a covered sample of a triangle that is too small to be worth rasterizing tile by tile.
+/// Represents a covered sample of a triangle that is too small for tile-by-tile rasterization.
 struct Fragment {
     std::uint32_t id = 0;
     float reversed_depth = 0;
@@ -54,12 +54,12 @@ struct Segment {
 struct Batch {
     std::vector<DrawTriangle> triangles;
     std::vector<std::uint32_t> order;         ///< indices of triangles, sorted by tile
-    std::vector<Segment> triangle_segments;   ///< of `order`
+    std::vector<Segment> triangle_segments;   ///< segments of `order`
     std::vector<CoverageMask> coverage_masks;
     std::vector<std::uint32_t> mask_order;    ///< indices of coverage_masks, sorted by tile
-    std::vector<Segment> mask_segments;       ///< of `mask_order`
+    std::vector<Segment> mask_segments;       ///< segments of `mask_order`
     std::vector<Fragment> fragments;          ///< sorted by tile
-    std::vector<Segment> fragment_segments;   ///< of `fragments`
+    std::vector<Segment> fragment_segments;   ///< segments of `fragments`
     CullCounts culled;
 
     /// Empties all lists, and keeps their memory.

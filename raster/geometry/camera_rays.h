@@ -6,8 +6,8 @@
 
 namespace duet::raster {
 
-/// Holds the rays through pixel positions x, y, bit-identical to those of Pinhole::ray. Values that Pinhole::ray
-/// rounds to float are rounded here too, but stored as doubles.
+/// Holds camera rays through the pixel positions (x, y), bit-identical to Pinhole::ray. Values that Pinhole::ray rounds
+/// to float are rounded here too, but stored as doubles.
 struct CameraRays {
     Vec3T<Doubles> origin, direction; ///< rounded to float precision
     Doubles t_min;                    ///< not rounded

@@ -1,4 +1,4 @@
-// Math for templates whose number type is a single float or a batch of lanes.
+// Provides math for templates whose number type is a single float or a batch of lanes.
 #pragma once
 
 #include "common/image/rgb.h"

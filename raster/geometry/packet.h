@@ -64,7 +64,7 @@ using duet::negated_multiply_add;
 /// Writes a cache line from two halves with non-temporal stores. They do not evict data that is needed sooner, and
 /// do not fetch the line before overwriting it. Other threads see the data after finish_streams().
 inline void stream_line(const void* first_half, const void* second_half, void* line) {
-#ifdef DUET_SANITIZED // which do not support such stores
+#ifdef DUET_SANITIZED // sanitizers do not support non-temporal stores
     std::memcpy(line, first_half, 32);
     std::memcpy(static_cast<char*>(line) + 32, second_half, 32);
 #elif defined(__AVX__)
@@ -238,21 +238,21 @@ inline Ints gather(const std::int32_t* from, const Ints& indices) {
 /// Truncates towards zero.
 inline Ints truncated(const Floats& x) { return xsimd::batch_cast<std::int32_t>(x); }
 
-/// The constant holds the index of each sample of a packet.
+/// This constant holds the index of each sample of a packet.
 inline const PacketOf<std::int32_t> kLanes = [] {
     PacketOf<std::int32_t> result;
     for (std::size_t i = 0; i < kPacketSize; ++i) result[i] = static_cast<std::int32_t>(i);
     return result;
 }();
 
-/// The constant holds the sample indices as floats.
+/// This constant holds the index of each sample of a packet as a float.
 inline const PacketOf<float> kLanesAsFloats = [] {
     PacketOf<float> result;
     for (std::size_t i = 0; i < kPacketSize; ++i) result[i] = static_cast<float>(i);
     return result;
 }();
 
-/// The constant holds the lane indices as doubles.
+/// This constant holds the index of each lane of a batch of doubles.
 inline const Doubles kLanesAsDoubles = [] {
     alignas(64) std::array<double, Doubles::size> result;
     for (std::size_t i = 0; i < Doubles::size; ++i) result[i] = static_cast<double>(i);

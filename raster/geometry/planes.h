@@ -15,7 +15,7 @@ namespace duet::raster {
 /// Σ(e·depth).
 template <typename D> struct TrianglePlanes {
     std::array<D, 3> e1, e2, sum, depth_sum;
-    D determinant; ///< of the corners; positive if they run clockwise in the image
+    D determinant; ///< determinant of the corners; positive if they run clockwise in the image
 };
 
 /// Computes the planes from the corners' homogeneous pixel coordinates, relative to any origin.

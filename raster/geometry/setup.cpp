@@ -8,8 +8,8 @@
 #include <utility>
 
 namespace duet::raster {
-// The error of the determinant is that of the local vertices, whose subtractions have rounded numbers as large as the
-// vertices in the image, times the e that they are multiplied with.
+// The determinant's error comes from the vertices relative to the local origin. Their subtractions round at the
+// magnitude of the vertices in the image, and each error is multiplied by a coefficient of e.
 double Interpolation::rounding_error(const std::array<const PixelVertex*, 3>& corners) const {
     constexpr double kRoundoffs = 4 * std::numeric_limits<double>::epsilon();
     double sum = 0;
@@ -38,7 +38,7 @@ Interpolation::Interpolation(const PixelVertex& a, const PixelVertex& b, const P
 Vec2d Interpolation::mirrored_inside(Vec2d p) const {
     for (const Vec3d& edge : e) {
         const double value = edge.x * p.x + edge.y * p.y + edge.z, steepness = edge.x * edge.x + edge.y * edge.y;
-        constexpr double kReach = 1.0 / 128; // farther only in a sliver, where the mirrored point is meaningless
+        constexpr double kReach = 1.0 / 128; // exceeded only in slivers, where mirroring is meaningless
         if (value < 0 && value * value < kReach * kReach / 4 * steepness)
             p = p - Vec2d(edge.x, edge.y) * (2 * value / steepness);
     }
@@ -69,8 +69,8 @@ Vec2d Interpolation::nearest_on_boundary(Vec2d p) const {
     return nearest;
 }
 
-// Seen edge-on, a triangle is a segment in the image, with two points of its edges at each position along it. A sample
-// beside the segment shows the nearer one, a sample beyond it the nearest corner.
+// A triangle seen edge-on is a segment in the image, with two points of its edges at each position along it. A sample
+// beside the segment shows the nearer of the two points, and a sample beyond its ends the nearest corner.
 Interpolated Interpolation::edge_on(Vec2d p) const {
     const auto steepness = [](const Vec3d& edge) { return edge.x * edge.x + edge.y * edge.y; };
     const Vec3d line = *std::ranges::max_element(e, {}, steepness);

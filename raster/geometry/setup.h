@@ -75,7 +75,7 @@ struct Interpolation {
     double origin_x = 0, origin_y = 0;
     std::array<Vec3d, 3> e;        ///< e[i] = coefficients of x, y, 1; positive inside, for front and back faces
     std::array<Vec3d, 3> vertices; ///< xw, yw, w
-    bool is_edge_on = false;       ///< the sign of the area is rounding error
+    bool is_edge_on = false;       ///< whether the sign of the area is only rounding error
     Vec3d depth;                   ///< camera-space depths of the three vertices, meters
 
     Interpolation() = default;
@@ -100,10 +100,10 @@ struct UnclippedTriangle {
 /// plane gives the reversed depth at each. All other attributes are interpolated in the whole (unclipped, unsnapped)
 /// triangle with this id.
 struct alignas(64) DrawTriangle { // one cache line
-    std::array<FixedPoint, 3> corners; ///< of positive area
-    bool plane_reliable = false;       ///< the depth plane is reliable; false for a triangle seen edge-on
-    bool clipped = false;  ///< the corners are those of a clipped part of the triangle
-    std::uint32_t id = 0;  ///< in the order of (object, primitive)
+    std::array<FixedPoint, 3> corners; ///< snapped corners, of positive area
+    bool plane_reliable = false;       ///< false for a triangle seen edge-on
+    bool clipped = false;  ///< whether the corners are those of a clipped part
+    std::uint32_t id = 0;  ///< id in the order of (object, primitive)
     float nearest = 1;     ///< upper bound of the reversed depth of its samples
     DepthPlane depth_plane{};
 };
@@ -134,8 +134,8 @@ Interpolated interpolate(const UnclippedTriangle& whole, Vec2d pixel);
 /// Returns the interpolation relative to origin(corners, viewport).
 Interpolation interpolation(const UnclippedTriangle& whole, const std::array<FixedPoint, 3>& corners,
                             const Viewport& viewport);
-/// Sets the depth plane and the fields that follow from it. `min_depth` is the minimum over the corners of the
-/// whole triangle, in meters. `clipped`: the corners are those of a clipped part.
+/// Sets the depth plane and the fields that follow from it. `min_depth` is the minimum over the corners of the whole
+/// triangle, in meters. `clipped` says that the corners are those of a clipped part.
 void set_plane(DrawTriangle& triangle, const DepthPlane& plane, double min_depth, bool clipped, double near);
 /// Sets up a triangle. `corners`, of positive area, are the snapped corners of the whole triangle or of a clipped
 /// part.
@@ -173,7 +173,7 @@ template <typename T> std::array<T, 3> edge_margins(const std::array<T, 3>& leng
 }
 inline std::array<std::int64_t, 3> edge_margins(const DrawTriangle& triangle) {
     const auto& p = triangle.corners;
-    std::array<std::int64_t, 3> lengths; // of the edge from corner k to the next
+    std::array<std::int64_t, 3> lengths; // length of the edge from corner k to the next
     for (std::size_t k = 0; k < 3; ++k) {
         const FixedPoint &a = p[k], &b = p[(k + 1) % 3];
         lengths[k] = std::abs(std::int64_t{b.x} - a.x) + std::abs(std::int64_t{b.y} - a.y);

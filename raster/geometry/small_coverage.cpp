@@ -43,7 +43,7 @@ void Assembler::cover_candidates() {
         const Ints ax = load(c.x[0], i), ay = load(c.y[0], i);
         Ints bx = load(c.x[1], i), by = load(c.y[1], i), cx = load(c.x[2], i), cy = load(c.y[2], i);
         const Ints area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
-        const auto negative = area < zero; // winding is reversed for these
+        const auto negative = area < zero; // lanes with reversed winding
         const Ints sx = (load(c.sample_x, i) << kSubpixelBits) + Ints(min_offset_.x),
                    sy = (load(c.sample_y, i) << kSubpixelBits) + Ints(min_offset_.y);
         const Ints px = xsimd::select(negative, cx, bx), py = xsimd::select(negative, cy, by);

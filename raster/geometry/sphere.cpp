@@ -53,7 +53,7 @@ Interval perspective_extremes(SphereFunction x, const SphereFunction& w, double 
             if (dot(overlap, w.g) + w.offset >= near * (1 - 1e-9)) result.add(s + shift);
         }
     }
-    const double height = (near - w.offset) / gw; // of the near plane above the center, in radii
+    const double height = (near - w.offset) / gw; // height of the near plane above the center, in radii
     if (std::abs(height) <= 1) {
         const Vec3d up = w.g / gw;
         const double along = dot(x.g, up);

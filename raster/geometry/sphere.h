@@ -1,4 +1,4 @@
-// Spheres are drawn exactly: they are bounded in the image and then intersected with the camera ray of each sample.
+// Draws spheres exactly: each is bounded in the image and then intersected with the camera ray of each sample.
 #pragma once
 
 #include "raster/geometry/camera_rays.h"

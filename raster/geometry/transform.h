@@ -43,8 +43,8 @@ Viewport viewport_of(const View& view, const Pinhole& pinhole);
 /// functions below 2^52, which is exact in 64 bits.
 inline constexpr double kGuardBand = 65536;
 
-/// The bits tell on the outer side of which clip planes a vertex lies. A primitive whose vertices share a frustum bit
-/// is invisible.
+/// Each bit says that a vertex lies outside one clip plane. A primitive whose vertices share a frustum bit is
+/// invisible.
 enum Outcode : std::uint8_t {
     kLeft = 1, ///< more than a pixel beyond the image edge, so snapping can't move it inside
     kRight = 2,
@@ -72,7 +72,7 @@ struct SnappedVertex {
 struct TransformedObject {
     std::uint32_t object = 0; ///< index into Scene::objects
     bool mirrored = false;    ///< the transform has a negative determinant, so windings are flipped
-    Mat4d to_pixel;           ///< object_to_pixel
+    Mat4d to_pixel;           ///< result of object_to_pixel()
     Mat4d to_pixel_transposed; ///< transpose of `to_pixel`: its columns are contiguous
     std::vector<SnappedVertex> vertices;
     unsigned any_outside = 0; ///< bitwise or of all outcodes

@@ -17,7 +17,7 @@ inline constexpr std::uint32_t kNoTriangle = 0x7fffffff;
 /// are two triangles. A sphere is a run of one.
 struct Run {
     std::uint32_t object = 0; ///< index into Triangles::objects; of a sphere: index into the list of spheres
-    std::uint32_t first = 0;  ///< first triangle, as an index into the object's
+    std::uint32_t first = 0;  ///< index of the first triangle in the object
     std::uint32_t count = 0;
     std::uint32_t first_id = 0; ///< id of the first triangle
     bool sphere = false;
@@ -67,7 +67,8 @@ public:
     virtual UnclippedTriangle unclipped(std::uint32_t id) const = 0;
 };
 
-/// Ids are in the order of (object, primitive), so that the lower id wins a depth tie.
+/// Gives access to the triangles of a pass. Ids are in the order of (object, primitive), so that the lower id wins a
+/// depth tie.
 struct Triangles : UnclippedTriangles {
     const RasterSceneData* prepared = nullptr;
     const Scene* scene = nullptr;           ///< RasterSceneData::scene
@@ -82,7 +83,7 @@ struct Triangles : UnclippedTriangles {
         return prepared->shapes[scene->objects[objects[run.object].object].shape];
     }
 
-    /// `index` counts the triangles of the object, as Run::first does.
+    /// Returns the triangle with this index in the run's object. Indices count the object's triangles, like Run::first.
     UnclippedTriangle unclipped(const Run& run, std::uint32_t index) const {
         return ShapeTriangles(shape(run)).unclipped(objects[run.object], index);
     }

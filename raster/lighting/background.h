@@ -1,4 +1,4 @@
-// The background: the environment's radiance where no surface is visible.
+// Draws the background, which is the environment's radiance where no surface is visible.
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kTileSide = 16, kBatch = static_cast<int>(Floats::size);
 
-/// Computes the direct light of one part of the image after another, on one thread.
+/// Computes the direct light of rows or tiles of the image. Each thread has its own.
 class PixelLighter {
 public:
     PixelLighter(const GBuffer& gbuffer, std::span<const FrameLight> lights, const LightSet& light_set,
@@ -45,8 +45,9 @@ private:
         void add(const Sum& other) {
             exact += other.exact, unshadowed += other.unshadowed, shadowed += other.shadowed;
         }
-        /// Returns the fraction of each channel that arrives, as DirectLight stores it. A channel that the surface does
-        /// not reflect has that of all channels: its neighbors may reflect it.
+        /// Returns the visible fraction of each channel of the light, as DirectLight stores it. A channel that the
+        /// surface does not reflect gets the fraction of all channels together, because a filter averages it with its
+        /// neighbors.
         RgbT<Floats> lit() const {
             const Floats zero(0.0f), all = unshadowed.r + unshadowed.g + unshadowed.b;
             const Floats of_all = xsimd::select(all > zero, (shadowed.r + shadowed.g + shadowed.b) / all,
@@ -59,11 +60,11 @@ private:
         }
     };
 
-    /// What lights of one source send to the viewer, if nothing shades them.
+    /// Holds the light that the lights of one source send to the viewer if nothing shades them.
     struct SourceLight {
         std::size_t source = ShadowLookup::kUnshadowed;
         RgbT<Floats> reflected{Floats(0.0f)};
-        Vec3T<Floats> direction{Floats(0.0f), Floats(0.0f), Floats(0.0f)}; ///< sum of unit vectors to lights that reach
+        Vec3T<Floats> direction{Floats(0.0f), Floats(0.0f), Floats(0.0f)}; ///< sum of unit vectors to the lights
 
         void add(const RgbT<Floats>& light, const Vec3T<Floats>& wi) {
             reflected += light;
@@ -71,11 +72,13 @@ private:
         }
     };
 
-    /// Clusters of 16 rows are divided into those of 4, and these into single rows; and up to twice by normals.
+    /// Clusters of 16 rows are divided into clusters of 4 rows, these into single rows, and each at most twice by
+    /// normals.
     static constexpr std::size_t kLevels = 5;
     static constexpr int kDivision = 4;
 
-    /// Finds the lights of a cluster among those of the cluster around it, and divides it as long as they are many.
+    /// Finds the lights of a cluster among those of the enclosing cluster, and divides the cluster as long as it has
+    /// many.
     void light_cluster(const Cluster& cluster, const LightSet& around, std::size_t level) {
         const std::optional<SurfaceBounds> surfaces = surface_bounds(gbuffer_, cluster);
         if (!surfaces) return;
@@ -91,7 +94,7 @@ private:
                    many = divides && own.found.near.size() > LightSet::kFewLights;
         const auto edge = many ? split_at_edge(gbuffer_, cluster, *surfaces) : std::nullopt;
         if (!edge && (!many || cluster.rows == 1)) {
-            constexpr float kGoldenRatio = 0.618034f; // its multiples spread evenly
+            constexpr float kGoldenRatio = 0.618034f; // its multiples modulo 1 are evenly spread
             chosen_.random += kGoldenRatio - (chosen_.random + kGoldenRatio < 1 ? 0.0f : 1.0f);
             around.choose(own.found, chosen_.most, chosen_.random, own.lights);
             light_pixels(cluster, own.lights);
@@ -151,7 +154,7 @@ private:
         return all * transmittance(optical_depth(media_, batch.p(), to.wi, to.distance));
     }
 
-    /// Adds the lights of one source, which share one look at its shadows.
+    /// Adds the light of one shadow source. Its lights share one shadow lookup.
     void add_shadowed(const LitBatch& batch, const SourceLight& light, const Vec3T<Floats>& facet, int x, int y,
                       Sum& sum) const {
         const xsimd::batch_bool<float> lit = max_component(light.reflected) > Floats(0.0f);
@@ -167,17 +170,18 @@ private:
             sum.exact += seen;
     }
 
-    /// Returns the points at which a light's shadows are looked up. They lie on the smooth surface that coarse facets
-    /// stand for if the light is low, or facets would shade themselves; else on the facets, for the sake of contacts.
+    /// Returns the points at which a light's shadows are sampled. If the light is low, they lie on the smooth surface
+    /// that the facets approximate, because coarse facets would shade themselves. Otherwise they lie on the facets,
+    /// which preserves contact shadows.
     Vec3T<Floats> receiver(const LitBatch& batch, const Vec3T<Floats>& wi, int x, int y) const {
-        constexpr float kLow = 0.4f, kHigh = 0.8f; // cosines between which the height falls
+        constexpr float kLow = 0.4f, kHigh = 0.8f; // the height falls to 0 between these cosines
         const Vec3T<Floats> n = batch.n(), p = batch.p();
         const Floats low = clamp((Floats(kHigh) - dot(n, wi)) * Floats(1 / (kHigh - kLow)), Floats(0.0f), Floats(1.0f));
         return p + n * (load(gbuffer_.bulge, x, y) * low);
     }
 
-    /// Returns the normals of the planes that do not shade themselves. They are those of the facets, where these face
-    /// the light; a facet that smooth shading turns toward the light stands for a part of the smooth surface.
+    /// Returns the normals of the receiver planes, which must not shade themselves. A facet that faces the light is its
+    /// own receiver plane. A facet that only its shading normal turns towards the light has the shading normal instead.
     static Vec3T<Floats> receiving_normal(const LitBatch& batch, const Vec3T<Floats>& wi, const Vec3T<Floats>& facet) {
         constexpr float kLeastCosine = 0.05f;
         return select(dot(facet, wi) > Floats(kLeastCosine), facet, batch.n());
@@ -209,14 +213,14 @@ private:
     LitBatch::Tables tables_;
     struct Level {
         LightsOfCluster found;
-        LightSet near;                     ///< what `found` lists, for the parts of the cluster
-        std::vector<WeightedLight> lights; ///< those of them that light the pixels
+        LightSet near;                     ///< the near lights of `found`, for the parts of the cluster
+        std::vector<WeightedLight> lights; ///< the chosen lights, with their weights
     };
     std::array<Level, kLevels> levels_;
-    std::array<LightField, kLevels> fields_; ///< of the distant lights of all clusters around the pixels
+    std::array<LightField, kLevels> fields_; ///< distant lights of the enclosing clusters
     std::size_t field_count_ = 0;
     std::vector<std::uint32_t> distant_;
-    std::array<Sum, kTileSide * kTileSide / Floats::size> sums_; ///< of the tile
+    std::array<Sum, kTileSide * kTileSide / Floats::size> sums_; ///< one per batch of the tile
 };
 
 } // namespace
@@ -239,7 +243,7 @@ void compute_direct_light(const RasterSceneData& data, const RasterSettings& set
     }
     const std::vector<Medium> media = frame_media(data.scene.media, settings, gbuffer.projection);
     const LightSet light_set(lights, shadows, media.empty());
-    const bool few = lights.size() <= LightSet::kFewLights; // which lists would not make fewer
+    const bool few = lights.size() <= LightSet::kFewLights; // then lists of lights would save nothing
     std::vector<WeightedLight> all_of_few;
     if (few)
         for (const std::uint32_t i : light_set.lights()) all_of_few.push_back({i, 1});

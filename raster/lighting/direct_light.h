@@ -1,6 +1,6 @@
-// Direct light: what the scene's lights send to the viewer by the diffuse and specular lobes of the visible
-// surfaces. Area lights are integrated in closed form (raster/lighting/polygon_light.h, sphere_light.h), so there is no
-// noise.
+// Computes direct light: the radiance that the diffuse and specular lobes of the visible surfaces reflect from the
+// scene's lights. Area lights are integrated in closed form (raster/lighting/polygon_light.h, sphere_light.h), so there
+// is no noise.
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"
@@ -11,21 +11,21 @@
 
 namespace duet::raster {
 
-/// Holds radiance towards the viewer, for each pixel; 0 for the background.
+/// Holds the radiance towards the viewer for each pixel; 0 for the background.
 struct DirectLight {
     Planes3 exact; ///< from lights without shadows, and lights whose shadows are not noisy
-    /// From lights with noisy shadows, as if nothing shaded them; empty if there are none.
+    /// This is the radiance from lights with noisy shadows, as if nothing shaded them. It is empty if there are none.
     Planes3 unshadowed;
-    /// The fraction of it that arrives, in [0, 1], which may be filtered without blurring the surfaces; kNoLight where
-    /// unshadowed is black.
+    /// This is the fraction of `unshadowed` that arrives, in [0, 1]; kNoLight where `unshadowed` is black. It may be
+    /// filtered without blurring the surfaces.
     Planes3 lit;
     static constexpr float kNoLight = -1;
 
     std::size_t memory_bytes() const { return exact.memory_bytes() + unshadowed.memory_bytes() + lit.memory_bytes(); }
 };
 
-/// Says how many lights stand for all. If a cluster of pixels has more near lights than `most`, about so many are
-/// chosen (LightSet::choose). Images that are averaged should differ in `random`, a number in [0, 1).
+/// Limits the number of near lights per cluster of pixels. If a cluster has more than `most`, about `most` of them are
+/// chosen at random (LightSet::choose). Images that are averaged should differ in `random`, a number in [0, 1).
 struct ChosenLights {
     static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
     std::size_t most = kAll;

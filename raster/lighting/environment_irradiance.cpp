@@ -30,7 +30,7 @@ IrradianceHarmonics environment_irradiance(const Environment& environment, int t
     IrradianceHarmonics result{};
     if (const auto up = irradiance_closed_form(environment, Vec3(0, 1, 0))) {
         const Rgb down = *irradiance_closed_form(environment, Vec3(0, -1, 0));
-        result[0] = (*up + down) * 0.5f, result[1] = (*up - down) * 0.5f; // it is linear in the normal's height
+        result[0] = (*up + down) * 0.5f, result[1] = (*up - down) * 0.5f; // the irradiance is linear in n.y
         return result;
     }
     const ImageRgb& image = std::get<ImageEnvironment>(environment).image;

@@ -23,7 +23,7 @@ Vec3d precise_cross(Vec3d a, Vec3d b) {
             difference_of_products(a.x, b.y, a.y, b.x)};
 }
 
-/// A Polygon is convex, with vertices relative to p. Clipping by one plane adds at most one vertex.
+/// Represents a convex polygon, with vertices relative to p. Clipping by one plane adds at most one vertex.
 struct Polygon {
     std::array<Vec3d, kMaxVertices + 1> v;
     std::size_t count = 0;
@@ -62,7 +62,7 @@ double edge_term(Vec3d a, Vec3d b, Vec3d n) {
     return std::atan2(sine, dot(a, b)) * dot(c, n) / sine;
 }
 
-/// A FarField holds a polygon's vector area and its area-weighted centroid relative to p.
+/// Holds a polygon's vector area and its area-weighted centroid relative to p.
 struct FarField {
     Vec3d area, centroid;
 };

@@ -1,4 +1,4 @@
-// This file computes the unoccluded irradiance from polygons in closed form.
+// Computes the unoccluded irradiance from polygons in closed form.
 #pragma once
 
 #include "common/geometry/shape.h"
@@ -13,7 +13,7 @@ namespace duet {
 /// faces p. The polygon has at most 8 vertices (an invariant). The computation is in double. The result is 0 where p
 /// lies in the polygon's plane.
 double polygon_form_factor_times_pi(Vec3 p, Vec3 n, std::span<const Vec3> polygon);
-/// Returns the same for a quad. Its vertices are not rounded to float.
+/// This overload takes a quad, whose vertices are not rounded to float.
 double polygon_form_factor_times_pi(Vec3 p, Vec3 n, const Quad& quad);
 
 } // namespace duet

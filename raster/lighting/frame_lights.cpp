@@ -81,7 +81,7 @@ std::vector<Medium> frame_media(std::span<const Medium> media, const RasterSetti
     std::vector<Medium> result(media.begin(), media.end());
     for (Medium& medium : result)
         medium.box = {projection.relative(Vec3d(medium.box.low)), projection.relative(Vec3d(medium.box.high))};
-    // A thin box far from the eye may have no thickness in floats.
+    // A thin box far from the eye may have no thickness in float precision.
     std::erase_if(result, [](const Medium& medium) {
         const Vec3 size = medium.box.diagonal();
         return !(size.x > 0 && size.y > 0 && size.z > 0);

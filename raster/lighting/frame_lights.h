@@ -1,4 +1,4 @@
-// The scene's lights as one frame uses them: as floats relative to the eye.
+// Converts the scene's lights to the form that one frame uses: floats relative to the eye.
 #pragma once
 
 #include "common/light/light.h"
@@ -16,14 +16,14 @@ struct FrameLight {
     enum class Kind { kTriangle, kQuad, kSphere, kPoint, kSpot, kSun };
 
     Kind kind;
-    std::size_t index = 0; ///< into Scene::lights
+    std::size_t index = 0; ///< index into Scene::lights
     Rgb emitted;           ///< radiance, W/(m² sr); intensity of a point or spot light, W/sr; irradiance of a sun, W/m²
     Vec3 position;         ///< corner of a flat light, center of a sphere, position of a point or spot light
     Vec3 u, v;             ///< edges of a flat light; its front is the side to which u × v points
     Vec3 axis;             ///< unit normal of a flat light, direction of a spot, direction towards a sun
-    float radius = 0;      ///< of a sphere
+    float radius = 0;      ///< radius of a sphere
     bool two_sided = false;
-    /// Of a spot, whose intensity rises from 0 at this cosine to its full value at 1 / inverse_range more.
+    /// A spot's intensity rises from 0 at the cosine cos_outer to its full value at cos_outer + 1 / inverse_range.
     float cos_outer = -1, inverse_range = 0;
 
     explicit FrameLight(Kind kind_, Rgb emitted_ = {}) : kind(kind_), emitted(emitted_) {}
@@ -35,7 +35,7 @@ struct FrameLight {
     }
 };
 
-/// Returns a fraction of a spot's intensity, dimmed as its cone demands, for unit directions towards the spot.
+/// Returns `fraction` dimmed by the falloff of the spot's cone, for unit directions wi towards the spot.
 inline Floats dimmed_by_cone(const FrameLight& spot, const Vec3T<Floats>& wi, const Floats& fraction) {
     const Floats cosine = -dot(wi, broadcast<Floats>(spot.axis)), three(3.0f);
     const Floats s = clamp((cosine - Floats(spot.cos_outer)) * Floats(spot.inverse_range), Floats(0.0f), Floats(1.0f));
@@ -44,16 +44,16 @@ inline Floats dimmed_by_cone(const FrameLight& spot, const Vec3T<Floats>& wi, co
 
 /// Describes where a light lies, for points relative to the eye.
 struct LightDirection {
-    Vec3T<Floats> wi; ///< unit, to its middle
+    Vec3T<Floats> wi; ///< unit direction to the light's middle
     Floats distance;  ///< infinite for a sun
 };
 /// Returns the direction and the distance from points relative to the eye to the light's middle.
 LightDirection direction_to(const FrameLight& light, const Vec3T<Floats>& p);
 
-/// Converts the lights that emit anything.
+/// Converts the lights that emit, and leaves out black ones.
 std::vector<FrameLight> frame_lights(std::span<const Light> lights, const ScreenProjection& projection);
 
-/// Converts the scene's media, unless the settings leave them out: their boxes are relative to the eye.
+/// Converts the scene's media, whose boxes become relative to the eye. Returns none if the settings leave media out.
 std::vector<Medium> frame_media(std::span<const Medium> media, const RasterSettings& settings,
                                 const ScreenProjection& projection);
 

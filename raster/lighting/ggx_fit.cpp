@@ -28,7 +28,7 @@ Vec2d point(int i, int count) {
 
 Vec3d viewer(double cosine) { return {std::sqrt((1 - cosine) * (1 + cosine)), 0, cosine}; }
 
-/// This is the GGX lobe without its Fresnel term, D G₂ / (4 cos θₒ), including the cosine, with its sampling
+/// Represents the GGX lobe without its Fresnel term, D G₂ / (4 cos θₒ), which includes the cosine, and its sampling
 /// density.
 struct Lobe {
     double alpha;
@@ -61,8 +61,8 @@ Moments moments(const Lobe& lobe) {
     return sum;
 }
 
-/// These are the parameters of Heitz et al. 2016: the scales along the lobe's axes and its skew, in a frame about its
-/// mean direction (sin, 0, cos).
+/// Holds the parameters of Heitz et al. 2016: the scales along the lobe's axes and its skew, in a frame about its mean
+/// direction (sin, 0, cos).
 struct Parameters {
     double m11 = 1, m22 = 1, m13 = 0;
 };
@@ -73,9 +73,9 @@ LobeMatrix matrix(const Parameters& p, Vec3d mean) {
             static_cast<float>(-mean.x * a), static_cast<float>(-mean.x * p.m13 + mean.z)};
 }
 
-/// This is the density of a linearly transformed cosine.
+/// Represents a linearly transformed cosine by its density.
 struct Cosine {
-    double i11, i13, i22, i31, i33, determinant; ///< of the inverse matrix
+    double i11, i13, i22, i31, i33, determinant; ///< elements and determinant of the inverse matrix
     LobeMatrix m;
 
     explicit Cosine(const LobeMatrix& lobe) : m(lobe) {
@@ -100,7 +100,8 @@ struct Cosine {
     }
 };
 
-/// Estimates ∫ |f − t|^power from samples of both densities.
+/// Estimates ∫ |f − t|^power dw for the normalized lobe f and the fitted cosine t, from samples of both. `power` is 1
+/// or 3.
 double difference(const Lobe& lobe, double energy, const LobeMatrix& fit, int power, int samples) {
     const Cosine cosine(fit);
     double sum = 0;
@@ -160,8 +161,8 @@ template <typename F> Simplex minimize(const F& f, const Simplex& start, double 
     return std::min_element(s.begin(), s.end(), less)->second;
 }
 
-/// Fits one entry. The search starts from `parameters`, those of a neighboring entry, and replaces them by the
-/// result.
+/// Fits one entry. The search starts from `parameters`, which are those of a neighboring entry, and stores the result
+/// there.
 LobeMatrix fit(float alpha, float cosine, Parameters& parameters) {
     const Lobe lobe{static_cast<double>(alpha), viewer(static_cast<double>(cosine))};
     const Moments m = moments(lobe);

@@ -9,7 +9,7 @@
 
 namespace duet::raster {
 
-/// A table has Side × Side entries of N numbers each.
+/// Stores a table of Side × Side entries with N numbers each.
 template <std::size_t N, int Side> struct GgxTable {
     std::array<std::array<float, N>, std::size_t{Side} * Side> entries;
 

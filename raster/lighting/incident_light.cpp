@@ -12,8 +12,7 @@ Vec3 center(const SurfaceLight::Triangle& t) { return (t.a + t.b + t.c) * (1.0f 
 Vec3 center(const Quad& q) { return q.corner + (q.u + q.v) * 0.5f; }
 Vec3 center(const Sphere& s) { return s.center; }
 
-/// Returns the irradiance at p per unit of radiance, on a surface that faces the shape's center: n is the direction to
-/// it.
+/// Returns the irradiance at p per unit of radiance, for a surface whose unit normal n points to the shape's center.
 double facing_irradiance(const SurfaceLight::Triangle& t, Vec3 p, Vec3 n) {
     return polygon_form_factor_times_pi(p, n, std::array{t.a, t.b, t.c});
 }

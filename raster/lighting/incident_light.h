@@ -17,8 +17,8 @@ template <typename T> struct IncidentT {
 /// surface facing this direction. The result is black if p is the center itself.
 IncidentT<float> as_distant(const SurfaceLight& light, Vec3 p);
 
-/// Returns the incident light at a world-space point, for any light but a sun. An area light counts as a distant
-/// light of equal irradiance in the direction of its center.
+/// Returns the incident light at a world-space point, for any light but a sun. An area light is approximated by a
+/// distant light of equal irradiance in the direction of its center.
 template <typename T> IncidentT<T> incident(const Light& light, Vec3T<T> p) {
     const auto from = [&](Vec3 position, Rgb intensity) -> IncidentT<T> {
         const Vec3T<T> to_light = broadcast<T>(position) - p;

@@ -9,7 +9,7 @@ using Lanes = xsimd::batch_bool<float>;
 constexpr float kHuge = 1e30f;
 const Floats kNone(0.0f);
 
-/// Encloses a batch of points or normals at a time.
+/// Computes the bounding box of points or normals, one batch at a time.
 struct Box {
     Vec3T<Floats> low{Floats(kHuge), Floats(kHuge), Floats(kHuge)};
     Vec3T<Floats> high{Floats(-kHuge), Floats(-kHuge), Floats(-kHuge)};
@@ -61,9 +61,9 @@ std::size_t slices_of_depth(const GBuffer& gbuffer, const Cluster& cluster, std:
     });
     const float most = reduce_max(nearest), least = reduce_min(farthest);
     if (!(most > 0)) return 0;
-    constexpr float kOneSlice = 1.2f; // ratio of depths up to which there is only one
+    constexpr float kOneSlice = 1.2f; // one slice suffices up to this ratio of depths
     const std::size_t count = most < kOneSlice * least ? 1 : kDepthSlices;
-    // Equal steps of the logarithm of depth, as in the paper.
+    // The slices have equal steps in the logarithm of depth, as in Olsson et al. 2012.
     const float step = std::pow(least / most, 1.0f / static_cast<float>(count));
     float nearer = most;
     for (std::size_t k = 0; k < count; ++k, nearer *= step) {
@@ -77,12 +77,13 @@ std::optional<std::array<Cluster, 2>> split_at_edge(const GBuffer& gbuffer, cons
                                                     const SurfaceBounds& surfaces) {
     const auto spread_of = [](const SurfaceBounds& b) { return b.n_high - b.n_low; };
     const Vec3 spread = spread_of(surfaces);
-    constexpr float kFlat = 0.1f; // dividing more saves little
+    constexpr float kFlat = 0.1f; // a smaller spread of normals is not worth a division
     if (length(spread) < kFlat) return std::nullopt;
     const std::size_t axis = spread.x >= max(spread.y, spread.z) ? 0 : spread.y >= spread.z ? 1 : 2;
     std::array<Cluster, 2> parts{cluster, cluster};
     parts[0].n_high[axis] = parts[1].n_low[axis] = (surfaces.n_low[axis] + surfaces.n_high[axis]) * 0.5f;
-    // Where a curved surface is divided, both parts keep half of the normals, and as much work as before.
+    // A division pays only at an abrupt edge. On a curved surface each part keeps half of the normals, and the work
+    // stays the same.
     constexpr float kAbrupt = 0.25f;
     for (const Cluster& part : parts)
         if (const auto bounds = surface_bounds(gbuffer, part);

@@ -1,5 +1,6 @@
-// Divides the visible surfaces into clusters, for which lights are listed (Olsson, Billeter and Assarsson 2012,
-// "Clustered Deferred and Forward Shading": clusters of a tile's pixels by depth and by normal, with explicit bounds).
+// Divides the visible surfaces into clusters, for which lights are listed. The clusters divide a tile's pixels by depth
+// and by normal, and have explicit bounds (Olsson, Billeter and Assarsson 2012, "Clustered Deferred and Forward
+// Shading").
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"
@@ -11,7 +12,7 @@ namespace duet::raster {
 /// Selects the surfaces of a cluster: those in a rectangle of pixels whose reversed depth is in (farther, nearer] and
 /// whose normal is in a box. Surfaces that reflect nothing, such as most emitters, belong to no cluster.
 struct Cluster {
-    static constexpr float kAll = 2; ///< no reversed depth and no component of a normal is greater
+    static constexpr float kAll = 2; ///< greater than any reversed depth and any component of a normal
 
     int x, y, columns, rows;
     float nearer = kAll, farther = 0;

@@ -56,7 +56,7 @@ LightSet::LightSet(std::span<const FrameLight> lights, const ShadowLookup* shado
         const auto set_vector = [&](int r, Vec3 v) { set(r, v.x), set(r + 1, v.y), set(r + 2, v.z); };
         constexpr float kSunDistance = 1e9f; // meters: far beyond every scene, while its square is still a float
         Vec3 low = light.position, high = light.position, axis;
-        float plane = -1; // with an axis of 0, all points are in front
+        float plane = -1; // with axis 0, all points are in front
         const float power = average(light.emitted);
         float area = 1, most = kHuge;
         bool may_be_far = sums && (shadows == nullptr || shadows->source(light.index) == ShadowLookup::kUnshadowed);
@@ -107,7 +107,7 @@ void LightSet::reach(const SurfaceBounds& surfaces, float other_irradiance, Ligh
                         n_high = wide(surfaces.n_high), p = wide(surfaces.center()), n = wide(surfaces.mean_normal());
     const Floats radius(length(surfaces.extent()));
     const bool divided = size() > kFewLights;
-    Floats irradiance = kNone; // at the center
+    Floats irradiance = kNone; // irradiance at the cluster's center
     for (std::size_t i = 0; i < stride_; i += kBatch) {
         const auto number = [&](int r) { return Floats::load_aligned(row(r) + i); };
         const auto vector = [&](int r) { return Vec3T<Floats>(number(r), number(r + 1), number(r + 2)); };
@@ -117,11 +117,11 @@ void LightSet::reach(const SurfaceBounds& surfaces, float other_irradiance, Ligh
         const Vec3T<Floats> to = (low + high) * Floats(0.5f) - p;
         const Floats squared = max(dot(to, to), Floats(1e-12f)), along = -dot(to, axis);
         const Floats outside = xsimd::sqrt(max(squared - along * along, kNone)) * number(kConeCosine) -
-                               along * number(kConeSine); // distance from a spot's cone
+                               along * number(kConeSine); // signed distance from a spot's cone
         const Floats intensity = number(kIntensity), plane = number(kPlane);
         const Lanes reaches = (above.high > kNone) & (front.high > plane) & (outside <= radius) & (intensity > kNone);
         const Vec3T<Floats> zero(kNone, kNone, kNone), apart = max(max(low - p_high, p_low - high), zero);
-        // In the box, few surfaces are nearer than its radius.
+        // If the light lies in the box, few surfaces are nearer to it than the box's radius.
         const Floats nearest = max(dot(apart, apart), max(radius * radius, Floats(1e-12f)));
         min(intensity / nearest, number(kMost)).store_aligned(result.most.data() + i);
         Floats error(kHuge);
@@ -130,9 +130,10 @@ void LightSet::reach(const SurfaceBounds& surfaces, float other_irradiance, Ligh
             const Floats facing = max(xsimd::select(dot(axis, axis) > kNone, along * inverse, Floats(1.0f)), kNone);
             const Floats there = intensity * max(dot(to, n) * inverse, kNone) * facing * over;
             irradiance += xsimd::select(reaches, min(there, number(kMost)), kNone);
-            // The field errs by the second derivative: by at most 3 (radius / distance)² of an inverse square.
+            // The field's error comes from the second derivative. For an inverse square it is at most 3 (radius /
+            // distance)².
             const Floats extent = radius + number(kRadius), relative = extent * extent * over;
-            constexpr float kNearest = 1.0f / 256; // (radius / distance)², since errors of lights side by side add up
+            constexpr float kNearest = 1.0f / 256; // (radius / distance)²; errors of adjacent lights add up
             const Lanes whole = (above.low > kNone) & (front.low > plane) & (relative < Floats(kNearest)) &
                                 (max(number(kRed), max(number(kGreen), number(kBlue))) > kNone);
             error = xsimd::select(whole, Floats(3.0f) * relative * intensity * over, error);
@@ -163,7 +164,7 @@ void LightSet::choose(const LightsOfCluster& cluster, std::size_t most, float u,
     double sum = 0;
     for (const std::uint32_t column : cluster.near) sum += static_cast<double>(cluster.most[column]);
     const double step = sum / static_cast<double>(most);
-    double next = static_cast<double>(u) * step, end = 0; // `end` is that of a light's interval, as long as its bound
+    double next = static_cast<double>(u) * step, end = 0; // `end` is where the light's interval ends
     for (const std::uint32_t column : cluster.near) {
         const auto length = static_cast<double>(cluster.most[column]);
         end += length;
@@ -174,7 +175,7 @@ void LightSet::choose(const LightsOfCluster& cluster, std::size_t most, float u,
 }
 
 LightField LightSet::sum(const SurfaceBounds& surfaces, std::span<const float> distant) const {
-    // The field is the linear function through its values at the corners of a tetrahedron in the box.
+    // The field is the linear function that interpolates its values at the corners of a tetrahedron in the box.
     constexpr std::array<Vec3, 4> kCorners{Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, 1, -1), Vec3(-1, -1, 1)};
     constexpr float kInset = 0.577350269f; // 1/√3 balances the error at the box's corners against that inside
     const Vec3 extent = max(surfaces.extent() * kInset, Vec3(1e-6f, 1e-6f, 1e-6f));

@@ -1,5 +1,5 @@
 // Finds the lights that reach a cluster of surfaces (Olsson, Billeter and Assarsson 2012, "Clustered Deferred and
-// Forward Shading"), and sums those that are too far for their places to matter.
+// Forward Shading"), and sums those that are so far away that a linear field represents them.
 #pragma once
 
 #include "raster/lighting/frame_lights.h"
@@ -8,12 +8,12 @@
 
 namespace duet::raster {
 
-/// Holds the irradiance from distant lights together, as a vector per color (Gershun 1939, "The Light Field") that is
-/// linear in the position. If no light is below the horizon, the irradiance is exactly the vector's dot product with
-/// the normal.
+/// Represents the sum of distant lights as one irradiance vector per color channel (Gershun 1939, "The Light Field"),
+/// which is linear in the position. If no light is below the horizon, the irradiance is exactly the vector's dot
+/// product with the normal.
 struct LightField {
     Vec3 center, inverse_extent;
-    std::array<std::array<Vec3, 4>, 3> colors{}; ///< per color the vector at the center, and its change per extent
+    std::array<std::array<Vec3, 4>, 3> colors{}; ///< per channel the vector at the center, and its change per extent
 
     template <typename T> RgbT<T> irradiance(const Vec3T<T>& p, const Vec3T<T>& n) const {
         const Vec3T<T> q = (p - broadcast<T>(center)) * broadcast<T>(inverse_extent);
@@ -28,50 +28,51 @@ struct LightField {
     }
 };
 
-/// Holds how lights reach a cluster. It may be reused, which saves allocations.
+/// Holds the lights that reach a cluster. Reusing the object saves allocations.
 struct LightsOfCluster {
     std::vector<std::uint32_t> near, far; ///< columns of a LightSet; `field` holds the irradiance of the far ones
     LightField field;
-    std::vector<float, HugePageAllocator<float>> most;  ///< about the lights' greatest irradiance, by column
+    std::vector<float, HugePageAllocator<float>> most;  ///< approximate bound of a light's irradiance, by column
     std::vector<float, HugePageAllocator<float>> error, distant; ///< scratch memory, one number per light
 };
 
-/// Refers to a light that stands for several.
+/// Refers to a light, whose weight accounts for the lights that were not chosen.
 struct WeightedLight {
-    std::uint32_t index; ///< among the frame's lights
+    std::uint32_t index; ///< index into the frame's lights
     float weight;
 };
 
 /// Holds bounds of lights as a structure of arrays.
 class LightSet {
 public:
-    /// A field takes longer than it saves for so few lights, and would show where clusters meet.
+    /// For so few lights, a field costs more time than it saves, and cluster borders would be visible.
     static constexpr std::size_t kFewLights = 16;
-    /// Greatest error of the field for one light, as a fraction of the irradiance at the cluster's center.
+    /// This bounds the field's error per light, as a fraction of the irradiance at the cluster's center.
     static constexpr float kError = 1.0f / 512;
 
     LightSet() = default;
-    /// Lights that `shadows`, which may be null, shadows one by one never count as far. None does unless `sums`.
+    /// `shadows` may be null. Lights with shadow maps never count as far, and no light does if `sums` is false.
     LightSet(std::span<const FrameLight> lights, const ShadowLookup* shadows, bool sums = true);
-    /// Makes this a copy of the given columns of another set.
+    /// Replaces this set by the given columns of another set.
     void assign(const LightSet& other, std::span<const std::uint32_t> columns);
 
     /// Returns the lights' indices among the frame's lights.
     std::span<const std::uint32_t> lights() const { return lights_; }
     std::size_t size() const { return lights_.size(); }
 
-    /// Finds the lights that reach a cluster. A light is left out only where it gives no light: where it is behind all
+    /// Finds the lights that reach a cluster. A light is left out only if it contributes nothing: it is behind all
     /// surfaces or faces away from them, or its cone misses them.
     ///
-    /// Many lights are divided into near and far. Lights have no end, so all of them reach every cluster, and together
-    /// the distant ones may outshine the near ones; but their sum varies slowly. A light is far if it is above the
-    /// horizon of all surfaces and the error of a linear field is small enough. `other_irradiance` is the irradiance
-    /// from lights that are not in the set.
+    /// If there are many lights, they are divided into near and far ones. Light has no maximum range, so all lights
+    /// reach every cluster, and the distant ones together may outshine the near ones, but their sum varies slowly. A
+    /// light is far if it is above the horizon of all surfaces and the error of a linear field is small enough.
+    /// `other_irradiance` is the irradiance from lights that are not in the set.
     void reach(const SurfaceBounds& surfaces, float other_irradiance, LightsOfCluster& result) const;
 
-    /// Returns the near lights of a cluster or, if there are more than `most`, about that many of them: each in
-    /// proportion to its greatest irradiance, and weighted so that the expected light is the same, for `u` uniform in
-    /// [0, 1) (systematic sampling; Shirley, Wang and Zimmerman 1996, "Monte Carlo Techniques for Direct Lighting").
+    /// Returns the near lights of a cluster. If there are more than `most`, it chooses about `most` of them, with
+    /// probabilities in proportion to the bounds of their irradiance, and weights them so that the expected light is
+    /// unchanged. `u` is uniform in [0, 1) (systematic sampling; Shirley, Wang and Zimmerman 1996, "Monte Carlo
+    /// Techniques for Direct Lighting").
     void choose(const LightsOfCluster& cluster, std::size_t most, float u, std::vector<WeightedLight>& result) const;
 
 private:
@@ -81,16 +82,16 @@ private:
         kLowZ,
         kHighX,
         kHighY,
-        kHighZ, ///< box around the light
+        kHighZ, ///< last coordinate of the box around the light
         kAxisX,
         kAxisY,
         kAxisZ,
-        kPlane, ///< front: axis·p > plane
+        kPlane, ///< points with axis·p > plane are in front
         kConeCosine,
-        kConeSine,  ///< of a spot's outer angle; both 0 for others
-        kRadius,    ///< of the box
-        kIntensity, ///< W/sr, as in common/light/light_bounds.h; 0 in unused columns
-        kMost,      ///< greatest irradiance, W/m²
+        kConeSine,  ///< sine of a spot's outer angle; sine and cosine are 0 for other lights
+        kRadius,    ///< radius of the box
+        kIntensity, ///< intensity, W/sr (common/light/light_bounds.h); 0 in unused columns
+        kMost,      ///< upper bound of the irradiance, W/m²
         kRed,
         kGreen,
         kBlue, ///< intensity in W/sr, or 0 if the light never counts as far

@@ -16,10 +16,10 @@ const Floats kNone(0.0f), kOne(1.0f);
 
 Color black_outside(const Lanes& lanes, const Color& c) { return blend(lanes, c, Color(kNone)); }
 
-/// Returns ggx_multiple_scattering(…)·lost(wo): the BRDF of the light that leaves after several reflections between
-/// microfacets, over lost(wi). `normal` is the reflectance at normal incidence.
+/// Returns ggx_multiple_scattering(…)·lost(wo), the BRDF of multiple scattering between microfacets without its factor
+/// lost(wi). `normal` is the reflectance at normal incidence.
 Color several_reflections(const Color& normal, const LobeTables& tables) {
-    constexpr float kLeast = 0.004f; // as in ggx_multiple_scattering: what narrow lobes lose is neglected
+    constexpr float kLeast = 0.004f; // as in ggx_multiple_scattering, which neglects the loss of narrow lobes
     const Floats mean = max(tables.mean_lost, Floats(kLeast));
     const Floats lost = xsimd::select(tables.mean_lost < Floats(kLeast), kNone, kOne - tables.energy);
     if (lane_bits(lost > kNone) == 0) return Color(kNone);
@@ -36,13 +36,13 @@ Color several_reflections(const Color& normal, const LobeTables& tables) {
 LitBatch::LitBatch(const GBuffer& gbuffer, int x, int y, const Lanes& lanes, Tables& tables)
     : p_(gbuffer.points(x, y)), z_(gbuffer.normal.vector(x, y)), lanes_(lanes),
       diffuse_(gbuffer.diffuse.color(x, y) * Floats(kInvPi)) {
-    constexpr float kRounding = 1e-5f; // of the distance; floats of the depth and the light's plane leave a tenth
+    constexpr float kRounding = 1e-5f; // relative to the distance, ten times the rounding error of floats
     rounding_ = xsimd::sqrt(dot(p_, p_)) * Floats(kRounding);
     const Vec3T<Floats> v = gbuffer.projection.to_viewer(p_);
     const Floats cosine = dot(z_, v);
     const Vec3T<Floats> across = v - z_ * cosine;
     const Floats sine2 = dot(across, across);
-    // This is the frame's x axis; where the viewer looks along the normal, any perpendicular to the normal does.
+    // This vector gives the frame's x axis. Where the viewer looks along the normal, any perpendicular vector serves.
     const Lanes y_is_far = abs(z_.y) < Floats(0.7f);
     const Vec3T<Floats> other = select(y_is_far, Vec3T<Floats>(-z_.z, kNone, z_.x), Vec3T<Floats>(kNone, z_.z, -z_.y));
     const Vec3T<Floats> side = select(sine2 > Floats(1e-6f), across, other);
@@ -111,7 +111,7 @@ Color LitBatch::from_sphere(const FrameLight& light, const Lanes& diffuse_lanes)
     const Vec3T<Floats> way = broadcast<Floats>(light.position) - p_;
     const Floats squared = dot(way, way), radius2 = Floats(sqr(light.radius)), height = dot(way, z_);
     const Lanes outside = squared > radius2;
-    // Inside a two-sided sphere all directions are lit, but not on its own surface.
+    // A two-sided sphere lights points inside it from all directions, but not points on its own surface.
     const Lanes inside = (light.two_sided ? lanes_ : Lanes(false)) & (!outside) & (height > -rounding_);
     const Lanes lanes = (lanes_ & outside & (height > Floats(-light.radius) + rounding_)) | inside;
     if (lane_bits(lanes) == 0) return Color(kNone);

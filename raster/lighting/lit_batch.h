@@ -7,7 +7,7 @@
 
 namespace duet::raster {
 
-/// Holds the surfaces of a batch of pixels, ready for any number of lights. Everything local is in the frame whose z
+/// Holds the surfaces of a batch of pixels, prepared for any number of lights. Local vectors are in the frame whose z
 /// axis is the shading normal, with the viewer in the plane y = 0.
 class LitBatch {
 public:
@@ -17,15 +17,15 @@ public:
         LobeLookup specular, coat;
     };
 
-    /// Only the given lanes, which must be visible surfaces, are lit.
+    /// Only the given lanes are lit. They must be visible surfaces.
     LitBatch(const GBuffer& gbuffer, int x, int y, const Lanes& lanes, Tables& tables);
 
-    /// Selects the lobes that reflect.
+    /// Selects the lobes that reflect light.
     enum class Lobes { kAll, kSpecular };
-    /// Returns the radiance that the lobes reflect of one light without shadows, 0 in other lanes. Only light from
+    /// Returns the radiance that the lobes reflect from one light without shadows; 0 in other lanes. Only light from
     /// above the plane of the shading normal counts. An emitter does not light points in its own plane.
     RgbT<Floats> reflected(const FrameLight& light, Lobes lobes = Lobes::kAll) const;
-    /// Returns the radiance that all but the specular lobes reflect of an irradiance.
+    /// Returns the radiance that all lobes but the specular ones reflect, given the irradiance.
     RgbT<Floats> diffuse(const RgbT<Floats>& irradiance) const;
 
     const Vec3T<Floats>& p() const { return p_; }
@@ -38,10 +38,10 @@ private:
         CosineSpaceT<Floats> cosine_space;
         Floats alpha;
         RgbT<Floats> normal; ///< reflectance at normal incidence
-        Floats weight;       ///< fraction of the lobe's light that is seen
-        RgbT<Floats> albedo; ///< fraction of uniform light that is reflected once, times weight / π
+        Floats weight;       ///< fraction of the lobe's light that reaches the viewer
+        RgbT<Floats> albedo; ///< albedo of single scattering, times weight / π
         RgbT<Floats>
-            several; ///< BRDF of light that is reflected several times, over the lost fraction of its direction
+            several; ///< BRDF of multiple scattering, without its factor lost(wi)
         Floats mean_lost;
         Lanes lanes; ///< where the lobe exists
     };
@@ -59,7 +59,7 @@ private:
     Floats rounding_;             ///< greatest error of a point's position, m
     Lanes lanes_;
     RgbT<Floats> diffuse_; ///< BRDF of the diffuse lobe
-    RgbT<Floats> uniform_; ///< with light that is reflected several times, for light from an area
+    RgbT<Floats> uniform_; ///< diffuse_ plus multiple scattering, for area lights
     std::array<Lobe, 2> lobes_;
     std::size_t lobe_count_ = 0;
 };

@@ -3,9 +3,9 @@
 
 namespace duet::raster {
 
-/// A lobe matrix maps the directions of a clamped cosine to those of the lobe. The frame is that of the normal, with
-/// the viewer in the plane y = 0. The matrix is [m11 0 m13; 0 m22 0; m31 0 m33] (Heitz et al. 2016, "Real-Time
-/// Polygonal-Light Shading with Linearly Transformed Cosines", §3).
+/// Maps the directions of a clamped cosine to those of the lobe. In the frame, z is the normal and the viewer lies in
+/// the plane y = 0. The matrix is [m11 0 m13; 0 m22 0; m31 0 m33] (Heitz et al. 2016, "Real-Time Polygonal-Light
+/// Shading with Linearly Transformed Cosines", §3).
 struct LobeMatrix {
     float m11 = 1, m13 = 0, m22 = 1, m31 = 0, m33 = 1;
 };

@@ -1,6 +1,6 @@
-// This file declares the irradiance from triangles and parallelograms in closed form (Lambert 1760; Arvo 1995,
-// "Analytic Methods for Simulated Light Transport", §4.1.1), for one point or a batch of points. After a linear
-// transformation of the polygon it is the light that a specular lobe reflects (Heitz et al. 2016, "Real-Time
+// Computes the irradiance from triangles and parallelograms in closed form (Lambert 1760; Arvo 1995, "Analytic Methods
+// for Simulated Light Transport", §4.1.1), for one point or a batch of points. Applied to a linearly transformed
+// polygon, the same formula gives the light that a specular lobe reflects (Heitz et al. 2016, "Real-Time
 // Polygonal-Light Shading with Linearly Transformed Cosines").
 #pragma once
 
@@ -50,7 +50,7 @@ template <std::size_t N, typename T> struct Outline {
     }
 };
 
-/// Returns the sum of the edges' terms where no lane's polygon reaches below the horizon.
+/// Returns the sum of the edges' terms if no lane's polygon reaches below the horizon.
 template <std::size_t N, typename T> T whole_sum(const Outline<N, T>& p) {
     std::array<T, N> inverse;
     for (std::size_t i = 0; i < N; ++i) inverse[i] = inverse_length(p.vertex[i]);
@@ -62,10 +62,11 @@ template <std::size_t N, typename T> T whole_sum(const Outline<N, T>& p) {
     return sum;
 }
 
-/// Returns the sum of the edges' terms above the horizon, and of the edge along the horizon that closes the polygon.
+/// Returns the sum of the terms of the edges clipped to the upper half-space, and of the edge along the horizon that
+/// closes the clipped polygon.
 template <std::size_t N, typename T> T clipped_sum(const Outline<N, T>& p) {
     const T none(0), all(1);
-    // Where the boundary leaves the upper half-space and where it returns, relative to the corner.
+    // The boundary leaves the upper half-space and returns to it at these points, relative to the corner.
     Vec3T<T> leaving, returning;
     T sum(0);
     for (std::size_t i = 0; i < N; ++i) {
@@ -96,9 +97,9 @@ template <std::size_t N, typename T> T clipped_sum(const Outline<N, T>& p) {
 /// value, except at the horizon, where it is below 1 % of what the polygon would give at the zenith.
 inline constexpr float kFarPolygon = 1.0f / 32;
 
-/// Returns ∫ max(0, z) dw over the solid angle of a triangle (N = 3) or parallelogram (N = 4), clipped to z ≥ 0: the
-/// irradiance per unit of radiance, in [−π, π]. It is positive on the polygon's front side, to which u × v points.
-/// Only the given lanes need be right.
+/// Returns ∫ max(0, z) dw over the solid angle of a triangle (N = 3) or parallelogram (N = 4), clipped to z ≥ 0. This
+/// is the irradiance per unit of radiance, in [−π, π]. It is positive on the polygon's front side, to which u × v
+/// points. Results in lanes outside `lanes` are unspecified.
 template <std::size_t N, typename T> T polygon_form_factor_times_pi(const PolygonT<T>& p, const MaskOf<T>& lanes) {
     static_assert(N == 3 || N == 4);
     const Vec3T<T> center = p.corner + (p.u + p.v) * T(N == 4 ? 0.5f : 1.0f / 3);

@@ -10,20 +10,20 @@ namespace {
 using Mask = Floats::batch_bool_type;
 using Vec3s = Vec3T<Floats>;
 
-constexpr int kBlock = 4; ///< pixels along a side whose taps differ
+constexpr int kBlock = 4; ///< side of a block of pixels with different taps
 constexpr int kWidth = static_cast<int>(Floats::size);
 
-/// Where a batch's shadows have nothing to average: all light arrives, or none.
+/// Classifies the shadows of a batch. A batch that is lit or dark all over needs no averaging.
 enum class Shade : std::uint8_t { kLit, kDark, kMixed };
 
 Shade shade_of(const RgbT<Floats>& lit) {
     const Floats zero(0.0f), one(1.0f);
-    const Mask none = lit.r < zero; // no light could arrive
+    const Mask none = lit.r < zero; // lanes that no light could reach
     if (xsimd::all(none | ((lit.r == one) & (lit.g == one) & (lit.b == one)))) return Shade::kLit;
     return xsimd::all(none | (max_component(lit) == zero)) ? Shade::kDark : Shade::kMixed;
 }
 
-/// Returns the mean of the lit fractions of the block around each pixel, weighted by how alike the surfaces are.
+/// Returns the mean of the lit fractions of the block around each pixel, weighted by the likeness of the surfaces.
 RgbT<Floats> mean_of_block(const GBuffer& gbuffer, const Planes3& lit, int x, int y) {
     const ScreenProjection& projection = gbuffer.projection;
     const Vec3s p = gbuffer.points(x, y), n = gbuffer.normal.vector(x, y);

@@ -20,13 +20,14 @@ void add_sky_light(const RasterSceneData& data, const RasterSettings& settings, 
         const SkyVisibility<Floats> sky = occlusion != nullptr ? occlusion->at(x, y) : SkyVisibility<Floats>{};
         const std::array<Floats, 9> towards = harmonics(gbuffer.normal.vector(x, y)), blocked = harmonics(sky.hidden);
         RgbT<Floats> sum = broadcast<Floats>(coefficients[0]) * sky.visible;
-        // Irradiance has scaled order 1 by the cosine's factor of 2/3, but light from a hidden direction is not.
+        // The coefficients of order 1 include the factor 2/3 of the cosine lobe, but those of a hidden direction must
+        // not.
         for (std::size_t i = 1; i < 4; ++i)
             sum += broadcast<Floats>(coefficients[i]) * (towards[i] - Floats(1.5f) * blocked[i]);
         for (std::size_t i = 4; i < 9; ++i) sum += broadcast<Floats>(coefficients[i]) * (towards[i] * sky.visible);
         const Floats none(0.0f);
         RgbT<Floats> irradiance{max(sum.r, none), max(sum.g, none), max(sum.b, none)};
-        if (!media.empty()) // as if all of it came along the normal
+        if (!media.empty()) // the transmittance along the normal approximates all directions
             irradiance *= transmittance(optical_depth<Floats>(media, gbuffer.points(x, y), gbuffer.normal.vector(x, y),
                                                               Floats(kInfinity)));
         const RgbT<Floats> before = radiance.color(x, y);

@@ -1,5 +1,5 @@
-// Diffuse light of the environment: its irradiance by spherical harmonics, less what is hidden (Ramamoorthi and
-// Hanrahan 2001, "An Efficient Representation for Irradiance Environment Maps").
+// Computes diffuse light of the environment: its irradiance by spherical harmonics, without occluded directions
+// (Ramamoorthi and Hanrahan 2001, "An Efficient Representation for Irradiance Environment Maps").
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"
@@ -8,7 +8,7 @@
 
 namespace duet::raster {
 
-/// Adds the light of the environment that diffuse surfaces reflect. `occlusion` may be null: nothing is hidden then.
+/// Adds the environment's light that diffuse surfaces reflect. If `occlusion` is null, nothing is occluded.
 void add_sky_light(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
                    const GtaoImage* occlusion, Planes3& radiance);
 

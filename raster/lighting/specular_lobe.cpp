@@ -16,7 +16,7 @@ static_assert(kLobeSide == kPacketSize && GgxAlbedoTables::kSize == 2 * kPacketS
 
 using LobeRow = std::array<PacketOf<float>, 5>;
 
-/// The constant holds kLobeTable with one packet per row and number.
+/// kLobeRows holds kLobeTable with one packet per row and matrix element, so that SIMD registers can sample it.
 const std::array<LobeRow, kLobeSide> kLobeRows = [] {
     std::array<LobeRow, kLobeSide> rows;
     for (int r = 0; r < kLobeSide; ++r)
@@ -34,7 +34,7 @@ void mix(const float* low, const float* high, float f, PacketOf<float>& to) {
     }
 }
 
-/// Holds a place between two columns of a table.
+/// Holds positions between columns of a table, one per lane.
 struct Columns {
     Ints index;
     Floats f;
@@ -81,7 +81,7 @@ void LobeLookup::set_rows(float alpha) {
     mean_lost_ = GgxAlbedoTables::look_up(albedo.mean_energy_loss, place);
 }
 
-/// Calls use(lanes) for each value of alpha, with the rows of that value.
+/// Sets the table rows for each value of alpha in turn, and calls use(lanes) for the lanes with that value.
 template <typename Use>
 void LobeLookup::for_each_alpha(const Floats& alpha, const xsimd::batch_bool<float>& lanes, const Use& use) {
     alignas(64) std::array<float, Floats::size> each;
@@ -128,8 +128,8 @@ RgbT<Floats> specular_albedo(const LobeTables& tables, const RgbT<Floats>& norma
                  share = xsimd::select(mirror, square * square * grazing, tables.share);
     const auto channel = [&](const Floats& f0) {
         const Floats once = energy * (f0 + (one - f0) * share);
-        // Light scattered more than once (ggx_multiple_scattering in common/material/ggx_albedo.h, times the lost
-        // fractions).
+        // The second term is multiple scattering (ggx_multiple_scattering in common/material/ggx_albedo.h, times the
+        // lost fractions).
         const Floats mean = f0 + (one - f0) * Floats(1.0f / 21);
         return once + mean * mean * (one - tables.mean_lost) / (one - mean * tables.mean_lost) * (one - energy);
     };

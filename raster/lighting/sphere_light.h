@@ -1,6 +1,7 @@
-// The irradiance from a sphere in closed form (Snyder 1996, "Area Light Sources for Real-Time Graphics", §A), and the
-// light of a sphere that a linearly transformed cosine reflects (Heitz and Hill 2017, "Real-Time Line- and Disk-Light
-// Shading with Linearly Transformed Cosines"; here for the sphere's cone itself), for one point or a batch of points.
+// Computes the irradiance from a sphere in closed form (Snyder 1996, "Area Light Sources for Real-Time Graphics", §A),
+// and the light of a sphere that a linearly transformed cosine reflects, for one point or a batch of points. The latter
+// follows Heitz and Hill 2017, "Real-Time Line- and Disk-Light Shading with Linearly Transformed Cosines", but for the
+// sphere's cone itself.
 #pragma once
 
 #include "raster/geometry/lane_math.h"
@@ -8,15 +9,15 @@
 
 namespace duet::raster {
 
-/// Returns ∫ max(0, z) dw over a sphere's solid angle, clipped to z ≥ 0: the irradiance per unit of radiance, in
-/// [0, π]. `c` is the z component of the unit vector to the center, and `sine2` the squared sine of the half angle that
-/// the sphere subtends, below 1. Only the given lanes need be right.
+/// Returns ∫ max(0, z) dw over a sphere's solid angle, clipped to z ≥ 0. This is the irradiance per unit of radiance,
+/// in [0, π]. `c` is the z component of the unit vector to the center, and `sine2` the squared sine of the half angle
+/// that the sphere subtends, below 1. Lanes outside `lanes` are unspecified.
 template <typename T> T sphere_form_factor_times_pi(T c, T sine2, const MaskOf<T>& lanes) {
     const T whole = T(kPi) * sine2 * max(c, T(0));
     const MaskOf<T> clipped = c * c < sine2;
     if (!any_lane(clipped & lanes)) return whole;
-    // Snyder's s² (c arccos y − cot σ h) + arctan(h tan σ) with x = h tan σ, rearranged so that small spheres do not
-    // cancel.
+    // This is Snyder's s² (c arccos y − cot σ h) + arctan(h tan σ) with x = h tan σ, rearranged to avoid cancellation
+    // for small spheres.
     const T tangent = sqrt(sine2 / (T(1) - sine2));
     const T reach = tangent * sqrt(max(T(1) - c * c, T(1e-12f))); // x where the chord is a diameter
     const T y = clamp(-c / reach, T(-1), T(1)), x = reach * safe_sqrt((T(1) - y) * (T(1) + y));
@@ -40,7 +41,7 @@ template <typename T> struct Symmetric {
 template <typename T> T greatest_root(T q) {
     constexpr std::array<float, 8> kFit{1,             1.1546944f,   -0.22208648f, 0.10573821f,
                                         -0.060626126f, 0.03231898f, -0.0123398994f, 0.00230085802f};
-    return polynomial(kFit, safe_sqrt((T(1) + min(q, T(1))) * T(0.5f))); // in √((1 + q)/2) it has no singularity
+    return polynomial(kFit, safe_sqrt((T(1) + min(q, T(1))) * T(0.5f))); // there is no singularity in √((1 + q)/2)
 }
 
 } // namespace sphere
@@ -49,10 +50,11 @@ template <typename T> T greatest_root(T q) {
 /// then below 1 % of the lobe's greatest value.
 inline constexpr float kSmallCone = 1.0f / 16;
 
-/// Returns π times the fraction of a lobe that a sphere fills. The direction `d` to its center is unit, in the frame of
-/// the lobe; sine2 is as above. Transformed to the cosine's space, the sphere's cone is elliptic; the horizon clips it
-/// as it would clip the circular cone of the same axis and form factor (Hill and Heitz 2016, "Real-Time Area Lighting:
-/// a Journey from Research to Production"). A small cone counts as circular.
+/// Returns π times the fraction of a lobe that a sphere fills. `d` is the unit direction to its center in the frame of
+/// the lobe, and `sine2` the squared sine of the half angle that the sphere subtends. Transformed to the cosine's
+/// space, the sphere's cone is elliptic. Its clipping at the horizon is approximated by that of the circular cone with
+/// the same axis and form factor (Hill and Heitz 2016, "Real-Time Area Lighting: a Journey from Research to
+/// Production"). A small cone counts as circular.
 template <typename T>
 T sphere_in_lobe(const CosineSpaceT<T>& lobe, const Vec3T<T>& d, T sine2, const MaskOf<T>& lanes) {
     const Vec3T<T> u = lobe(d);
@@ -62,8 +64,8 @@ T sphere_in_lobe(const CosineSpaceT<T>& lobe, const Vec3T<T>& d, T sine2, const 
     const T stretch2 = lobe.gram_xx + lobe.gram_yy + lobe.gram_zz; // bounds the square of the greatest stretch
     const MaskOf<T> large = sine2 * stretch2 > T(kSmallCone * kSmallCone) * squared;
     if (any_lane(large & lanes)) {
-        // The directions w of the cone have (w·d)² ≥ cos²σ w²; the dual cone's matrix B = u uᵀ − sin²σ M Mᵀ has one
-        // positive eigenvalue. It is found by Cardano's formula from B less a third of its trace.
+        // The directions w of the cone satisfy (w·d)² ≥ cos²σ w². The dual cone's matrix B = u uᵀ − sin²σ M Mᵀ has one
+        // positive eigenvalue, which Cardano's formula finds from B less a third of its trace.
         const sphere::Symmetric<T> b{u.x * u.x - sine2 * lobe.gram_xx, u.x * u.y, u.x * u.z - sine2 * lobe.gram_xz,
                                      u.y * u.y - sine2 * lobe.gram_yy, u.y * u.z, u.z * u.z - sine2 * lobe.gram_zz};
         const T trace = b.xx + b.yy + b.zz, mean = trace * T(1.0f / 3);
@@ -76,9 +78,9 @@ T sphere_in_lobe(const CosineSpaceT<T>& lobe, const Vec3T<T>& d, T sine2, const 
         const T half_determinant = (k.xx * cofactors.xx + k.xy * cofactors.xy + k.xz * cofactors.xz) * T(0.5f);
         const T q = clamp(half_determinant * (inverse_p * inverse_p * inverse_p), T(-1), T(1));
         const T det = (sine2 * lobe.determinant) * (sine2 * lobe.determinant) * (T(1) - sine2);
-        // Where a cone exceeds the lobe by far, μ is the small difference of great numbers. The characteristic
-        // polynomial μ³ − trace μ² + minors μ − det, from minors that do not cancel, then gives it without its cube,
-        // and Newton's method with it.
+        // If the cone is much wider than the lobe, μ is a small difference of large numbers. Then it is the root of the
+        // characteristic polynomial μ³ − trace μ² + minors μ − det, whose minors do not cancel: first without the cubic
+        // term, then by Newton's method with it.
         const T xx = u.x * u.x, yy = u.y * u.y, zz = u.z * u.z, flat = lobe.determinant / lobe.yy;
         const T thin = (xx + zz) * lobe.gram_yy + yy * (lobe.gram_xx + lobe.gram_zz) + xx * lobe.gram_zz +
                        zz * lobe.gram_xx - T(2) * u.x * u.z * lobe.gram_xz;

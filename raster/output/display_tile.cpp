@@ -47,7 +47,7 @@ public:
 
 private:
     static constexpr int kPacketRows = DepthTile::kPacketRows;
-    static constexpr std::size_t kPacketsPerBlock = kBlock / kPacketRows; ///< per block
+    static constexpr std::size_t kPacketsPerBlock = kBlock / kPacketRows;
 
     /// Queues the packets of the block whose first pixel is (x, y), or fills them with the background.
     void block(int x, int y, std::uint32_t sample_index, std::size_t slot) {
@@ -81,7 +81,7 @@ private:
     Image<Rgba8>& image_;
     std::unique_ptr<PacketShader> shader_;
     static constexpr std::size_t kMaxPackets = DepthTile::kBlocks * kPacketsPerBlock;
-    std::array<SrgbPacket, kMaxPackets> codes_;           ///< of a row of blocks
+    std::array<SrgbPacket, kMaxPackets> codes_;           ///< pixels of a row of blocks
     std::array<SamplePacket, kMaxPackets> packets_;       ///< queued packets
     std::array<SrgbPacket*, kMaxPackets> destinations_{}; ///< destinations of the queued packets
     std::array<ColorPacket, kMaxPackets> colors_;

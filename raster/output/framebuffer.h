@@ -32,15 +32,15 @@ private:
 
     RasterSettings settings_;
     Rendering rendering_;
-    Image<Rgbd> sums_; ///< of radiance; empty for a single sample per pixel, which is stored directly
-    Image<std::uint32_t> sample_counts_, valid_counts_; ///< samples per pixel, and those of them with valid radiance
+    Image<Rgbd> sums_; ///< sums of radiance; empty for a single sample per pixel, which is stored directly
+    Image<std::uint32_t> sample_counts_, valid_counts_; ///< samples per pixel, and samples with valid radiance
     struct AovSums {
         double depth = 0;
         Vec3d normal;
         Rgbd albedo;
     };
-    Image<AovSums> aov_sums_;         ///< sums; only if depth, normal or albedo are requested
-    Image<std::uint32_t> hit_counts_; ///< samples with a hit; only if depth, normal or albedo are requested
+    Image<AovSums> aov_sums_;         ///< sums of the requested depth, normal and albedo; else empty
+    Image<std::uint32_t> hit_counts_; ///< samples with a hit; empty unless depth, normal or albedo is requested
     std::atomic<std::int64_t> invalid_ = 0;
 };
 

@@ -54,8 +54,8 @@ struct Neighborhood {
     }
 };
 
-/// Returns the magnitude of both Sobel operators, scaled by 1/4. A straight edge between two uniform regions yields
-/// their difference.
+/// Returns the magnitude of the gradient by both Sobel operators, scaled by 1/4. A straight edge between two uniform
+/// regions yields their difference.
 float sobel(const Image<Vec3>& image, const Neighborhood& neighborhood) {
     Vec3 across, down;
     for (int k = -1; k <= 1; ++k) {
@@ -82,7 +82,7 @@ float edge_strength(const EdgeBuffer& edge_buffer, int x, int y) {
         if (neighborhood.at(edge_buffer.object, dx, dy) != own) return 1;
     if (own == kNoObject) return 0;
     const float step = second_difference(edge_buffer.reversed_depth, neighborhood) / edge_buffer.reversed_depth(x, y);
-    const float crease = 2 * sobel(edge_buffer.normal, neighborhood); // the stored normals are halved
+    const float crease = 2 * sobel(edge_buffer.normal, neighborhood); // undoes the factor 1/2 of the stored normals
     return std::max(ramp(step, 0.02f, 0.04f), ramp(crease, 0.5f, 0.8f));
 }
 

@@ -21,8 +21,8 @@ void rasterize_along_axis(std::int64_t u0, std::int64_t v0, std::int64_t u1, std
     const std::int64_t first = std::max<std::int64_t>(floor_divided(u0 + kSubpixels - 1, kSubpixels), 0),
                        end = std::min<std::int64_t>(floor_divided(u1 + kSubpixels - 1, kSubpixels), columns);
     if (first >= end) return;
-    // Row r is nearest where v is in (r − ½, r + ½]: r = ceil(v − ½), with v = v0 + (u − u0)·dv/du in 1/256
-    // pixel. Therefore r = −floor((128 − v)/256). The numerator decreases by dv·256 per column and is stored as
+    // The line passes nearest to row r where v is in (r − ½, r + ½]. So r = ceil(v − ½), with v = v0 + (u − u0)·dv/du
+    // in 1/256 pixel, which equals −floor((128 − v)/256). The numerator decreases by dv·256 per column and is stored as
     // a row and a remainder.
     const std::int64_t divisor = kSubpixels * du;
     std::int64_t numerator = (kSubpixels / 2 - v0) * du - (first * kSubpixels - u0) * dv;
@@ -31,7 +31,7 @@ void rasterize_along_axis(std::int64_t u0, std::int64_t v0, std::int64_t u1, std
     for (std::int64_t column = first; column < end; ++column) {
         mark(static_cast<int>(column), row);
         rest -= kSubpixels * dv;
-        if (rest < 0) ++row, rest += divisor; // |dv| <= du: at most one row
+        if (rest < 0) ++row, rest += divisor; // |dv| <= du, so the line moves by at most one row
         if (rest >= divisor) --row, rest -= divisor;
     }
 }
@@ -58,7 +58,7 @@ void draw_line(FixedPoint a, FixedPoint b, SampleOffset offset, Image<std::uint8
 // it.
 bool clip_line(const PixelVertex& a, const PixelVertex& b, const Viewport& viewport, FixedPoint& from, FixedPoint& to) {
     double t0 = 0, t1 = 1;
-    const auto keep = [&](double at_a, double at_b) { // clips to where the function is nonnegative
+    const auto keep = [&](double at_a, double at_b) { // clips to the part where the function is nonnegative
         if (at_a < 0 && at_b < 0) return false;
         const double t = at_a / (at_a - at_b);
         if (at_a < 0) t0 = std::max(t0, t);

@@ -15,7 +15,7 @@ namespace {
 
 using Vec3s = Vec3T<Floats>;
 
-constexpr int kSteps = 4; ///< from sphere to sphere, as in ReflectionProbes::trace
+constexpr int kSteps = 4; ///< iterations from sphere to sphere, as in ReflectionProbes::trace
 
 OctahedralMap shape_of(const RasterSceneData& data, const RasterSettings& settings, std::uint32_t object,
                        Vec3d center) {
@@ -43,8 +43,9 @@ bool is_sphere(const Scene& scene, std::uint32_t index) {
     return sphere != nullptr && !object.moving && transformed(*sphere, object.to_world);
 }
 
-/// Returns the radius of the balls that take an object's place, in meters: one of the volume of an ellipsoid or moving
-/// ball, or that of a tube with the volume and the surface of a mesh, 2·volume/area.
+/// Returns the radius, in meters, of the sphere that replaces an object at each point where a ray enters. For an
+/// ellipsoid or a moving sphere it is the sphere of equal volume. For a mesh it has the radius of a tube with the
+/// mesh's volume and surface, 2·volume/area.
 float local_radius(const RasterSceneData& data, std::uint32_t index) {
     const Object& object = data.scene.objects[index];
     const Shape& shape = data.scene.shapes[object.shape];
@@ -52,7 +53,7 @@ float local_radius(const RasterSceneData& data, std::uint32_t index) {
     if (const auto* sphere = std::get_if<Sphere>(&shape))
         return sphere->radius * static_cast<float>(std::cbrt(abs(determinant3(to_world))));
     const Vec3d center(data.objects[index].bounds.center());
-    double volume = 0, area = 0; // six times the one, twice the other
+    double volume = 0, area = 0; // six times the volume, twice the area
     for (std::uint32_t i = 0; i < primitive_count(shape); ++i) {
         const PrimitiveVertices vertices = primitive_vertices(shape, i);
         const auto at = [&](int k) {
@@ -101,12 +102,12 @@ std::optional<GlassShapes::Exit> GlassShapes::exit(std::int32_t object, const Ve
     const Vec3 offset(eye - shape.center);
     const Vec3s start = shape.local_radius ? n * Floats(*shape.local_radius) : p + broadcast<Floats>(offset);
     const Floats none(0.0f), across = dot(start, w);
-    Floats t = max(-across, none) * Floats(2.0f); // of a sphere about the center
+    Floats t = max(-across, none) * Floats(2.0f); // exit from a sphere about the center
     for (int i = 0; shape.map && i < kSteps; ++i) {
         const Floats radius = shape.map->at<4>(start + w * t)[3];
         t = max(xsimd::sqrt(max(radius * radius - dot(start, start) + across * across, none)) - across, none);
     }
-    Vec3s outward = start + w * t; // of a sphere
+    Vec3s outward = start + w * t; // normal of a sphere
     if (shape.map) {
         const auto [x, y, z, distance] = shape.map->at<4>(outward);
         outward = {x, y, z};

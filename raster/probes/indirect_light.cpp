@@ -5,15 +5,15 @@
 namespace duet::raster {
 namespace {
 
-/// Returns how much light reaches a surface of this albedo through occluders as bright as itself (Jimenez et al. 2016,
-/// "Practical Realtime Strategies for Accurate Indirect Occlusion", §5).
+/// Returns the fraction of light that reaches a surface of this albedo, including bounces between occluders of the same
+/// albedo (Jimenez et al. 2016, "Practical Realtime Strategies for Accurate Indirect Occlusion", §5).
 Floats with_bounces(const Floats& visible, const Floats& albedo) {
     const Floats a = Floats(2.0404f) * albedo - Floats(0.3324f), b = Floats(-4.7951f) * albedo + Floats(0.6417f),
                  c = Floats(2.7552f) * albedo + Floats(0.6903f);
     return max(visible, ((visible * a + b) * visible + c) * visible);
 }
 
-/// Adds albedo/π times what irradiance(x, y, lanes) returns for each batch.
+/// Adds albedo/π times the result of irradiance(x, y, lanes) for each batch.
 template <typename Irradiance>
 void add_reflected(const RasterSettings& settings, const GBuffer& gbuffer, Planes3& radiance,
                    const Irradiance& irradiance) {
@@ -53,7 +53,7 @@ void add_indirect_light(const RasterSettings& settings, const GBuffer& gbuffer, 
     });
     add_reflected(settings, gbuffer, radiance, [&](int x, int y, const RgbT<Floats>& albedo, const auto& lit) {
         auto [visible, irradiance, found] = half.lit_at(x, y);
-        if (const auto alone = lit & !found; xsimd::any(alone)) // surfaces thinner than the pixels of half resolution
+        if (const auto alone = lit & !found; xsimd::any(alone)) // surfaces that no pixel of half resolution shows
             irradiance = blend(alone,
                                probes.irradiance(gbuffer.projection, gbuffer.points(x, y),
                                                  gbuffer.normal.vector(x, y), alone),

@@ -1,5 +1,5 @@
-// Indirect diffuse light of the environment and of other surfaces, from irradiance probes; what is nearer than the
-// probes resolve is left to ambient occlusion.
+// Adds indirect diffuse light of the environment and of other surfaces from irradiance probes. Ambient occlusion
+// accounts for occluders that are too near for the probes to resolve.
 #pragma once
 
 #include "raster/fog/fog_grid.h"
@@ -10,14 +10,16 @@
 
 namespace duet::raster {
 
-/// Returns the light that fog scatters besides that of lights: what irradiance probes see, else the environment.
+/// Returns the radiance that fog scatters besides that of Scene::lights: that of irradiance probes if there are any,
+/// else that of the environment.
 AmbientLight ambient_light(const RasterSceneData& data, const RasterSettings& settings,
                            const ScreenProjection& projection);
 
-/// Adds the light of the probes that diffuse surfaces reflect, at every pixel and without occlusion.
+/// Adds the light of the probes that diffuse surfaces reflect. It is interpolated at every pixel, without occlusion.
 void add_indirect_light(const RasterSettings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
                         Planes3& radiance);
-/// The same at half resolution, with the occlusion that `half` holds; it receives the irradiance.
+/// Adds the light of the probes, interpolated at half resolution and attenuated by the occlusion in `half`. The
+/// irradiance is stored in `half`, too.
 void add_indirect_light(const RasterSettings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
                         GtaoImage& half, Planes3& radiance);
 

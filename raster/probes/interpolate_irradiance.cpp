@@ -1,5 +1,5 @@
-// What the irradiance probes give to points: an interpolation between the eight probes about each point, in which those
-// that it does not see count little (Majercik et al. 2019, §5.2).
+// Interpolates irradiance between the eight probes around each point. Probes that the point does not see have a small
+// weight (Majercik et al. 2019, §5.2).
 #include "raster/probes/irradiance_probes.h"
 
 #include "raster/geometry/lane_math.h"
@@ -16,35 +16,36 @@ namespace {
 using Mask = Floats::batch_bool_type;
 using Vec3s = Vec3T<Floats>;
 
-/// Before their visibility is judged, points are moved off their surface and towards the viewer by these fractions of
-/// the distance between probes, as the maps of distances are coarse (Majercik et al. 2021, "Scaling Probe-Based
-/// Real-Time Dynamic Global Illumination for Production", §4.1). The normal alone does not lead away from a corner,
-/// such as that of a wall with a roof, and light would leak in there.
+/// Points are moved off their surface and towards the viewer before their visibility is tested, because the distance
+/// maps are coarse (Majercik et al. 2021, "Scaling Probe-Based Real-Time Dynamic Global Illumination for Production",
+/// §4.1). The constants are fractions of the distance between probes. A move along the normal alone does not lead away
+/// from a corner, such as that of a wall with a roof, and light would leak in there.
 constexpr float kNormalBias = 0.2f, kViewBias = 0.3f;
-/// Points beyond the outermost probes are interpolated where they would be this fraction of a cell further in, since
-/// the outermost probes may be hidden.
+/// Points beyond the outermost probes are interpolated at a point this fraction of a cell further in, because the
+/// outermost probes may be hidden.
 constexpr float kInset = 0.02f;
-/// Weights of probes inside objects, and of those that a point does not see. Where they are the nearest, light changes
-/// over this fraction of a cell.
+/// These are the weights of probes inside objects, and of probes that a point does not see. Where such probes are the
+/// nearest, the irradiance changes over this fraction of a cell.
 constexpr float kInside = 1e-2f, kHidden = 3e-3f;
-constexpr float kBehind = 0.05f; ///< added to the weight of a probe, so that none behind the surface has 0
+constexpr float kBehind = 0.05f; ///< added to each weight, so that probes behind the surface have some, too
 
-/// Returns how much a probe with these distances counts at points with the normals n that may not see it.
+/// Returns the weight of a probe with these distances at points with the normals n, by its visibility from there.
 Floats visibility(const OctahedralMap& distances, const Vec3s& to_probe, const Vec3s& n) {
     if (distances.empty()) return Floats(kInside);
     const Floats squared = max(dot(to_probe, to_probe), Floats(1e-20f)), over = inverse_sqrt(squared);
     const Floats distance = squared * over, cosine = dot(to_probe, n) * over, half(0.5f), one(1.0f);
-    // Probes behind the surface count less, but smoothly, so that no edge shows (Majercik et al. 2019, §5.2).
+    // Probes behind the surface have less weight. The transition is smooth, so that no edge shows (Majercik et al.
+    // 2019, §5.2).
     const Floats front = (cosine + one) * half;
     const auto [mean, mean_square] = distances.at<2>(-to_probe);
     const Floats variance = max(mean_square - mean * mean, Floats(1e-4f) * mean_square);
     const Floats behind = max(distance - mean, Floats(0.0f));
-    const Floats seen = variance / (variance + behind * behind); // Chebyshev's inequality
+    const Floats seen = variance / (variance + behind * behind); // upper bound by Chebyshev's inequality
     return (front * front + Floats(kBehind)) * (seen * seen * seen + Floats(kHidden));
 }
 
-/// Calls use(first, own) for the cells in which the given lanes lie: the cell's first probe, and its lanes. Cells are
-/// large, so a batch mostly lies in one.
+/// Calls use(first, own) for each cell that contains given lanes: `first` is the cell's first probe, `own` its lanes.
+/// Cells are large, so a batch mostly lies in one.
 template <typename Cells, typename Use> void for_each_cell(const Cells& cells, std::uint32_t left, const Use& use) {
     while (left != 0) {
         const std::int32_t first = cells[static_cast<std::size_t>(std::countr_zero(left))];
@@ -56,7 +57,7 @@ template <typename Cells, typename Use> void for_each_cell(const Cells& cells, s
 
 } // namespace
 
-/// Returns how much of the light is the sky's at a distance from the grid in cells.
+/// Returns the weight of the sky's irradiance at a distance from the grid, in cells.
 Floats IrradianceProbes::sky_share(const Floats& cells) {
     constexpr float kNear = 0.5f, kFar = 3; // the region ends half a cell beyond its outermost probes
     return clamp((cells - Floats(kNear)) * Floats(1 / (kFar - kNear)), Floats(0.0f), Floats(1.0f));
@@ -69,11 +70,11 @@ RgbT<Floats> IrradianceProbes::faded_to_sky(const RgbT<Floats>& irradiance, cons
     return irradiance + (irradiance_at(sky_, basis) - irradiance) * fade;
 }
 
-/// Says between which probes a batch of points lies.
+/// Locates a batch of points between the probes.
 struct IrradianceProbes::Place {
     alignas(64) std::array<std::int32_t, Ints::size> cells; ///< the first probe of each cell
     std::array<Floats, 3> f;                                ///< position in the cell
-    Floats beyond;                                          ///< distance from the grid in cells
+    Floats beyond;                                          ///< distance from the grid, in cells
 
     /// Returns the weight of a corner of the cell in the linear interpolation.
     Floats weight(unsigned corner) const {
@@ -117,7 +118,8 @@ RgbT<Floats> IrradianceProbes::mean_radiance(const Vec3d& eye, const Vec3s& p, c
     return result + (far - result) * share;
 }
 
-/// Returns by how much a point is moved for the test of what it sees: at most half of the way to the viewer.
+/// Returns the displacement of a point for the visibility test: at most half of the vector to the viewer, plus an
+/// offset along the normal.
 Vec3s IrradianceProbes::bias(const Vec3s& n, const Vec3s& to_viewer) const {
     const auto step = static_cast<float>(std::min({step_.x, step_.y, step_.z}));
     const Floats over = inverse_sqrt(max(dot(to_viewer, to_viewer), Floats(std::numeric_limits<float>::min())));
@@ -126,8 +128,8 @@ Vec3s IrradianceProbes::bias(const Vec3s& n, const Vec3s& to_viewer) const {
 
 namespace {
 
-/// Lowers the weights of the probes that less than half of the probes about a cell see, by weight: such as one in the
-/// open that a point in a room sees through a window.
+/// Lowers the weights of probes that fewer than half of the cell's probes see, counted by weight. An example is a probe
+/// in the open that a point in a room sees through a window.
 void discount_unseen(const std::array<std::uint8_t, 8>& sights, std::array<Floats, 8>& weights) {
     const std::array<Floats, 8> before = weights;
     Floats all(0.0f);

@@ -17,9 +17,9 @@ namespace {
 using Mask = Floats::batch_bool_type;
 using Vec3s = Vec3T<Floats>;
 
-constexpr int kDistanceSide = 16; ///< texels of an octahedral map of distances
+constexpr int kDistanceSide = 16; ///< texels along a side of an octahedral map of distances
 
-/// Calls visit for all pixels of a probe's cube, in steps of some columns.
+/// Calls visit for every pixel of a probe's cube whose column is a multiple of `columns`.
 template <typename Visit> void for_each_pixel(int columns, const Visit& visit) {
     for (std::size_t face = 0; face < 6; ++face)
         for (int y = 0; y < IrradianceProbes::kSide; ++y)
@@ -28,8 +28,8 @@ template <typename Visit> void for_each_pixel(int columns, const Visit& visit) {
 constexpr int kBatch = static_cast<int>(Floats::size);
 static_assert(IrradianceProbes::kSide % kBatch == 0);
 
-/// Projects light that arrives at a probe from batches of pixels to the harmonics of the irradiance. What a pixel
-/// counts in a harmonic is the same for all probes, so it stands in a table.
+/// Projects the light that arrives at a probe from batches of pixels to the harmonics of the irradiance. The weights of
+/// the pixels are the same for all probes and are stored in a table.
 class Projection {
 public:
     Projection() {
@@ -66,7 +66,8 @@ IrradianceProbes::IrradianceProbes(const RasterSceneData& data, const RasterSett
     parallel_for(probes_.size(), settings.threads, [&](std::size_t i) {
         Vec3d& position = probes_[i].position = grid_point(i);
         if (!move_out_of_solids(solids, position)) return;
-        // Pixels of a probe are far apart, so almost all lights are near to some. Its light is a mean over all of them.
+        // A probe's pixels are far apart, so almost all lights are near to some of them. The probe averages over all
+        // pixels, which removes the noise of choosing few lights.
         constexpr std::size_t kMostLights = 8;
         const ChosenLights lights{kMostLights, unit_float(high_bits(mix_bits(i)))};
         captures[i] = std::make_unique<ProbeCapture>(data, settings, position, kSide, data.glass, lights);
@@ -89,8 +90,8 @@ IrradianceProbes::IrradianceProbes(const RasterSceneData& data, const RasterSett
     }
 }
 
-/// Far points are lit by the environment alone, if the probes see it. Over open ground, with objects about them, they
-/// see it in a quarter of all directions or more; through the windows of a room, in less than an eighth.
+/// Finds how much of the environment lights points far beyond the probes. Above open ground with objects, the probes
+/// see the environment in at least a quarter of all directions; through the windows of a room, in less than an eighth.
 void IrradianceProbes::find_sky(const RasterSceneData& data, const RasterSettings& settings,
                                 const std::vector<std::unique_ptr<ProbeCapture>>& captures) {
     if (!shows_environment(data, settings)) return;
@@ -108,10 +109,10 @@ void IrradianceProbes::find_sky(const RasterSceneData& data, const RasterSetting
 }
 
 void IrradianceProbes::set_distances(const ProbeCapture& capture, Probe& probe) const {
-    // A point may be interpolated from probes up to a cell's diagonal away; beyond, distances make no difference.
+    // A point may be interpolated from probes up to a cell's diagonal away. Larger distances make no difference.
     const float farthest = 1.5f * static_cast<float>(length(step_));
     probe.distance = OctahedralMap(kDistanceSide);
-    Image<Vec3> sums(kDistanceSide, kDistanceSide); // of distance, its square, and solid angle
+    Image<Vec3> sums(kDistanceSide, kDistanceSide); // sums of distance, squared distance and solid angle
     for_each_pixel(1, [&](const ProbeCapture::Pixel& pixel) {
         const Vec2 at = octahedral(ProbeCapture::direction(pixel, kSide));
         const float distance = min(capture.distance(pixel), farthest), weight = ProbeCapture::solid_angle(pixel, kSide);
@@ -126,9 +127,9 @@ void IrradianceProbes::set_distances(const ProbeCapture& capture, Probe& probe) 
     probe.distance.finish();
 }
 
-/// Returns the harmonics of the irradiance at a probe: of the light that the surfaces around it reflect of what the
-/// lights emit, and, after the first bounce, of what the probes held after the last one. The first bounce sets the
-/// weights with which the surfaces get light from the probes, and all later ones use them.
+/// Returns the harmonics of the irradiance at a probe. The surfaces around it reflect direct light and, after the first
+/// bounce, the irradiance of the probes from the previous bounce. The first bounce computes the interpolation weights
+/// of the surfaces, and all later bounces reuse them.
 IrradianceHarmonics IrradianceProbes::gather(const ProbeCapture& capture, int bounce,
                                              std::vector<Weights>& weights_of_batches) const {
     Projection::Sum sum{};

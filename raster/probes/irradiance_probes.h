@@ -1,6 +1,6 @@
-// Indirect diffuse light: a grid of probes that hold the irradiance of all light but that of the lights themselves,
-// as spherical harmonics, and what each probe sees, so that no light leaks through walls (Majercik et al. 2019,
-// "Dynamic Diffuse Global Illumination with Ray-Traced Irradiance Fields").
+// Provides indirect diffuse light from a grid of probes. A probe stores the irradiance of all light but direct light,
+// as spherical harmonics, and the distances of the surfaces around it, so that no light leaks through walls (Majercik
+// et al. 2019, "Dynamic Diffuse Global Illumination with Ray-Traced Irradiance Fields").
 #pragma once
 
 #include "raster/probes/probe_capture.h"
@@ -13,7 +13,7 @@
 
 namespace duet::raster {
 
-/// Holds the probes of a scene, which no view changes.
+/// Holds the probes of a scene. They do not depend on the view.
 class IrradianceProbes {
 public:
     /// Renders the probes and lets light bounce kBounces times. The result is the same for any number of threads.
@@ -23,38 +23,39 @@ public:
     /// `mask` leaves out. Nothing lies between the points and p + to_viewer.
     RgbT<Floats> irradiance(const Vec3d& eye, const Vec3T<Floats>& p, const Vec3T<Floats>& n,
                             const Vec3T<Floats>& to_viewer, const xsimd::batch_bool<float>& mask) const;
-    /// The same for points that a camera sees.
+    /// This overload takes points that a camera sees.
     RgbT<Floats> irradiance(const ScreenProjection& camera, const Vec3T<Floats>& p, const Vec3T<Floats>& n,
                             const xsimd::batch_bool<float>& mask) const {
         return irradiance(camera.eye(), p, n, to_viewer(camera, p), mask);
     }
-    /// Returns the mean radiance from all directions at points in space. Walls do not stop it between two probes. Far
-    /// from the probes it is that of the sky, as far as they see it; `sky` may be empty.
+    /// Returns the mean radiance from all directions at points in space. Walls between two probes do not block it. Far
+    /// from the probes it is that of `sky`, weighted by the fraction of the sky that the probes see. `sky` may be
+    /// empty.
     RgbT<Floats> mean_radiance(const Vec3d& eye, const Vec3T<Floats>& p, const AmbientLight& sky) const;
     /// Returns the distance between neighboring probes, in meters: the largest of the three axes.
     float spacing() const;
     std::size_t memory_bytes() const;
 
-    static constexpr int kSide = 16;    ///< pixels of a face of a probe's cube
+    static constexpr int kSide = 16;    ///< pixels along a side of a face of a probe's cube
     static constexpr int kBounces = 3;
 
 private:
     struct Probe {
         Vec3d position;
         IrradianceHarmonics irradiance{};
-        OctahedralMap distance; ///< of the surfaces: mean and mean square; empty inside an object
+        OctahedralMap distance; ///< mean and mean square of the surfaces' distances; empty inside an object
     };
 
     void place(const RasterSceneData& data);
     Vec3d grid_point(std::size_t probe) const;
     bool move_out_of_solids(const SolidTest& solids, Vec3d& position) const;
     void set_distances(const ProbeCapture& capture, Probe& probe) const;
-    /// Holds how much the eight probes about each of a batch of points count.
+    /// Holds the weights of the eight probes around each point of a batch.
     struct Weights {
         alignas(64) std::array<std::int32_t, Ints::size> cells; ///< the first probe of each point's cell
-        std::array<Floats, 8> corners;                          ///< by corner of the cell
+        std::array<Floats, 8> corners;                          ///< weights by corner of the cell
         Floats sum;
-        Floats beyond; ///< distance from the grid in cells
+        Floats beyond; ///< distance from the grid, in cells
     };
     IrradianceHarmonics gather(const ProbeCapture& capture, int bounce, std::vector<Weights>& weights) const;
     void drop_strays(std::vector<std::unique_ptr<ProbeCapture>>& captures) const;
@@ -81,14 +82,14 @@ private:
     template <typename Visit> void for_each_neighbor(std::size_t probe, const Visit& visit) const;
 
     Vec3d origin_;              ///< position of the first probe
-    Vec3d step_;                ///< between probes, by axis
-    std::array<int, 3> size_{}; ///< number of probes, by axis; at least 2
-    std::vector<Probe> probes_; ///< x fastest
-    /// For each cell, by its first probe: which of its corners see each of them, as bits. Bit 0 of a corner's number is
-    /// set if it is further along x, bit 1 along y, bit 2 along z.
+    Vec3d step_;                ///< distance between probes along each axis
+    std::array<int, 3> size_{}; ///< number of probes along each axis; at least 2
+    std::vector<Probe> probes_; ///< in grid order, x fastest
+    /// For each cell, indexed by its first probe, and each of its eight corners, a bit mask says which corners see it.
+    /// Bit 0 of a corner's number is set if it is further along x, bit 1 along y, bit 2 along z.
     std::vector<std::array<std::uint8_t, 8>> sights_;
-    IrradianceHarmonics sky_{}; ///< of the environment alone, for points far beyond the probes
-    float openness_ = 0;        ///< how much of it counts there, in [0, 1]; 0 in a closed room
+    IrradianceHarmonics sky_{}; ///< irradiance of the environment, for points far beyond the probes
+    float openness_ = 0;        ///< weight of sky_ there, in [0, 1]; 0 in a closed room
 };
 
 } // namespace duet::raster

@@ -1,4 +1,4 @@
-// Where the irradiance probes of a scene stand.
+// Places the irradiance probes of a scene.
 #include "raster/prepare_limits.h"
 #include "raster/probes/irradiance_probes.h"
 
@@ -8,12 +8,13 @@
 namespace duet::raster {
 namespace {
 
-/// The time to render probes grows with their number times the triangles. These bounds keep it within about a second.
+/// The time to render probes is proportional to their number times that of the triangles. These bounds keep it within
+/// about a second.
 constexpr double kMostTriangles = 1e8;
 constexpr int kMostProbes = 512, kFewestProbes = 27;
 
-/// Returns the region that probes fill: the scene without what is very large, and not far beyond what its camera looks
-/// at. Near points outside use the nearest probes.
+/// Returns the region that probes fill: the scene without very large objects, and not far beyond the camera's target.
+/// Points near the region use the nearest probes.
 Box3d region_of(const RasterSceneData& data) {
     const Scene& scene = data.scene;
     const Camera& camera = scene.camera;
@@ -29,7 +30,7 @@ Box3d region_of(const RasterSceneData& data) {
         const auto low = static_cast<double>(bounds.low[axis]), high = static_cast<double>(bounds.high[axis]);
         box.low[axis] = std::clamp(camera.look_at[axis] - reach, low, high);
         box.high[axis] = std::clamp(camera.look_at[axis] + reach, low, high);
-        // A flat scene, too, has room above and below.
+        // A flat scene needs room above and below, too.
         const double least = 0.05 * view, short_of = least - (box.high[axis] - box.low[axis]);
         if (short_of > 0) box.low[axis] -= short_of / 2, box.high[axis] += short_of / 2;
     }
@@ -38,8 +39,8 @@ Box3d region_of(const RasterSceneData& data) {
 
 } // namespace
 
-/// Spreads the probes so that cells are close to cubes. The outermost probes stand half a cell within the region, so
-/// that none lies in an outer wall.
+/// Spaces the probes so that cells are close to cubes. The outermost probes lie half a cell within the region, so that
+/// none is in an outer wall.
 void IrradianceProbes::place(const RasterSceneData& data) {
     const Box3d box = region_of(data);
     const Vec3d extent = box.high - box.low;
@@ -65,11 +66,11 @@ Vec3d IrradianceProbes::grid_point(std::size_t probe) const {
                            step_.z * (i / (size_[0] * size_[1])));
 }
 
-/// Moves a probe that lies inside an object along an axis, by up to a step. Returns false if a step leads nowhere
+/// Moves a probe that lies inside an object along an axis, by up to one grid step. Returns false if no step leads
 /// outside.
 bool IrradianceProbes::move_out_of_solids(const SolidTest& solids, Vec3d& position) const {
     if (!solids.inside(position)) return true;
-    std::vector<Vec3d> steps; // that lead outside
+    std::vector<Vec3d> steps; // steps that lead outside
     for (std::size_t axis = 0; axis < 3; ++axis)
         for (const double side : {1.0, -1.0}) {
             Vec3d step;
@@ -85,16 +86,16 @@ bool IrradianceProbes::move_out_of_solids(const SolidTest& solids, Vec3d& positi
     return false;
 }
 
-/// Returns whether no surface hides the probe `to` from the probe `from`, whose capture is given.
+/// Returns whether no surface hides the probe `to` from the probe `from`. `capture` is that of `from`.
 bool IrradianceProbes::sees(const ProbeCapture& capture, std::size_t from, std::size_t to) const {
-    constexpr float kSeen = 0.95f; // of the distance, since pixels are coarse
+    constexpr float kSeen = 0.95f; // fraction of the distance; below 1, because pixels are coarse
     const Vec3 between(probes_[to].position - probes_[from].position);
     const float distance = length(between); // 0 if a probe was moved onto another
     return !(distance > 0) || capture.distance(capture.pixel(between)) > kSeen * distance;
 }
 
-/// Removes probes that were moved beyond other surfaces, such as the ground: all that no chain of neighbors, each seen
-/// by the one before, connects to a probe on the grid.
+/// Removes probes that were moved beyond other surfaces, such as the ground. A probe stays if a chain of neighbors,
+/// each visible from the one before, connects it to a probe on the grid.
 void IrradianceProbes::drop_strays(std::vector<std::unique_ptr<ProbeCapture>>& captures) const {
     std::vector<bool> connected(probes_.size());
     std::vector<std::size_t> next;
@@ -118,7 +119,8 @@ std::size_t IrradianceProbes::corner_of(std::size_t cell, unsigned corner) const
     return cell + (corner & 1) + row * (corner >> 1 & 1) + layer * (corner >> 2);
 }
 
-/// Finds which probes about each cell see each other. Those inside objects see all and are seen by all.
+/// Finds which probes of each cell see each other. Probes inside objects count as seeing all others and being seen by
+/// them.
 void IrradianceProbes::find_sights(const std::vector<std::unique_ptr<ProbeCapture>>& captures) {
     sights_.assign(probes_.size(), {});
     for (std::size_t cell = 0; corner_of(cell, 7) < probes_.size(); ++cell)
@@ -130,8 +132,8 @@ void IrradianceProbes::find_sights(const std::vector<std::unique_ptr<ProbeCaptur
             }
 }
 
-/// Gives probes inside objects the mean irradiance of their neighbors, from the surfaces inwards. They count where a
-/// point sees no other probe.
+/// Gives probes inside objects the mean irradiance of their neighbors, from the surfaces inwards. Such probes have
+/// weight only where a point sees no other probe.
 void IrradianceProbes::fill_solids() {
     std::vector<bool> filled(probes_.size());
     for (std::size_t i = 0; i < probes_.size(); ++i) filled[i] = !probes_[i].distance.empty();
@@ -154,7 +156,7 @@ void IrradianceProbes::fill_solids() {
     }
 }
 
-/// Calls visit for the up to 26 probes of the cells about a probe.
+/// Calls visit for the neighbors of a probe, up to 26.
 template <typename Visit> void IrradianceProbes::for_each_neighbor(std::size_t probe, const Visit& visit) const {
     const auto i = static_cast<int>(probe);
     const std::array<int, 3> at{i % size_[0], i / size_[0] % size_[1], i / (size_[0] * size_[1])};

@@ -16,7 +16,7 @@
 namespace duet::raster {
 namespace {
 
-/// Selects what a capture renders: all objects but some, with their light, or one object alone.
+/// Selects what a capture renders: the objects not in `excluded`, with their light, or one object alone.
 struct Selection {
     const std::vector<std::uint32_t>& objects;
     bool excluded;
@@ -53,7 +53,7 @@ std::vector<ProbeCapture::Face> capture_all(const RasterSceneData& data, RasterS
                                             int side, const Selection& selection) {
     settings.threads = 1;
     settings.components = {};
-    settings.skips.back_faces = settings.skips.back_faces && selection.excluded; // one object is also seen from within
+    settings.skips.back_faces = settings.skips.back_faces && selection.excluded; // one object is seen from within, too
     const double size = static_cast<double>(length(data.scene.bounds.diagonal())) + 1e-30;
     std::vector<ProbeCapture::Face> faces;
     for (Camera view : cube_views(center, {}, size, 1, 0)) {
@@ -105,7 +105,7 @@ Vec3 ProbeCapture::direction(const Pixel& p, int side) {
 
 float ProbeCapture::solid_angle(const Pixel& p, int side) {
     const float distance = length(point_on_face(p, side));
-    // dω = cos θ dA / r², and cos θ = 1 / r.
+    // The solid angle is dω = cos θ dA / r², and cos θ = 1 / r.
     return 4 / (static_cast<float>(side * side) * distance * distance * distance);
 }
 

@@ -1,5 +1,5 @@
-// Renders what a point of the scene sees, by the rasterizer itself: six square views, whose G-buffers are kept so that
-// light can bounce between probes without rendering again.
+// Renders the view from a point of the scene in all directions by the rasterizer itself. The G-buffers of the six
+// square views are stored, so that light can bounce between probes without rendering again.
 #pragma once
 
 #include "raster/fog/fog_grid.h"
@@ -16,12 +16,12 @@ class ProbeCapture {
 public:
     struct Face {
         GBuffer gbuffer;
-        Planes3 emission; ///< of the visible surfaces
-        Planes3 direct;   ///< direct light that the surfaces reflect, and the background
-        Planes3 haze;     ///< fraction of even light that media scatter to the probe; empty if there are none
+        Planes3 emission; ///< radiance that the visible surfaces emit
+        Planes3 direct;   ///< direct light that the surfaces reflect; the background's radiance
+        Planes3 haze;     ///< FogGrid::haze towards the probe; empty if there are no media
     };
-    /// Renders side × side pixels for each face, on the calling thread. The objects in `excluded`, in order, are left
-    /// out. The lights are the `chosen` ones.
+    /// Renders side × side pixels for each face, on the calling thread. The objects in `excluded`, which is sorted, are
+    /// left out. `chosen` selects the lights.
     ProbeCapture(const RasterSceneData& data, const RasterSettings& settings, Vec3d center, int side,
                  const std::vector<std::uint32_t>& excluded, const ChosenLights& chosen = {});
 
@@ -29,8 +29,8 @@ public:
     ProbeCapture(const RasterSceneData& data, const RasterSettings& settings, Vec3d center, std::uint32_t object,
                  int side);
 
-    /// Attenuates what is seen through media, and the lobes with it, as light may be added to them later. Adds the
-    /// light that media scatter and emit. `ambient` may be empty.
+    /// Attenuates the light and the lobes of the surfaces by the media in front of them; lobes too, because light may
+    /// be added to them later. Adds the light that media scatter and emit. `ambient` may be empty.
     void add_fog(const RasterSceneData& data, const RasterSettings& settings, const AmbientLight& ambient);
 
     std::vector<Face>& faces() { return faces_; }
@@ -52,7 +52,7 @@ public:
 
 private:
     int side_;
-    std::vector<Face> faces_; ///< six
+    std::vector<Face> faces_; ///< six faces
 };
 
 } // namespace duet::raster

@@ -11,14 +11,14 @@ using Mask = Floats::batch_bool_type;
 using Vec3s = Vec3T<Floats>;
 using Rgbs = RgbT<Floats>;
 
-/// The dominant direction of lobes narrower than this GGX width meets the same surfaces as the mirrored direction.
+/// Below this GGX width, the dominant direction and the mirrored direction meet the same surfaces.
 constexpr float kSharpest = 0.02f;
 
 } // namespace
 
 struct RadianceLookup::Query {
     const Vec3s &p, &w;
-    Vec3s axis; ///< of the lobe; w for a mirror
+    Vec3s axis; ///< axis of the lobe; equal to w for a mirror
     const Floats& alpha;
     Mask mirror;
 
@@ -26,7 +26,7 @@ struct RadianceLookup::Query {
         : p(p_), w(w_), axis(dominant_direction(n, w_, alpha_)), alpha(alpha_),
           mirror(alpha_ < Floats(MetalBsdf::kSmoothAlpha)) {}
 
-    /// Looks a map up in the directions `sharp` for mirrors and `rough` for wider lobes.
+    /// Samples a map in the directions `sharp` for mirrors and `rough` for wider lobes.
     Rgbs at(const RadianceMap& map, const Vec3s& sharp, const Vec3s& rough) const {
         if (xsimd::all(mirror)) return map.at(sharp);
         const Rgbs filtered = map.at(rough, alpha);
@@ -68,7 +68,7 @@ Rgbs RadianceLookup::from_probe(std::size_t probe, const Query& query, const Mas
     if (probes_->map(probe).has_lights() && xsimd::any(query.mirror) && !xsimd::all(query.mirror))
         hit = select(query.mirror, trace(query.w, true), hit);
     const Mask sharp = query.alpha < Floats(kSharpest);
-    // The axis of a wide lobe meets surfaces elsewhere.
+    // The axis of a wide lobe meets other surfaces than w, so it is traced separately.
     const Vec3s unit_axis = query.axis * inverse_sqrt(max(dot(query.axis, query.axis), Floats(1e-20f)));
     return query.at(probes_->map(probe), hit, xsimd::all(sharp) ? hit : trace(unit_axis, false));
 }

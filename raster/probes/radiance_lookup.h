@@ -1,4 +1,5 @@
-// Looks up the radiance that arrives at points from given directions: from probes, or else from the environment.
+// Samples the radiance that arrives at points from given directions: from reflection probes, or else from the
+// environment.
 #pragma once
 
 #include "raster/geometry/lane_math.h"
@@ -8,14 +9,14 @@
 
 namespace duet::raster {
 
-/// Serves one batch of pixels, whose objects select the probes.
+/// Provides incident radiance for one batch of pixels, whose objects select the probes.
 class RadianceLookup {
 public:
-    /// `probes` may be null: the environment alone arrives.
+    /// If `probes` is null, only the environment's radiance arrives.
     RadianceLookup(const RasterSceneData& data, const GBuffer& gbuffer, const ReflectionProbes* probes, int x, int y);
 
-    /// Returns what arrives at points p relative to the eye from about the unit direction w, filtered by a GGX lobe of
-    /// width alpha on a surface of normal n. Mirrors see the lights, wider lobes do not.
+    /// Returns the radiance that arrives at points p, relative to the eye, from the unit direction w, filtered by a GGX
+    /// lobe of width alpha on a surface of normal n. Mirrors see the lights, wider lobes do not.
     RgbT<Floats> operator()(const Vec3T<Floats>& p, const Vec3T<Floats>& n, const Vec3T<Floats>& w, const Floats& alpha,
                             const xsimd::batch_bool<float>& lanes) const;
 

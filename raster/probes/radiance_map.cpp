@@ -13,10 +13,10 @@
 namespace duet::raster {
 namespace {
 
-constexpr int kSamples = 64; ///< of a lobe; a multiple of any batch
+constexpr int kSamples = 64; ///< number of samples of a lobe; a multiple of any batch size
 
-/// Samples of the GGX lobe about +z, each with its weight and the mip level whose texels subtend what it represents
-/// (Křivánek and Colbert 2008, "Real-time Shading with Filtered Importance Sampling").
+/// Holds samples of the GGX lobe about +z. Each has a weight, and the mip level whose texels subtend the solid angle
+/// that the sample represents (Křivánek and Colbert 2008, "Real-time Shading with Filtered Importance Sampling").
 struct LobeSamples {
     std::array<Vec3, kSamples> w{};
     std::array<float, kSamples> weight{};
@@ -33,7 +33,7 @@ struct LobeSamples {
             w[i] = normalize(reflect(n, h));
             weight[i] = std::max(w[i].z, 0.0f);
             const float solid_angle = 1 / (kSamples * ggx_reflection_pdf(n, h, alpha));
-            const float mip = 0.5f * std::log2(std::max(solid_angle / texel, 1.0f)) + 0.5f; // slightly blurred
+            const float mip = 0.5f * std::log2(std::max(solid_angle / texel, 1.0f)) + 0.5f; // blurs slightly
             level[i] = std::min(static_cast<std::size_t>(mip), levels - 1);
             sum += weight[i];
         }
@@ -41,8 +41,8 @@ struct LobeSamples {
     }
 };
 
-/// Halves a map. Texels of the octahedral square differ in solid angle by a factor of up to 5, but neighbors
-/// hardly do.
+/// Returns a map of half the resolution. Texels of the octahedral square differ in solid angle by a factor of up to 5,
+/// but neighbors hardly do, so all have equal weight.
 OctahedralMap halved(const OctahedralMap& fine) {
     OctahedralMap coarse(fine.side() / 2);
     for (int y = 0; y < coarse.side(); ++y)
@@ -124,10 +124,10 @@ RgbT<Floats> RadianceMap::at(const Vec3T<Floats>& w) const {
 }
 
 RgbT<Floats> RadianceMap::at(const Vec3T<Floats>& axis, const Floats& alpha) const {
-    const Floats level = xsimd::sqrt(alpha) * Floats(static_cast<float>(kLevels)); // 0: sharp
+    const Floats level = xsimd::sqrt(alpha) * Floats(static_cast<float>(kLevels)); // 0: unfiltered
     RgbT<Floats> sum;
     for (int k = 0; k <= kLevels; ++k) {
-        // Linear interpolation between levels: a tent of width 2 about each.
+        // Levels are interpolated linearly: each has a tent of width 2 as its weight.
         const Floats weight = max(Floats(1.0f) - abs(level - Floats(static_cast<float>(k))), Floats(0.0f));
         if (!xsimd::any(weight > Floats(0.0f))) continue;
         const OctahedralMap& map = k == 0 ? sharp_ : rough_[static_cast<std::size_t>(k - 1)];

@@ -1,5 +1,5 @@
-// The radiance that arrives at a point from all directions, prefiltered for rough reflections: the first factor of the
-// split sum (Karis 2013, "Real Shading in Unreal Engine 4").
+// Stores the radiance that arrives at a point from all directions, prefiltered for rough reflections. It is the first
+// factor of the split sum (Karis 2013, "Real Shading in Unreal Engine 4").
 #pragma once
 
 #include "raster/shader/octahedral_map.h"
@@ -15,34 +15,36 @@ namespace duet::raster {
 class RadianceMap {
 public:
     static constexpr int kLevels = 5;
-    /// The distance of the background, in meters: beyond all coordinates, while its square is still a float.
+    /// This is the distance of the background, in meters. It exceeds all coordinates, and its square is still a finite
+    /// float.
     static constexpr float kFarthest = 4e18f;
 
     RadianceMap() = default;
-    /// What arrives from a direction, and the distance of where it comes from.
+    /// Holds the radiance from one direction, and the distance in meters of the surface that it comes from.
     struct Arriving {
         Rgb radiance;
         float distance = kInfinity;
     };
-    using Source = std::function<Arriving(Vec3)>; ///< a function of a unit direction
-    /// Samples `without_lights` at side × side texels (a power of 2, at least 8), and filters it. It is what arrives
-    /// where there are no lights to see, because their reflection on rough surfaces is direct light. `with_lights` is
-    /// what mirrors show; it may be empty if there are no lights. The result is the same for any number of threads.
+    using Source = std::function<Arriving(Vec3)>; ///< its argument is a unit direction
+    /// Samples and filters `without_lights`, the radiance without visible lights, at side × side texels (a power of 2,
+    /// at least 8). Lights are left out because their reflections on rough surfaces are direct light. `with_lights` is
+    /// the radiance that mirrors show; it may be empty if there are no lights. The result is the same for any number of
+    /// threads.
     RadianceMap(int side, const Source& without_lights, const Source& with_lights, int threads);
 
     /// Returns the radiance without lights, filtered by lobes of GGX width alpha about directions of any length.
     RgbT<Floats> at(const Vec3T<Floats>& axis, const Floats& alpha) const;
-    /// Returns the sharp radiance with lights.
+    /// Returns the unfiltered radiance with lights, in directions of any length.
     RgbT<Floats> at(const Vec3T<Floats>& w) const;
     bool has_lights() const { return !bright_.empty(); }
-    /// Returns the distance of what is visible in directions of any length, without or with lights.
+    /// Returns the distance of the visible surface in directions of any length, with or without lights.
     Floats distance(const Vec3T<Floats>& w, bool lights) const {
         return (lights && has_lights() ? bright_ : sharp_).nearest<1>(w, 3)[0];
     }
     std::size_t memory_bytes() const;
 
 private:
-    OctahedralMap sharp_, bright_;             ///< without and with lights; bright_ is empty if there are none
+    OctahedralMap sharp_, bright_;             ///< unfiltered, without and with lights; bright_ may be empty
     std::array<OctahedralMap, kLevels> rough_; ///< rough_[k] has roughness (k + 1) / kLevels
 };
 

@@ -6,14 +6,16 @@ namespace {
 using Vec3s = Vec3T<Floats>;
 using Mask = Floats::batch_bool_type;
 
-/// Steps that a ray takes from impostor to impostor. Three bring most rays within a texel.
+/// A ray takes this many steps from impostor to impostor. Three bring most rays within a texel.
 constexpr int kSteps = 4;
-/// Points of a ray that are searched where the steps do not end on a surface, and bisections between two of them.
+/// If the steps do not end on a surface, kSearched points of the ray are tested, and kBisections narrow the interval
+/// between two of them.
 constexpr int kSearched = 16, kBisections = 9;
-/// Relative differences of distances below the first are a hit, above the second the step at a silhouette.
+/// A relative difference of distances below kTolerance is a hit. A difference above kStep is the discontinuity at a
+/// silhouette.
 constexpr float kTolerance = 0.03f, kStep = 0.15f;
-/// Lookups beside a silhouette keep this fraction of the ray's way away from it, about three texels of a long way, so
-/// that they do not read the silhouette itself.
+/// Lookups beside a silhouette keep this fraction of the chord away from it, about three texels on a long ray, so that
+/// they do not read the silhouette itself.
 constexpr float kBeside = 0.03f;
 
 /// Follows a batch of rays through a radiance map. Vectors are relative to the map's center.
@@ -22,7 +24,7 @@ public:
     ImpostorTracer(const RadianceMap& map, const Vec3s& start, const Vec3s& w, bool lights)
         : map_(map), start_(start), w_(w), lights_(lights), across_(dot(start, w)), squared_(dot(start, start)) {}
 
-    /// Returns the hits of some lanes; those of the others are unspecified.
+    /// Returns the hits of the given lanes; other lanes are unspecified.
     Vec3s hit(const Mask& lanes) const {
         Floats t = advance(map_.distance(w_, lights_), kSteps);
         const Mask lost = lanes & (mismatch(t) > Floats(kTolerance));
@@ -31,8 +33,8 @@ public:
     }
 
 private:
-    /// Takes the surface in the direction of the point at t for a sphere of its distance about the center, and advances
-    /// to it.
+    /// Advances along the ray to a sphere about the center. Its radius is the distance of the surface in the direction
+    /// of the point at t.
     Floats advance(Floats t, int steps) const {
         for (int i = 0; i < steps; ++i) {
             const Floats radius = map_.distance(start_ + w_ * t, lights_);
@@ -41,8 +43,8 @@ private:
         }
         return t;
     }
-    /// Returns the point whose direction from the center lies at the fraction s of the chord between the unit vectors
-    /// of `start` and w, as t.
+    /// Returns the ray parameter t of the point whose direction from the center lies at the fraction s of the chord
+    /// between the unit vectors of `start` and w.
     Floats at_fraction(const Floats& s) const {
         return min(xsimd::sqrt(squared_) * s / max(Floats(1.0f) - s, Floats(1e-20f)), Floats(RadianceMap::kFarthest));
     }
@@ -57,12 +59,13 @@ private:
         const auto [ray, surface] = depths(t);
         return abs(ray - surface) / max(min(ray, surface), Floats(1e-20f));
     }
-    /// Walks along the ray to where it first meets a surface that the map shows. If it ends behind one instead, the map
-    /// does not show what it meets; returns the point before the silhouette, in whose direction is what lies farther.
-    /// (McGuire, Mara, Nowrouzezahrai and Luebke 2017, "Real-Time Global Illumination using Precomputed Light Field
-    /// Probes", §4, march through several probes with the same three outcomes: hit, miss and unknown.)
+    /// Marches along the ray to the first surface that the map shows, and returns its t. If the ray ends behind a
+    /// surface instead, the map does not show what the ray hits. The result is then the point before that surface's
+    /// silhouette, in whose direction the map shows what lies behind it. (McGuire, Mara, Nowrouzezahrai and Luebke
+    /// 2017, "Real-Time Global Illumination using Precomputed Light Field Probes", §4, march through several probes
+    /// with the same three outcomes: hit, miss and unknown.)
     Floats search(const Mask& lost) const {
-        Floats before(0.0f), result(RadianceMap::kFarthest); // where nothing hides the ray, it ends at the background
+        Floats before(0.0f), result(RadianceMap::kFarthest); // an unobstructed ray ends at the background
         Mask found = ~lost, hidden = before > before;
         for (int i = 1; i <= kSearched && !xsimd::all(found); ++i) {
             const Floats s(static_cast<float>(i) / kSearched);
@@ -82,7 +85,7 @@ private:
         }
         return result;
     }
-    /// Narrows an interval of fractions from a point in front of the surfaces to one behind them.
+    /// Holds an interval of fractions, from a point in front of the surfaces to one behind them. bisect() narrows it.
     struct Interval {
         Floats front, back;
     };

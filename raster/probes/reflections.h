@@ -1,5 +1,5 @@
-// Reflections on specular lobes and clear coats: what the lobe's direction sees, times the lobe's albedo, the split sum
-// (Karis 2013, "Real Shading in Unreal Engine 4").
+// Adds reflections on specular lobes and clear coats by the split sum: the radiance in the lobe's direction times the
+// lobe's albedo (Karis 2013, "Real Shading in Unreal Engine 4").
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"
@@ -9,8 +9,8 @@ namespace duet::raster {
 
 class ReflectionProbes; // raster/probes/reflection_probes.h
 
-/// Adds what the surfaces reflect of their surroundings, without the lights' own light on rough surfaces, which is
-/// direct light. Without probes the environment alone is reflected.
+/// Adds the light that the surfaces reflect from their surroundings. Reflections of lights on rough surfaces are left
+/// out, because they are direct light. Without probes, only the environment is reflected.
 void add_reflections(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
                      const ReflectionProbes* probes, Planes3& radiance);
 

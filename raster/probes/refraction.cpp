@@ -18,8 +18,8 @@ using Mask = Floats::batch_bool_type;
 using Vec3s = Vec3T<Floats>;
 using Rgbs = RgbT<Floats>;
 
-/// A refracted direction, and the fraction of light that the interface lets through: 0 at total reflection, where the
-/// direction is the mirrored one.
+/// Holds a refracted direction, and the fraction of light that the interface transmits. At total internal reflection
+/// the fraction is 0, and the direction is the mirrored one.
 struct Refracted {
     Vec3s w;
     Floats through;
@@ -35,7 +35,7 @@ Refracted refract(const Vec3s& w, const Vec3s& n, const Floats& eta) {
     return {select(total, mirrored, through), Floats(1.0f) - fresnel_dielectric(cosine, eta)};
 }
 
-/// Shows what arrives through the glass of one object in a batch of pixels.
+/// Computes the light that arrives through the glass of one object in a batch of pixels.
 class GlassBatch {
 public:
     GlassBatch(const RasterSceneData& data, const GBuffer& gbuffer, const RadianceLookup& lookup, int x, int y)
@@ -48,28 +48,29 @@ public:
         const Floats eta(glass.ior);
         const Refracted in = refract(w_, n_, eta);
         if (glass.thin) return sheet(glass, Floats(1.0f) - in.through, lanes);
-        // What add_reflections() does not reflect enters.
+        // Light that add_reflections() does not reflect enters the glass.
         const Floats cosine = viewer_cosine(n_, -w_);
         const Floats entering =
             Floats(1.0f) - specular_albedo(LobeLookup()(alpha_, cosine, lanes), f0_, alpha_, cosine).g;
         const auto exit = data_.glass_shapes->exit(object, gbuffer_.projection.eye(), p_, n_, in.w);
-        if (!exit) { // small glass: light leaves in the direction it came from
+        if (!exit) { // small glass: light passes straight through
             if (data_.objects[static_cast<std::size_t>(object)].closed)
                 return lookup_(p_, n_, w_, alpha_, lanes) * entering * (tint * tint);
-            return lookup_(p_, n_ * Floats(-1.0f), in.w, alpha_, lanes) * entering * tint; // as into water
+            return lookup_(p_, n_ * Floats(-1.0f), in.w, alpha_, lanes) * entering * tint; // an open surface (water)
         }
-        // All light that does not leave at once leaves later; most of it in about the same direction.
+        // All light is taken to leave here. Light that is reflected inside leaves later, mostly in about the same
+        // direction.
         const Refracted out = refract(in.w, exit->n * Floats(-1.0f), Floats(1 / glass.ior));
         const auto absorbed = [&](float per_meter) { return xsimd::exp(exit->length * Floats(-per_meter)); };
         const Rgbs inside{absorbed(glass.absorption.r), absorbed(glass.absorption.g), absorbed(glass.absorption.b)};
-        // Light that leaves at a grazing angle fans out, so emitters do not show in it, as they do not in rough glass.
+        // Light that leaves at a grazing angle spreads out, so emitters are not visible in it, just as in rough glass.
         const Mask grazing = (out.through > Floats(0.0f)) & (out.through < Floats(0.5f));
         const Floats alpha = max(alpha_, xsimd::select(grazing, Floats(MetalBsdf::kSmoothAlpha), Floats(0.0f)));
         return lookup_(exit->p, exit->n, out.w, alpha, lanes) * entering * (tint * tint) * inside;
     }
 
 private:
-    /// Shows what arrives through a sheet, and what it mirrors.
+    /// Returns the light that arrives through a thin sheet, and the light that it mirrors.
     Rgbs sheet(const Dielectric& glass, const Floats& reflected, const Mask& lanes) const {
         const Floats one(1.0f), cosine = clamp(-dot(w_, n_), Floats(0.0f), one);
         const Floats inner = xsimd::sqrt(max(cos2_refracted(cosine, Floats(glass.ior)), Floats(1e-6f)));

@@ -1,5 +1,5 @@
-// Glass: one look through two interfaces (Wyman 2005, "An Approximate Image-Space Approach for Interactive
-// Refraction").
+// Renders glass by refracting each camera ray at two interfaces (Wyman 2005, "An Approximate Image-Space Approach for
+// Interactive Refraction").
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"
@@ -7,8 +7,8 @@
 
 namespace duet::raster {
 
-/// Adds the light that arrives through glass: refracted on entry, where the ray leaves the object (GlassShapes), and
-/// then sampled in the object's reflection probe. Reflections are add_reflections()'s.
+/// Adds the light that arrives through glass. The ray is refracted on entry and where it leaves the object
+/// (GlassShapes), and then samples the object's reflection probe. add_reflections() adds the reflections.
 void add_refraction(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
                     Planes3& radiance);
 

@@ -16,7 +16,8 @@ bool any_material(const Scene& scene, const Object& object, bool (*is)(const Mat
     return std::ranges::any_of(object.materials, [&](std::uint32_t material) { return is(scene.materials[material]); });
 }
 
-/// Returns whether a material shows bright and sharp images: smooth metal or glass. Textures may make it smooth.
+/// Returns whether a material shows bright and sharp reflections: smooth metal or glass. A textured roughness counts as
+/// smooth.
 bool is_mirror(const Material& material) {
     constexpr float kSmooth = 0.15f; // a rougher lobe is wider than two texels of the smallest maps
     const auto smooth = [](const ScalarSlot& roughness) { return !roughness.constant() || roughness.value < kSmooth; };
@@ -29,9 +30,9 @@ bool is_mirror(const Material& material) {
 
 struct Site {
     Vec3d center;
-    std::vector<std::uint32_t> excluded; ///< objects that the probe does not see, in order
-    std::uint32_t object = kNoObject;    ///< whose own probe it is
-    int side = 0;                        ///< texels of its map
+    std::vector<std::uint32_t> excluded; ///< objects that the probe does not see, sorted
+    std::uint32_t object = kNoObject;    ///< object that has this probe for itself
+    int side = 0;                        ///< texels along a side of its map
 };
 
 /// Returns the objects that reflect, the largest first.
@@ -62,7 +63,8 @@ std::vector<Site> sites_of(const RasterSceneData& data) {
     return sites;
 }
 
-/// Adds what a capture's surfaces reflect of the light between surfaces, and of the environment in their highlights.
+/// Adds to a capture the indirect light that its surfaces reflect, and the environment's reflections on their specular
+/// lobes.
 void add_reflected_light(const RasterSceneData& data, RasterSettings settings, ProbeCapture& capture) {
     settings.threads = 1;
     for (ProbeCapture::Face& face : capture.faces()) {
@@ -72,7 +74,7 @@ void add_reflected_light(const RasterSceneData& data, RasterSettings settings, P
     capture.add_fog(data, settings, ambient_light(data, settings, capture.faces().front().gbuffer.projection));
 }
 
-/// Returns what a capture shows, with or without what its surfaces emit.
+/// Returns the radiance of a capture, with or without the emission of its surfaces.
 RadianceMap::Source captured(const ProbeCapture& capture, bool emission) {
     return [&capture, emission](Vec3 w) {
         const ProbeCapture::Pixel pixel = capture.pixel(w);
@@ -91,12 +93,12 @@ bool shows_light(const ProbeCapture& capture) {
     });
 }
 
-/// Renders the map of one probe, on one thread. What lights hide from the probe is visible from other points, so rough
-/// surfaces, which get the lights' own reflections as direct light, need a map without the lights.
+/// Renders the maps of one probe, on one thread. Rough surfaces need a map without the lights, because their
+/// reflections of lights are direct light, and because a light hides surfaces from the probe that other points see.
 RadianceMap render_map(const RasterSceneData& data, const RasterSettings& settings, const Site& site) {
     const int side = site.side;
     const auto capture = [&](const std::vector<std::uint32_t>& excluded) {
-        constexpr std::size_t kMostLights = 16; // of a cluster of pixels; prepares models/lanterns.json in seconds
+        constexpr std::size_t kMostLights = 16; // per cluster of pixels; models/lanterns.json then takes seconds
         ProbeCapture result(data, settings, site.center, side / 2, excluded, {kMostLights});
         add_reflected_light(data, settings, result);
         return result;

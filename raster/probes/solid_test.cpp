@@ -7,12 +7,12 @@
 namespace duet::raster {
 namespace {
 
-/// Counts how often the six rays from a point along the axes leave a shape; crossings into it count as -1.
+/// Counts how often the six rays from a point along the axes leave a shape. A crossing into the shape counts as −1.
 class AxisRays {
 public:
     explicit AxisRays(Vec3d p) : p_(p) {}
     void cross(Vec3d a, Vec3d b, Vec3d c) {
-        std::array<bool, 3> beside; // of p along this axis; most triangles are along two
+        std::array<bool, 3> beside; // whether p lies beside the triangle's extent along an axis
         for (std::size_t i = 0; i < 3; ++i)
             beside[i] = p_[i] < std::min({a[i], b[i], c[i]}) || p_[i] > std::max({a[i], b[i], c[i]});
         for (std::size_t axis = 0; axis < 3; ++axis)
@@ -25,10 +25,10 @@ public:
 private:
     std::ptrdiff_t leaving(int times) const { return std::ranges::count(crossings_, times); }
 
-    /// A ray through an edge may cross both of its triangles, or none. The other rays outvote it.
+    /// Tests one axis. A ray through an edge may cross both of its triangles or none, but the other rays outvote it.
     void cross(Vec3d a, Vec3d b, Vec3d c, std::size_t axis) {
         const std::size_t i = (axis + 1) % 3, j = (axis + 2) % 3;
-        const auto left = [&](Vec3d from, Vec3d to) { // of the edge, as seen from p
+        const auto left = [&](Vec3d from, Vec3d to) { // whether p is to the left of the edge
             return (to[i] - from[i]) * (p_[j] - from[j]) - (to[j] - from[j]) * (p_[i] - from[i]) > 0;
         };
         const bool ab = left(a, b), bc = left(b, c), ca = left(c, a);
@@ -65,21 +65,21 @@ template <typename Visit> void for_each_triangle(const QuadList& list, const Vis
 bool contains(const Sphere& sphere, Vec3d p) {
     return length(p - Vec3d(sphere.center)) < static_cast<double>(sphere.radius);
 }
-/// The generalized winding number is the mean of the signed crossings over all rays from p. Six rays along the axes
-/// that agree decide. Else it is computed from the solid angles.
+/// Tests by the generalized winding number, which is the mean of the signed crossings over all rays from p. If at least
+/// five of six rays along the axes agree, they decide. Otherwise it is computed from solid angles.
 template <typename Triangles> bool contains(const Triangles& shape, Vec3d p) {
     AxisRays rays(p);
     for_each_triangle(shape, [&](Vec3d a, Vec3d b, Vec3d c) { rays.cross(a, b, c); });
     if (rays.agree()) return rays.inside();
     double sum = 0;
     for_each_triangle(shape, [&](Vec3d a, Vec3d b, Vec3d c) { sum += solid_angle(p, a, b, c); });
-    constexpr double kInside = 0.75; // meshes whose parts do not all face outwards exceed 1/2 in the open
+    constexpr double kInside = 0.75; // above 1/2, which meshes with inconsistent orientation exceed outside
     return sum > kInside * 4 * kPiDouble;
 }
 
 Vec3d to_object_space(const RasterSceneData& data, std::uint32_t i, Vec3d p) {
     const Object& object = data.scene.objects[i];
-    const auto time = static_cast<float>(data.scene.camera.shutter_open); // at which probes are rendered
+    const auto time = static_cast<float>(data.scene.camera.shutter_open); // time at which probes are rendered
     return object.identity ? p : transform_point(Mat4d(object_transform(object, time).to_object), p);
 }
 
@@ -93,8 +93,8 @@ bool is_inside(const RasterSceneData& data, std::uint32_t object, Vec3d p) {
 
 namespace {
 
-/// Returns whether the segment from p to q crosses a triangle: both ends lie on different sides of its plane, and its
-/// edges go around the segment in one direction.
+/// Returns whether the segment from p to q crosses a triangle. Its ends must lie on different sides of the triangle's
+/// plane, and the triangle's edges must all go around the segment in one direction.
 bool crosses(Vec3d p, Vec3d q, Vec3d a, Vec3d b, Vec3d c) {
     const Vec3d n = cross(b - a, c - a), u = a - p, v = b - p, w = c - p, d = q - p;
     if ((dot(n, p - a) > 0) == (dot(n, q - a) > 0)) return false;

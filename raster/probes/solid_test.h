@@ -11,11 +11,11 @@ bool is_inside(const RasterSceneData& data, std::uint32_t object, Vec3d p);
 
 /// Tests whether points lie inside objects: spheres, boxes of quads, and meshes that are oriented outwards. Meshes may
 /// have holes: a point is inside if its generalized winding number is above 3/4 (Jacobson et al. 2013, "Robust
-/// Inside-Outside Segmentation using Generalized Winding Numbers"). An object is no solid but a room if the camera
-/// looks at a point in it, from within or through an opening.
+/// Inside-Outside Segmentation using Generalized Winding Numbers"). If the camera looks at a point in an object, from
+/// within or through an opening, the object counts as a room and not as a solid.
 class SolidTest {
 public:
-    /// Refers to the data.
+    /// Keeps a reference to `data`.
     explicit SolidTest(const RasterSceneData& data);
     /// Returns whether the world-space point lies inside an object.
     bool inside(Vec3d p) const;

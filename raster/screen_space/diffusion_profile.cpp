@@ -8,8 +8,8 @@ namespace {
 
 constexpr int kSteps = 256;
 
-// Tabulates the mean over all directions φ of the radial distribution 1 − (exp(−r) + 3 exp(−r / 3)) / 4 at the distance
-// r = x / cos φ.
+// Tabulates the radial distribution 1 − (exp(−r) + 3 exp(−r / 3)) / 4 at the distance r = x / cos φ, averaged over all
+// directions φ.
 std::array<float, kSteps + 2> tabulate() {
     std::array<float, kSteps + 2> table;
     constexpr int kDirections = 256;

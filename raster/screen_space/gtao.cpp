@@ -10,19 +10,19 @@
 namespace duet::raster {
 namespace {
 
-/// Pixels of half resolution that are less alike in total lie on other surfaces.
+/// Pixels of half resolution count as lying on other surfaces if their total likeness is below this.
 constexpr float kLeastLikeness = 0.02f;
 
 using Mask = Floats::batch_bool_type;
 using Vec3s = Vec3T<Floats>;
 
-/// A height above the plane below this fraction of the distance between two points is rounding error.
+/// A height above the plane counts as rounding error if it is below this fraction of the distance between two points.
 constexpr float kSlack = 1e-3f;
-/// The direction to a point nearer than this fraction of the distance from the eye is dominated by rounding.
+/// Directions to points nearer than this fraction of the distance from the eye are dominated by rounding.
 constexpr float kClosest = 3e-4f;
 constexpr float kFadeFrom = 0.75f;    ///< fraction of the radius at which horizons begin to fade
-constexpr float kLeastCosine = 0.02f; ///< between normal and viewer; interpolated normals may face away
-constexpr int kBlock = 4;             ///< pixels of half resolution along a side, each with a direction of its own
+constexpr float kLeastCosine = 0.02f; ///< least cosine between normal and viewer; interpolated normals may face away
+constexpr int kBlock = 4;             ///< side of a block of half-resolution pixels, each with a direction of its own
 
 /// Returns arccos with an error of at most 7e-5 (Abramowitz and Stegun 1964, 4.4.45).
 Floats arc_cosine(const Floats& x) {
@@ -35,8 +35,9 @@ Floats arc_cosine(const Floats& x) {
 
 Vec3s unit_of(const Vec3s& v) { return v * inverse_sqrt(max(dot(v, v), Floats(1e-30f))); }
 
-/// These are the integrals over the open arc from the viewer's direction, θ = 0, to a horizon, in the plane of v and t.
-/// The projected normal is at the angle γ. `all` is ∫ cos(θ − γ) sin θ dθ; the others have the factors cos θ and sin θ.
+/// Holds the integrals over the open arc from the viewer's direction v, θ = 0, to a horizon, in the plane of v and t.
+/// The projected normal is at the angle γ. `all` is ∫ cos(θ − γ) sin θ dθ; `along_v` and `along_t` have the additional
+/// factors cos θ and sin θ.
 struct Arc {
     Floats all, along_v, along_t;
 };
@@ -48,7 +49,7 @@ Arc arc(const Floats& angle, const Floats& cosine, const Floats& sine, const Flo
             cos_gamma * cube + sin_gamma * (Floats(2.0f / 3) - cosine + cosine * cosine * cosine * third)};
 }
 
-/// Finds horizons: the greatest cosine to the viewer of the surfaces along a line from each point.
+/// Searches for horizons. A horizon is the greatest cosine to the viewer of the surfaces along a line from each point.
 class HorizonSearch {
 public:
     HorizonSearch(const GBuffer& gbuffer, const Vec3s& p, const Vec3s& n, const Vec3s& to_viewer, float radius)
@@ -110,8 +111,8 @@ private:
     Floats closest_;
 };
 
-/// The direction and the step jitter of each pixel of a block, in [0, 1). The sixteen directions are all multiples of
-/// 1/16, ordered so that neighbors differ, and jitters are spread likewise.
+/// Holds the direction and the step jitter of each pixel of a block, in [0, 1). The sixteen directions are the odd
+/// multiples of 1/32, ordered so that neighbors differ, and the jitters are spread likewise.
 struct Pattern {
     Floats turn, jitter;
 };
@@ -128,13 +129,13 @@ Pattern pattern_of(int x, int y) {
     return {load(turn, 0), load(jitter, 0)};
 }
 
-/// What a line through each pixel hides of the hemisphere: the cosine-weighted fraction and its directions, and the
-/// line's own share of the hemisphere.
+/// Holds what a line through each pixel hides of the hemisphere: the cosine-weighted fraction and its directions, and
+/// the line's own share of the hemisphere.
 struct Line {
-    Floats all = Floats(0.0f), lost = Floats(0.0f); // braces would read a list of lanes
+    Floats all = Floats(0.0f), lost = Floats(0.0f); // with braces, the arguments would be a list of lanes
     Vec3s directions{Floats(0.0f), Floats(0.0f), Floats(0.0f)};
 };
-/// Searches the line turned by `pattern` about the view.
+/// Searches along the line that `pattern` selects by its rotation about the view direction.
 Line search_line(const GBuffer& gbuffer, const Vec3s& p, const Vec3s& normal, float radius, const Pattern& pattern) {
     const Floats one(1.0f), none(0.0f);
     const Vec3s v = gbuffer.projection.to_viewer(p);
@@ -203,7 +204,8 @@ void GtaoImage::search_row(int y, float radius) {
         if (radius > 0 && xsimd::any(seen)) {
             found = search_line(*gbuffer_, point(x, y, depth), normal_.vector(x, y), radius, pattern_of(x, y));
         }
-        // Lanes without a surface may hold any number, and neighbors read them with weight 0.
+        // Lanes without a surface may hold any number. They are set to 0 here, so that neighbors may read them with
+        // weight 0.
         const auto valid = [&](const Floats& value) { return xsimd::select(seen, value, Floats(0.0f)); };
         store(lines_.lost, x, y, valid(found.lost));
         store(lines_.all, x, y, valid(found.all));
@@ -213,9 +215,9 @@ void GtaoImage::search_row(int y, float radius) {
 }
 
 /// Calls use(x, lost, all, directions) for the batches of row y that show surfaces, with weighted sums over the
-/// neighbors along an axis that are on the same surface. The weights are a tent twice as wide as a block. So each
-/// direction has the same weight and is interpolated linearly between the pixels that have it: what varies linearly
-/// shows no blocks.
+/// neighbors along an axis that are on the same surface. The weights form a tent twice as wide as a block. Each
+/// direction thus has the same total weight and is interpolated linearly between the pixels that use it, so linear
+/// gradients show no blocks.
 template <typename Use>
 void GtaoImage::sum_neighbors(const Lines& from, int y, int step_x, int step_y, const Use& use) const {
     const ScreenProjection& projection = gbuffer_->projection;

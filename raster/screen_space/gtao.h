@@ -1,6 +1,7 @@
-// Ground-truth ambient occlusion (GTAO): how much of the environment the surfaces in the image hide from each pixel
-// (Jimenez et al. 2016, "Practical Realtime Strategies for Accurate Indirect Occlusion", §4). Horizons are searched
-// at half resolution, averaged over 7 × 7 neighbors on the same surface, and upsampled along depths and normals.
+// Implements ground-truth ambient occlusion (GTAO), which estimates how much of the environment the surfaces in the
+// image hide from each pixel (Jimenez et al. 2016, "Practical Realtime Strategies for Accurate Indirect Occlusion",
+// §4). Horizons are searched at half resolution, averaged over 7 × 7 neighbors on the same surface, and upsampled along
+// depths and normals.
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"
@@ -13,11 +14,11 @@ namespace duet::raster {
 /// frame to frame.
 class GtaoImage {
 public:
-    /// Searches occluders up to `radius` meters away; radius 0 searches none. The G-buffer must outlive this object's
-    /// use.
+    /// Searches for occluders up to `radius` meters away; with radius 0 there are none. The G-buffer must outlive the
+    /// use of this object.
     void compute(const GBuffer& gbuffer, float radius, int threads);
-    /// Computes irradiance(p, n, lanes) at every half-resolution pixel: p is relative to the eye, n unit. The hidden
-    /// directions are overwritten.
+    /// Computes irradiance(p, n, lanes) at every half-resolution pixel: p is relative to the eye, n unit. The results
+    /// overwrite the hidden directions.
     template <typename Irradiance> void add_irradiance(int threads, const Irradiance& irradiance);
 
     /// Returns the visibility of a batch of the G-buffer's pixels, upsampled along depths and normals.
@@ -39,7 +40,7 @@ public:
                smooth_.visible.memory_bytes() + smooth_.hidden.memory_bytes();
     }
 
-    static constexpr int kSteps = 10; ///< depths read on each side of a pixel
+    static constexpr int kSteps = 10; ///< depth samples on each side of a pixel
 
 private:
     struct Planes {
@@ -50,8 +51,9 @@ private:
         SkyVisibility<Floats> sky;
         xsimd::batch_bool<float> found;
     };
-    /// What is hidden along one line through each pixel, and what there is to hide; or sums of these. Sums over
-    /// neighbors are divided by each other, since a line's share of the hemisphere depends on its direction.
+    /// Stores the occluded part of the hemisphere along one line through each pixel (`lost`, `directions`), and the
+    /// line's whole part (`all`); or sums of these over neighbors. Sums are divided by sums, because a line's share of
+    /// the hemisphere depends on its direction.
     struct Lines {
         PlaneFloat lost, all;
         Planes3 directions;
@@ -70,10 +72,10 @@ private:
 
     const GBuffer* gbuffer_ = nullptr;
     PlaneFloat depth_;      ///< reversed depth of every second pixel of every second row
-    Planes3 normal_;        ///< likewise
-    Lines lines_;           ///< before averaging
-    Lines column_sums_;     ///< summed along columns
-    Planes smooth_; ///< after averaging
+    Planes3 normal_;        ///< normals of the same pixels
+    Lines lines_;           ///< search results of single pixels
+    Lines column_sums_;     ///< sums along columns
+    Planes smooth_; ///< averaged over neighbors
 };
 
 template <typename Irradiance> void GtaoImage::add_irradiance(int threads, const Irradiance& irradiance) {

@@ -17,7 +17,7 @@ Floats look_up(const std::vector<float>& table, const PlaneInt& materials, int x
 
 enum class Axis { kRows, kColumns };
 
-/// Blurs along rows, or along columns.
+/// Blurs the light of solids along rows or along columns.
 class Blur {
 public:
     /// `fractions` holds SolidMaterials::fraction for each pixel.
@@ -25,8 +25,8 @@ public:
          const Planes3& light)
         : materials_(materials), fractions_(fractions), gbuffer_(gbuffer), axis_(axis), light_(light) {}
 
-    /// Returns the blurred light. The weight of a pixel is the light that the profile sends to its width. None is left
-    /// out: with gaps, a line that is much brighter than its surroundings would be seen many times.
+    /// Returns the blurred light. The weight of a pixel is the fraction of the profile that its width covers. No pixel
+    /// is skipped, because with gaps a thin bright line would appear several times.
     RgbT<Floats> at(int x, int y) const {
         const RgbT<Floats> own = light_.color(x, y);
         const Mask solid = load(fractions_, x, y) > Floats(0.0f);
@@ -38,7 +38,7 @@ public:
             if (!xsimd::any(solid & (center.least * distance < Floats(diffusion_profile::kReach)))) break;
             const RgbT<Floats> all = within(center, static_cast<float>(offset) + 0.5f),
                                weight = (all - before) * Floats(0.5f);
-            // Fades out, for profiles that are wider, over the last third.
+            // Profiles wider than the filter fade out over its last third.
             const float fade = min(1.0f, 3 - 3.0f * static_cast<float>(offset) / kMostPixels);
             for (const int side : {offset, -offset})
                 sum += weight * (tap(x, y, side, center) * Floats(fade) + own * Floats(1 - fade));
@@ -49,15 +49,15 @@ public:
     }
 
 private:
-    static constexpr int kMostPixels = 96; ///< to each side
+    static constexpr int kMostPixels = 96; ///< radius of the filter
 
     struct Slope {
         Floats along; ///< distance in meters from a pixel to the next, on the tangent plane
-        Floats depth; ///< by how much the depth changes per pixel there, at most, in meters
+        Floats depth; ///< greatest change of depth from a pixel to the next, in meters
     };
     struct Center {
         RgbT<Floats> light, scale; ///< scale: the parameters b of the profiles, 1/m
-        Floats least;              ///< that of the channel whose light comes farthest
+        Floats least;              ///< scale of the channel whose light travels farthest
         Floats depth;
         Slope slope;
     };
@@ -68,7 +68,7 @@ private:
     }
 
     Slope slope_at(int x, int y) const {
-        constexpr float kLeastFacing = 0.2f; // cosine below which surfaces are no longer stretched
+        constexpr float kLeastFacing = 0.2f; // at smaller cosines, surfaces are stretched no further
         const Vec3T<Floats> p = gbuffer_.points(x, y), n = gbuffer_.normal.vector(x, y);
         const Floats pixel = gbuffer_.projection.pixel_size(depth_of(load(gbuffer_.reversed_depth, x, y)));
         const Floats facing = max(abs(dot(n, gbuffer_.projection.to_viewer(p))), Floats(kLeastFacing));
@@ -96,7 +96,7 @@ private:
         return {channel(albedo.r, 0), channel(albedo.g, 1), channel(albedo.b, 2)};
     }
 
-    /// Returns the fraction of the light that leaves within that many pixels, by channel.
+    /// Returns the fraction of the light that leaves within this many pixels, by channel.
     static RgbT<Floats> within(const Center& center, float pixels) {
         const Floats x = center.slope.along * Floats(pixels);
         return {diffusion_profile::fraction_within(center.scale.r * x),
@@ -104,8 +104,9 @@ private:
                 diffusion_profile::fraction_within(center.scale.b * x)};
     }
 
-    /// Returns the light that many columns or rows away, as far as solids are there that belong to the center's: they
-    /// do the less the more their depth differs from that of the tangent plane. The rest is that of the center.
+    /// Returns the light at a distance of `offset` pixels, weighted by whether the pixel belongs to the center's solid.
+    /// The weight decreases as the pixel's depth deviates from that of the tangent plane. The center's light has the
+    /// remaining weight.
     RgbT<Floats> tap(int x, int y, int offset, const Center& center) const {
         const int column = axis_ == Axis::kRows ? x + offset : x, row = axis_ == Axis::kRows ? y : y + offset;
         const Vec3T<Floats> light = load_at(light_, column, row);
@@ -153,7 +154,8 @@ void blur_solid_light(const SolidMaterials& materials, const GBuffer& gbuffer, i
     PlaneFloat fractions(gbuffer.width(), gbuffer.height());
     for_each_batch(gbuffer.width(), gbuffer.height(), threads,
                    [&](int x, int y) { store(fractions, x, y, look_up(materials.fraction, gbuffer.material, x, y)); });
-    // Rows come second: bright tops of solids, seen at a flat angle, leave streaks along columns, which rows blur.
+    // Rows come second: bright tops of solids, seen at a grazing angle, leave streaks along columns, which the rows
+    // blur.
     for (const Axis axis : {Axis::kColumns, Axis::kRows}) {
         const Blur blur(materials, fractions, gbuffer, axis, light);
         for_each_batch(gbuffer.width(), gbuffer.height(), threads,

@@ -1,7 +1,7 @@
-// Subsurface scattering in screen space: the diffuse light of solids is blurred over the distance that light comes
-// inside, along columns and then along rows (Jimenez et al. 2015, "Separable Subsurface Scattering", with the
-// pre-integrated kernel of §5.1). It is exact where the light varies along one of the axes only, on a plane. Light that
-// comes through thin parts is missing, because the image does not show its other side.
+// Computes subsurface scattering in screen space. The diffuse light of solids is blurred over the distance that light
+// travels inside, along columns and then along rows (Jimenez et al. 2015, "Separable Subsurface Scattering", with the
+// pre-integrated kernel of §5.1). The result is exact on a plane where the light varies along one of the axes only.
+// Light through thin parts is missing, because the image does not show their other side.
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"
@@ -9,17 +9,17 @@
 
 namespace duet::raster {
 
-/// Separates the diffuse lobes of solids in a G-buffer from all other lobes, so that the light of both can be computed
-/// apart. It changes the G-buffer, and restores it in the end.
+/// Separates the diffuse lobes of solids in a G-buffer from all other lobes, so that their light can be computed
+/// separately. It changes the G-buffer, and its destructor restores it.
 class SolidLobes {
 public:
-    /// Leaves all but the solids' diffuse lobes in the G-buffer.
+    /// Removes the solids' diffuse lobes from the G-buffer.
     SolidLobes(const SolidMaterials& materials, GBuffer& gbuffer, int threads);
     SolidLobes(const SolidLobes&) = delete;
     SolidLobes& operator=(const SolidLobes&) = delete;
     ~SolidLobes();
 
-    /// Leaves only the solids' diffuse lobes in the G-buffer.
+    /// Replaces the lobes in the G-buffer by the solids' diffuse lobes.
     void show_diffuse();
 
 private:
@@ -28,7 +28,7 @@ private:
     PlaneFloat coat_;
 };
 
-/// Blurs the light of solids, which is that of the diffuse lobes of the G-buffer.
+/// Blurs `light`, the light of solids, which the diffuse lobes in the G-buffer reflect.
 void blur_solid_light(const SolidMaterials& materials, const GBuffer& gbuffer, int threads, Planes3& light);
 
 } // namespace duet::raster

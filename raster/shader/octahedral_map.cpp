@@ -21,7 +21,7 @@ Vec3 OctahedralMap::direction(int x, int y) const {
 
 void OctahedralMap::finish() {
     const int last = side_ - 1;
-    for (int i = 0; i < side_; ++i) { // an edge continues in its own mirror image
+    for (int i = 0; i < side_; ++i) { // a border row mirrors the edge row next to it
         texel(i, -1) = texel(last - i, 0), texel(i, side_) = texel(last - i, last);
         texel(-1, i) = texel(0, last - i), texel(side_, i) = texel(last, last - i);
     }

@@ -18,15 +18,15 @@ template <typename T> Vec2T<T> octahedral(const Vec3T<T>& w) {
     const auto below = w.z < zero;
     return {select(below, (one - abs(y)) * sign(x), x), select(below, (one - abs(x)) * sign(y), y)};
 }
-/// Returns the index, of `side` cells that divide [−1, 1], of the one that holds v, or the nearest one.
+/// Divides [−1, 1] into `side` cells, and returns the index of the cell that contains v, or the nearest one.
 inline int cell_of(float v, int side) {
     return std::clamp(static_cast<int>((v + 1) * 0.5f * static_cast<float>(side)), 0, side - 1);
 }
 /// Returns the unit direction of a position in the square; the inverse of octahedral().
 Vec3 octahedral_direction(Vec2 p);
 
-/// Holds values of up to four channels for all directions: side × side texels in the octahedral square, with a border
-/// of one texel that continues across the square's edges, so that bilinear lookups need no special cases.
+/// Holds values of up to four channels for all directions. It has side × side texels in the octahedral square, and a
+/// border of one texel that continues across the square's edges, so that bilinear lookups need no special cases.
 class OctahedralMap {
 public:
     static constexpr std::size_t kChannels = 4; ///< interleaved, so that a lookup touches few cache lines
@@ -41,12 +41,12 @@ public:
     const Texel& texel(int x, int y) const { return texels_[index(x, y)]; }
     /// Returns the direction at a texel's center.
     Vec3 direction(int x, int y) const;
-    /// Copies the border from the opposite texels; to be called after the texels have changed.
+    /// Copies the border from the opposite texels. It must be called after the texels have changed.
     void finish();
 
-    /// Looks up the first `count` channels bilinearly in directions of any length.
+    /// Returns the first kCount channels in directions of any length, interpolated bilinearly.
     template <std::size_t kCount> std::array<Floats, kCount> at(const Vec3T<Floats>& w) const;
-    /// Looks up kCount channels from the one with index `first` on, at the texels nearest to directions of any length.
+    /// Returns kCount channels, from index `first` on, of the texels nearest to directions of any length.
     template <std::size_t kCount>
     std::array<Floats, kCount> nearest(const Vec3T<Floats>& w, std::size_t first = 0) const;
     std::size_t memory_bytes() const { return texels_.size() * sizeof(Texel); }
@@ -62,8 +62,8 @@ private:
 template <std::size_t kCount> std::array<Floats, kCount> OctahedralMap::at(const Vec3T<Floats>& w) const {
     const Vec2T<Floats> p = octahedral(w);
     const Floats half(0.5f * static_cast<float>(side_)), middle(half + Floats(0.5f));
-    const Floats x = p.x * half + middle, y = p.y * half + middle; // counted from the border's texel centers
-    // A lane whose direction is not a number, as in lanes that are not used, reads some texel.
+    const Floats x = p.x * half + middle, y = p.y * half + middle; // relative to the border's first texel center
+    // Unused lanes may hold NaN. They read an arbitrary texel.
     const auto cell = [&](const Floats& v) { return xsimd::max(xsimd::min(truncated(v), Ints(side_)), Ints(0)); };
     const Ints x0 = cell(x), y0 = cell(y);
     const Floats fx = x - xsimd::batch_cast<float>(x0), fy = y - xsimd::batch_cast<float>(y0);
@@ -85,7 +85,7 @@ std::array<Floats, kCount> OctahedralMap::nearest(const Vec3T<Floats>& w, std::s
     const Floats half(0.5f * static_cast<float>(side_)), last(static_cast<float>(side_ - 1));
     const auto cell = [&](const Floats& v) {
         const Ints i = truncated(clamp(v * half + half, Floats(0.0f), last));
-        return xsimd::max(xsimd::min(i, Ints(side_ - 1)), Ints(0)) + Ints(1); // past the border
+        return xsimd::max(xsimd::min(i, Ints(side_ - 1)), Ints(0)) + Ints(1); // skips the border
     };
     const Ints at = (cell(p.y) * Ints(side_ + 2) + cell(p.x)) * Ints(static_cast<std::int32_t>(kChannels));
     std::array<Floats, kCount> result;

@@ -12,8 +12,7 @@
 
 namespace duet::raster {
 
-/// Shades the packets of one tile, in any order. `Colors` is what a shader returns for a packet, ColorPacket or
-/// PacketAttributes.
+/// Shades the packets of one tile, in any order. `Colors` is the result for a packet: ColorPacket or PacketAttributes.
 template <typename Colors> class PacketShaderOf {
 public:
     virtual ~PacketShaderOf() = default;
@@ -34,7 +33,7 @@ using PacketShader = PacketShaderOf<ColorPacket>;
 class ShaderProgram {
 public:
     virtual ~ShaderProgram() = default;
-    /// Returns a shader for the packets of one tile. It refers to the arguments.
+    /// Returns a shader for the packets of one tile. The shader keeps references to the arguments.
     virtual std::unique_ptr<PacketShader> for_tile(const RasterSceneData& data, const Geometry& geometry,
                                                    const PassView& view, const PixelRect& tile) const = 0;
     /// Returns the color of one hit of the ray through `pixel`.

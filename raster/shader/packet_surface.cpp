@@ -23,7 +23,7 @@ template <typename T> struct TriangleUv {
 };
 
 struct UvTriangle : TriangleUv<float> {
-    bool has_area = true; ///< in texture space
+    bool has_area = true; ///< whether the triangle has an area in texture space
 
     UvTriangle(const PackedShape& shape, std::size_t triangle) {
         if (!shape.has_uvs) return;
@@ -54,7 +54,7 @@ struct UvTriangles : TriangleUv<Floats> {
 
 } // namespace
 
-/// Returns the scale of footprints for the sampling rate, as PixelFootprint does.
+/// Returns the factor that scales footprints by the sampling rate, like PixelFootprint.
 float PacketSurface::step_scale() const {
     return static_cast<float>(1 / std::sqrt(samples_per_pixel(*packet_, view_)));
 }
@@ -73,8 +73,9 @@ Rgb PacketSurface::emitted(std::size_t sample) const {
                         samples_per_pixel(*packet_, view_));
 }
 
-/// Does the same as surface_point() and set_footprint(), without what base colors don't depend on. (The derivatives
-/// of the texture coordinates follow from those of the barycentrics, which are already computed with SIMD.)
+/// Returns the same color as surface_point(), set_footprint() and base_color() together, but computes only what base
+/// colors depend on. (The derivatives of the texture coordinates follow from those of the barycentrics, which are
+/// already computed with SIMD.)
 Rgb PacketSurface::base_color(std::size_t sample) const {
     if (!(samples_->visible >> sample & 1)) return {};
     if (samples_->shape == nullptr) {
@@ -114,7 +115,7 @@ RgbT<Floats> PacketSurface::base_colors(std::size_t first) const {
         std::get<ImageTexture>(data_.scene.textures.textures[static_cast<std::size_t>(slot->texture)]);
     const RgbT<Floats> c = broadcast<Floats>(slot->value) *
                            data_.texture_samplers[texture.image].sample(texture, texture_coordinates(first));
-    const Floats zero(0.0f), one(1.0f); // as in evaluate_reflectance()
+    const Floats zero(0.0f), one(1.0f); // the limits are those of evaluate_reflectance()
     return {clamp(c.r, zero, one), clamp(c.g, zero, one), clamp(c.b, zero, one)};
 }
 

@@ -1,5 +1,5 @@
-// Evaluates base colors and mapped normals of a packet's fragments. Base colors of objects with a single texture
-// use SIMD.
+// Evaluates base colors and mapped normals of a packet's fragments. Base colors of objects with a single texture are
+// evaluated with SIMD.
 #pragma once
 
 #include "raster/shader/texture_sampler.h"

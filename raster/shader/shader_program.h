@@ -72,7 +72,7 @@ private:
     using VaryingBatch = VaryingsOf<S, Floats>;
     using ResultPacket = InterpolatedPacket<S, float>;
 
-    /// Holds those samples of a packet that see one of several objects.
+    /// Holds the samples of a packet that see one of several objects.
     struct SubPacket {
         PacketOf<std::int32_t> ids;
         SamplePacket packet;
@@ -91,7 +91,8 @@ private:
         });
     }
 
-    /// Shades a packet whose samples see one object. `colors` is __restrict, so what its batches share is loaded once.
+    /// Shades a packet whose samples see one object. `colors` is __restrict, so that data shared by its batches is
+    /// loaded once.
     void shade_solved(const SamplePacket& packet, const ResultPacket& result, Colors& __restrict colors) {
         const SampleOffset offset = packet.offsets != nullptr ? SampleOffset{0, 0} : packet.offset;
         ray_directions_.set_offset(offset);
@@ -144,7 +145,7 @@ private:
         copy_lanes(lanes, own, colors);
     }
 
-    /// Shades the collected parts. Each sees one object, so no further parts result.
+    /// Shades the collected sub-packets. Each sees one object, so no further sub-packets result.
     void shade_sub_packets() {
         sub_packet_inputs_.clear();
         for (const SubPacket& sub_packet : sub_packets_) {
@@ -191,7 +192,7 @@ private:
     template <std::size_t N>
     static VaryingBatch varyings_at(const std::array<PacketOf<float>, N>& from, std::size_t i) {
         VaryingBatch result;
-        for (std::size_t c = 0; c < N; ++c) { // one by one, so that compilers keep them in registers
+        for (std::size_t c = 0; c < N; ++c) { // one by one, so that compilers use registers
             const Floats number = load(from[c], i);
             std::memcpy(reinterpret_cast<char*>(&result) + c * sizeof(number), static_cast<const void*>(&number),
                         sizeof(number));
@@ -209,13 +210,13 @@ private:
     const Geometry& geometry_;
     const PassView& view_;
     const S& shader_;
-    PacketSurface surface_; ///< of the current packet
+    PacketSurface surface_; ///< surface of the current packet
     PacketInterpolator<S, float> interpolator_;
     LinearInTile ray_directions_;             ///< directions of camera rays
     Vec3 eye_;                                ///< common origin of all camera rays
-    std::optional<LinearInTile> ray_origins_; ///< or an origin per pixel in an orthographic view
+    std::optional<LinearInTile> ray_origins_; ///< origins per pixel in an orthographic view
     std::vector<SubPacket> sub_packets_;
-    std::vector<SamplePacket> sub_packet_inputs_; ///< arguments of shade_packets() for the parts
+    std::vector<SamplePacket> sub_packet_inputs_; ///< arguments of shade_packets() for the sub-packets
     std::vector<Colors> sub_packet_colors_;
     std::vector<std::uint32_t> sub_packet_visible_;
     std::optional<ObjectView> sphere_view_; ///< view of the last sphere shaded

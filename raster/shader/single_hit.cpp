@@ -13,8 +13,8 @@ Vec3 to_object_normal(const ObjectView& object, Vec3 n) {
 struct PointSteps {
     Vec3d dx, dy;
 };
-/// From o + t·d = p, where o and d are linear in the pixel and n·p is constant, follows t' = −n·(o' + t·d') /
-/// n·d.
+/// Computes t' = −n·(o' + t·d') / n·d, which follows from o + t·d = p, where o and d are linear in the pixel and n·p is
+/// constant.
 PointSteps point_steps(const Pinhole& pinhole, Vec2d pixel, double t, Vec3d n) {
     const Vec3d d = pinhole.direction + pinhole.direction_dx * pixel.x + pinhole.direction_dy * pixel.y;
     const auto step = [&](Vec3d origin_step, Vec3d direction_step) {

@@ -7,10 +7,10 @@
 namespace duet::raster {
 
 /// Stores the corners of the hit triangle and the weights that interpolate them to the hit, with the weights'
-/// screen-space derivatives. For a sphere the corners are three of its points: the hit, and those of the rays through
-/// the next pixels to the right and below, intersected with the tangent plane.
+/// screen-space derivatives. On a sphere the corners are the hit, and the points where the rays through the next pixels
+/// to the right and below meet the tangent plane.
 struct HitCorners {
-    std::array<Vec3, 3> p, n; ///< in object space
+    std::array<Vec3, 3> p, n; ///< positions and normals in object space
     std::array<Vec2, 3> uv;
     std::array<Vec3, 3> edges; ///< VertexInput::edges
     Vec3 ng, middle;           ///< as in VertexInput
@@ -35,8 +35,7 @@ Vec3 hit_normal(const Scene& scene, const PassView& view, const Hit& hit, Vec2d 
 /// Returns the radiance emitted at a hit towards the viewer. Textures are filtered over the sample's footprint.
 Rgb hit_emission(const Scene& scene, const PassView& view, const Hit& hit, Vec2d pixel, int samples_per_pixel);
 
-/// Returns the color of a hit of the ray through `pixel`. `reversed_depth` is the reversed depth if it is known, or
-/// null.
+/// Returns the color of a hit of the ray through `pixel`. `reversed_depth` may be null, if it is not known.
 template <Shader S>
 Rgb shade_single_hit(const RasterSceneData& data, const PassView& view, const S& shader, const Hit& hit, Vec2d pixel,
                      int samples_per_pixel, const float* reversed_depth = nullptr) {

@@ -8,8 +8,8 @@
 
 namespace duet::raster {
 
-/// A sphere has no corners. The vertex function is evaluated at each sample, and for derivatives at its neighbors
-/// on the tangent plane, as in hit_corners(). Barycentrics are not set.
+/// Computes the varyings on a sphere, which has no corners. The vertex function is evaluated at each sample, and for
+/// derivatives at its neighbors on the tangent plane, as in hit_corners(). Barycentrics are not set.
 template <VertexShader S>
 void interpolate_sphere(const SpherePacket& at, const Sphere& sphere, const S& shader, const ObjectView& object,
                         InterpolatedPacket<S, float>& result) {

@@ -7,8 +7,8 @@
 
 namespace duet::raster {
 
-/// Computes the same results as find_hit() and surface_point() for one sample, in object space. Values of samples
-/// that see something else are unspecified.
+/// Computes the same results as find_hit() and surface_point() for one sample, in object space. Values of samples that
+/// do not see the sphere are unspecified.
 struct SpherePacket {
     using Vectors = std::array<PacketOf<float>, 3>;
 

@@ -15,8 +15,8 @@ namespace {
 /// the polynomial's error.
 constexpr double kUncertainty = 0x1p-11;
 
-/// Fixed-point codes are in units of 2^-16 and biased by half a code plus kUncertainty. The 8-bit code is thus the
-/// value without its lower sixteen bits, and it is in doubt if those are less than twice kUncertainty.
+/// Fixed-point codes are in units of 2^-16 and biased by half a code plus kUncertainty. Without its lower sixteen bits,
+/// a fixed-point code is the 8-bit code. It is in doubt if the lower bits are less than twice kUncertainty.
 constexpr double kCode = 1 << 16, kBias = (0.5 + kUncertainty) * kCode;
 constexpr std::int32_t kCertain = 0xffff & ~static_cast<std::int32_t>(2 * kUncertainty * kCode - 1);
 
@@ -53,7 +53,7 @@ Floats biased_code(const Floats& value) {
 
 /// Returns one bit per lane with a channel outside the range of gamma_code(), which is rare.
 std::uint32_t outside_gamma_range(const RgbT<Floats>& c) {
-    // Compared as integers, NaN is too large, and negative values are too small.
+    // Compared as integers, NaN is too large and negative values are too small.
     const auto bits = [](const Floats& x) { return xsimd::bitwise_cast<Ints>(x); };
     const Ints least = min(min(bits(c.r), bits(c.g)), bits(c.b)), most = max(max(bits(c.r), bits(c.g)), bits(c.b));
     return lane_bits(least <= bits(Floats(kLinearLimit))) | lane_bits(most > bits(Floats(1.0f)));

@@ -33,7 +33,7 @@ private:
     class TexelQuads;
 
     std::int32_t levels_ = 0;
-    std::array<const float*, kPacketSize> level_texels_{}; ///< per level, three floats per texel
+    std::array<const float*, kPacketSize> level_texels_{}; ///< per level, with three floats per texel
     PacketOf<float> widths_, heights_;
 };
 

@@ -29,7 +29,7 @@ private:
     struct Pixel {
         Hit blocking_hit;               ///< the first layer that stops the sample's ray
         ShadedSample front{{}, {}, {}}; ///< the sum of the layers, weighted by visibility
-        float transmittance = 1;        ///< transmittance of the layers
+        float transmittance = 1;        ///< transmittance of all layers of the pixel
     };
 
     bool add(int x, int y, const Hit& hit);

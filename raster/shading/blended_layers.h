@@ -1,5 +1,6 @@
-// Alpha-masked and alpha-blended surfaces of deferred shading: each pixel's surfaces are peeled from front to back, one
-// G-buffer per layer (Everitt 2001, "Interactive Order-Independent Transparency"; here from sorted lists, in one pass).
+// Composites alpha-masked and alpha-blended surfaces in deferred shading. Each pixel's surfaces are peeled from front
+// to back, with one G-buffer per layer (Everitt 2001, "Interactive Order-Independent Transparency"; here from sorted
+// lists, in one pass).
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"
@@ -16,15 +17,15 @@ struct Control;
 
 namespace duet::raster {
 
-/// Describes one sample per pixel of a view: what all functions that fill a G-buffer need.
+/// Describes one sample per pixel of a view. All functions that fill a G-buffer take it.
 struct SampleView {
     const RasterSceneData& data;
     const RasterSettings& settings;
-    const Geometry& geometry; ///< of the opaque surfaces
-    const Geometry* layers;   ///< of the surfaces with alpha; null if there are none
+    const Geometry& geometry; ///< geometry of the opaque surfaces
+    const Geometry* layers;   ///< geometry of the surfaces with alpha; null if there are none
     const PassView& view;
     const TileGrid& grid;
-    SampleOffset offset; ///< of the samples in their pixels
+    SampleOffset offset; ///< position of the samples in their pixels
     const Control& control;
 };
 
@@ -40,7 +41,7 @@ public:
     void fill(const SampleView& sample, std::size_t k, GBuffer& gbuffer, Planes3& emission) const;
     /// Adds the radiance of the k-th surfaces, weighted by their visibility.
     void add(std::size_t k, const Planes3& layer, Planes3& radiance) const;
-    /// Multiplies the radiance of the visible surfaces by the transmittance of what is in front of them.
+    /// Multiplies the radiance of the visible surfaces by the transmittance of the blended surfaces in front of them.
     void attenuate(Planes3& radiance) const;
 
     /// Surfaces behind a smaller transmittance are left out. The error is below half a step of an 8-bit image for
@@ -58,7 +59,7 @@ private:
         int x, y;
         float transmittance;
     };
-    std::vector<std::vector<Surface>> layers_; ///< by number from the front
+    std::vector<std::vector<Surface>> layers_; ///< indexed from the front
     std::vector<Attenuation> attenuations_;
 };
 

@@ -38,7 +38,8 @@ std::unique_ptr<ShaderProgram> normal_program();
 std::unique_ptr<ShaderProgram> albedo_program();
 std::unique_ptr<ShaderProgram> depth_program(const Camera& camera);
 ///@}
-/// Returns the program of normals without normal and bump maps, for edge detection. It is defined in normal_shader.cpp.
+/// Returns the program of normals without normal and bump maps, for edge detection. It is defined in
+/// normal_shader.cpp.
 std::unique_ptr<ShaderProgram> smooth_normal_program();
 
 } // namespace duet::raster

@@ -17,7 +17,8 @@
 namespace duet::raster {
 namespace {
 
-/// Occlusion by what is nearer than half the distance between probes; they see the rest themselves.
+/// Occluders are searched within this fraction of the distance between probes. The probes see farther occluders
+/// themselves.
 constexpr float kOccluded = 0.5f;
 
 double occlusion_radius(const RasterSceneData& data, const RasterSettings& settings) {
@@ -26,7 +27,8 @@ double occlusion_radius(const RasterSceneData& data, const RasterSettings& setti
     return min(static_cast<double>(length(data.scene.bounds.diagonal())), length(camera.look_at - camera.eye)) / 2;
 }
 
-/// Splits the radiance into components, each of which is what the stages since the last call added.
+/// Splits the radiance into components. Each component is the radiance that the stages added since the previous call of
+/// record().
 class ComponentRecorder {
 public:
     ComponentRecorder(const Planes3& radiance, int threads, LightComponentImages* components)
@@ -45,7 +47,8 @@ public:
             before_.set(x, y, now);
         });
     }
-    /// Records the direct light that shadows remove, from that without shadows, after the direct light itself.
+    /// Records the direct light that shadows remove: the unshadowed light minus the direct light, which is already
+    /// recorded.
     void record_shadowed(const DirectLight& unshadowed) {
         components_->shadowed = Planes3(radiance_.x.width(), radiance_.x.height());
         for_each_batch(radiance_.x.width(), radiance_.x.height(), threads_, [&](int x, int y) {
@@ -74,7 +77,7 @@ void DeferredFrame::start(const Scene& scene, const ScreenProjection& projection
 
 namespace {
 
-/// The stages of diffuse light, which also reflect direct light in other lobes.
+/// Runs the stages of diffuse light. They also add the direct light of the other lobes.
 class LightStages {
 public:
     LightStages(const RasterSceneData& data, const RasterSettings& settings, const ShadeOptions& options,
@@ -83,7 +86,7 @@ public:
 
     void done(const char* stage) { frame_.seconds.emplace_back(stage, watch_.lap()); }
 
-    /// Adds the light of lights.
+    /// Adds the light of Scene::lights.
     void add_direct(Planes3& radiance, ComponentRecorder& recorder) {
         if (!settings_.components.direct || data_.scene.lights.empty()) return;
         const GBuffer& gbuffer = *frame_.gbuffer;
@@ -120,7 +123,8 @@ public:
             done("sky light");
         }
     }
-    /// Adds the light that is scattered inside of solids, of which `lobes` shows the diffuse lobes.
+    /// Adds the light that is scattered inside solids, after their diffuse lobes are selected in the G-buffer by
+    /// `lobes`.
     void add_subsurface(const SolidMaterials& materials, SolidLobes& lobes, Planes3& radiance) {
         const GBuffer& gbuffer = *frame_.gbuffer;
         const int width = gbuffer.width(), height = gbuffer.height(), threads = settings_.threads;
@@ -159,8 +163,9 @@ void shade_gbuffer(const RasterSceneData& data, const RasterSettings& settings, 
     stages.done("background");
     {
         std::optional<SolidMaterials> solids;
-        std::optional<SolidLobes> lobes; // it takes the diffuse lobes of solids out of the G-buffer until its end
-        // Neighbors in an image of hits along other rays are no neighbors on the surface, so that nothing is blurred.
+        std::optional<SolidLobes> lobes; // removes the diffuse lobes of solids from the G-buffer in this scope
+        // If the hits lie on the caller's own rays, neighboring pixels do not show neighboring points, so nothing is
+        // blurred.
         if (settings.subsurface && data.scene.needs.subsurface && gbuffer.position.empty()) {
             solids.emplace(data.scene);
             lobes.emplace(*solids, *frame.gbuffer, threads);

@@ -19,15 +19,15 @@ namespace duet::raster {
 
 /// Holds the radiance towards the viewer, split by its source. The components sum to the color of the image.
 struct LightComponentImages {
-    Planes3 emission;    ///< of visible emissive surfaces, and the environment as the background
-    Planes3 direct;      ///< from Scene::lights
-    Planes3 environment; ///< diffuse light from the environment and, with RasterSettings::indirect_light, from surfaces
-    Planes3 indirect;    ///< diffuse light from surfaces, if HitShader has taken it out of `environment`
-    Planes3 reflection;  ///< mirrored and refracted light of everything but Scene::lights on rough surfaces
-    Planes3 shadowed;    ///< not included in the sum: the direct light that shadows remove
+    Planes3 emission;    ///< from visible emissive surfaces, and from the environment as background
+    Planes3 direct;      ///< reflected light of Scene::lights
+    Planes3 environment; ///< diffuse light of the environment and, with indirect_light, of surfaces
+    Planes3 indirect;    ///< diffuse light of surfaces, if HitShader has separated it from `environment`
+    Planes3 reflection;  ///< mirrored and refracted light, except that of Scene::lights on rough surfaces
+    Planes3 shadowed;    ///< direct light that shadows remove; not included in the sum
 };
 
-/// Holds the images of a frame. Rendering frame after frame into the same one keeps their memory.
+/// Holds the images of a frame. If successive frames are rendered into the same object, its memory is reused.
 struct DeferredFrame {
     std::optional<GBuffer> gbuffer;
     Planes3 radiance;
@@ -47,13 +47,13 @@ struct DeferredFrame {
 
 /// Holds the settings of shade_gbuffer.
 struct ShadeOptions {
-    float time = 0;         ///< of the shadows
-    bool background = true; ///< else pixels without a surface stay black
-    const FogGrid* fog = nullptr; ///< of the same view, or null to compute one
-    LightComponentImages* components = nullptr; ///< without fog: receives the parts of the radiance, if any
+    float time = 0;         ///< time of the shadow maps
+    bool background = true; ///< false: pixels without a surface stay black
+    const FogGrid* fog = nullptr; ///< fog of the same view, or null to compute it
+    LightComponentImages* components = nullptr; ///< receives the components without fog; may be null
 };
-/// Shades the surfaces in frame.gbuffer. frame.radiance holds what they emit, and receives the radiance towards the
-/// viewer.
+/// Shades the surfaces in frame.gbuffer. On entry, frame.radiance holds the radiance that they emit; on return, the
+/// radiance towards the viewer.
 void shade_gbuffer(const RasterSceneData& data, const RasterSettings& settings, const ShadeOptions& options,
                    DeferredFrame& frame);
 

@@ -1,4 +1,5 @@
-// Shows depth: white at the camera, half as bright at the distance of the look-at point, black at infinity.
+// Shows depth. The image is white at the camera, half as bright at the distance of the look-at point, and black at
+// infinity.
 #include "raster/shading/built_in_shaders.h"
 #include "raster/shader/shader_program.h"
 

@@ -31,7 +31,7 @@ void HitShader::set(int x, int y, const Ray& ray, const Hit& hit, const RayFootp
     }
     GBuffer& gbuffer = *frame_.gbuffer;
     gbuffer.reversed_depth(x, y) = 0, gbuffer.object(x, y) = gbuffer.material(x, y) = -1;
-    gbuffer.position.set_at(x, y, ray.direction); // the background reads it
+    gbuffer.position.set_at(x, y, ray.direction); // the background is sampled in this direction
     frame_.radiance.set_at(x, y, Rgb());
 }
 

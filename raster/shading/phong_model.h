@@ -29,7 +29,7 @@ template <typename T> struct PhongFactors {
         lobe = max(multiply_add(arriving, (leaving + leaving) * n.scale, -dot(wi, wo.v)) * wo.scale, T(0));
         for (int i = 0; i < kPhongSquarings; ++i) lobe = lobe * lobe;
     }
-    bool behind() const { return none_of(cosine > T(0)); } ///< no lane receives light
+    bool behind() const { return none_of(cosine > T(0)); } ///< whether no lane receives light
 };
 
 /// Returns the radiance of a surface under all lights. `base` is the base color, `ambient` the radiance from all

@@ -1,4 +1,4 @@
-// Computes what the auxiliary images show of one sample, with the shared surface point and materials.
+// Computes the values of the auxiliary images for one sample, with the shared surface point and materials.
 #pragma once
 
 #include "raster/raster_scene.h"
@@ -13,8 +13,8 @@ struct ShadedSample {
     Rgb albedo;
 };
 
-/// Returns the normal and, if the settings request it, the albedo of one sample of a tile. radiance is 0. On a miss all
-/// are 0.
+/// Returns the normal of one sample of a tile and, if the settings request it, the albedo. The radiance is 0. On a
+/// miss, all values are 0.
 ShadedSample sample_attributes(const RasterSceneData& data, const RasterSettings& settings, const HitTile& tile, int x,
                                int y);
 

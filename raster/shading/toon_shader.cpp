@@ -9,8 +9,8 @@
 namespace duet::raster {
 namespace {
 
-/// Returns 1 if x is beyond a border, 0 if not, with a linear ramp of one pixel. `width` is the change of x per
-/// pixel.
+/// Returns 1 if x is beyond a border and 0 if not, with a linear ramp of one pixel between. `width` is the change of x
+/// per pixel.
 template <typename T> T beyond(T x, float border, T width) {
     return clamp((x - T(border)) / max(width, T(1e-6f)) + T(0.5f), T(0), T(1));
 }

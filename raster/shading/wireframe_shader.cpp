@@ -1,7 +1,8 @@
 // Draws a wireframe with hidden lines removed: one-pixel antialiased edges of triangles in the base color plus
-// emission, on black. The distance of a sample to an edge comes from its barycentric: b / |∇b| pixels, exact on the
-// edge (Bærentzen, Nielsen, Gjøl, Larsen and Christensen 2006, "Single-pass Wireframe Rendering"). A quad's
-// diagonal is not an edge, and spheres have none. raster/overlay/lines.h draws lines without hidden-line removal.
+// emission, on black. The distance of a sample to an edge follows from its barycentric: it is b / |∇b| pixels, which is
+// exact on the edge (Bærentzen, Nielsen, Gjøl, Larsen and Christensen 2006, "Single-pass Wireframe Rendering"). A
+// quad's diagonal is not an edge, and spheres have none. raster/overlay/lines.h draws lines without hidden-line
+// removal.
 #include "raster/shading/built_in_shaders.h"
 #include "raster/shader/shader_program.h"
 
@@ -19,7 +20,7 @@ struct WireframeShader {
         T nearest(1e9f);
         for (std::size_t k = 0; k < 3; ++k) {
             const T steep = f.dx.edges[k] * f.dx.edges[k] + f.dy.edges[k] * f.dy.edges[k];
-            // Without an edge the gradient is 0, and the distance becomes very large.
+            // Without an edge, the gradient is 0 and the distance becomes very large.
             nearest = min(nearest, f.at.edges[k] * inverse_sqrt(max(steep, T(1e-24f))));
         }
         constexpr float kHalfWidth = 0.5f;

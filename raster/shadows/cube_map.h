@@ -21,7 +21,7 @@ inline Vec3 to_face(std::size_t face, Vec3 w) {
     const float sign = face % 2 == 0 ? 1.0f : -1.0f;
     return {w[(axis + 2) % 3] * sign, w[(axis + 1) % 3], w[axis] * sign};
 }
-/// Inverts to_face().
+/// Returns the vector with the given face coordinates; the inverse of to_face().
 inline Vec3 from_face(std::size_t face, Vec3 seen) {
     const std::size_t axis = face / 2;
     const float sign = face % 2 == 0 ? 1.0f : -1.0f;
@@ -30,8 +30,8 @@ inline Vec3 from_face(std::size_t face, Vec3 seen) {
     return w;
 }
 
-/// A cube map holds six shadow maps about a point, rendered by Shadows (raster/shadows/shadow_maps.h) from the cameras
-/// of cube_views. A face through which no light leaves is null.
+/// Holds six shadow maps around a point, rendered by Shadows (raster/shadows/shadow_maps.h) from the cameras of
+/// cube_views. A face through which no light leaves is null.
 struct CubeMap {
     static constexpr double kGuard = 4; ///< guard texels of the neighboring faces around each face
 

@@ -30,7 +30,7 @@ Vec3T<Floats> DepthCube::surface(const Vec3T<Floats>& w, Floats& texel) const {
     const auto pick = [&](const Floats& x, const Floats& y, const Floats& z) {
         return xsimd::select(x_first, x, xsimd::select(y_first, y, z));
     };
-    // As in to_face(), right is the axis before the face's own and up the one after it.
+    // In a face's coordinates, as in to_face(), right is the axis before the face's own and up the axis after it.
     const Floats axis = pick(w.x, w.y, w.z), sign = xsimd::select(axis < zero, -one, one);
     const Floats scale = Floats(scale_) / max(axis * sign, Floats(1e-30f)), middle(middle_);
     const Floats last(static_cast<float>(side_ - 1));

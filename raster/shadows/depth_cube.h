@@ -8,14 +8,14 @@
 
 namespace duet::raster {
 
-/// Holds a cube of depths around a point, face after face, so that each lane may look at another face.
+/// Holds a cube of depths around a point, face after face, so that each lane may read another face.
 class DepthCube {
 public:
     explicit DepthCube(const CubeMap& cube);
 
-    /// Returns the surface point seen at the center of the texel in direction w, in the cube's frame about its center.
-    /// It is exact, so points of a flat surface lie in its plane. It is very far away if nothing is seen. `texel`
-    /// receives the texel's width there.
+    /// Returns the surface point that the texel in direction w sees at its center, in the cube's frame about its
+    /// center. The point is exact, so points of a flat surface lie in its plane. It is very far away if the texel sees
+    /// nothing. `texel` receives the texel's width there.
     Vec3T<Floats> surface(const Vec3T<Floats>& w, Floats& texel) const;
     FrameT<double> frame;
     Vec3d center;

@@ -9,7 +9,7 @@
 namespace duet::raster {
 namespace {
 
-constexpr double kFlat = 1e-4; ///< relative to a group's size: the largest distance from a common plane
+constexpr double kFlat = 1e-4; ///< largest distance from a common plane, relative to a group's size
 
 Emitter bounding_sphere(std::span<const Vec3d> points) {
     Box3d box;

@@ -1,4 +1,4 @@
-// This header declares the shape of an area light as shadows approximate it.
+// This header declares the approximate shape of an area light that shadows are computed for.
 #pragma once
 
 #include "common/light/light.h"
@@ -7,14 +7,14 @@
 
 namespace duet::raster {
 
-/// Shadows approximate a light's shape by a parallelogram, a triangle, or a sphere. A receiver sees the sphere as a
-/// disk facing it.
+/// Approximates a light's shape by a parallelogram, a triangle, or a sphere. A receiver sees the sphere as a disk
+/// facing it.
 struct Emitter {
     enum class Kind { kParallelogram, kTriangle, kSphere };
     Kind kind = Kind::kSphere;
-    Vec3d center; ///< the point from which its shadow maps are rendered
+    Vec3d center; ///< the shadow maps are rendered from this point
     Vec3d u, v; ///< edges; unused for a sphere
-    Vec3d normal; ///< of its plane, on the emitting side; unused for a sphere
+    Vec3d normal; ///< unit normal on the emitting side; unused for a sphere
     double radius = 0;
 
     /// Returns the shape of one surface light.

@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kWidestSpot = 60; ///< degrees from the axis; beyond it the texel sizes of one map differ too much
 constexpr double kStep = 4; ///< largest ratio of widths between successive views of a sun
-constexpr std::size_t kMaxSteps = 4; ///< besides the view of the whole scene and those of distance ranges
-constexpr std::size_t kRanges = 3; ///< distance ranges that have their own views
+constexpr std::size_t kMaxSteps = 4; ///< most views of a sun that are fixed to the scene, besides the widest
+constexpr std::size_t kRanges = 3; ///< number of distance ranges with views of their own
 constexpr double kFiner = 1.3; ///< a view must be this much finer than the next to get its own map
 
 /// Returns the approximate width of the camera's view at its target, in meters.
@@ -33,7 +33,7 @@ Camera from_point(Vec3d eye, Vec3d direction, Vec3d up, double half_angle_tangen
 /// Returns the factor by which a view widens to leave `guard` texels on each side.
 double with_guard(int side, double guard) { return side / (side - 2 * guard); }
 
-/// This is a rectangle perpendicular to the sun's direction.
+/// Represents a rectangle perpendicular to the sun's direction.
 struct SunRect {
     Vec2d least{1e300, 1e300}, most{-1e300, -1e300};
 
@@ -46,8 +46,8 @@ struct SunRect {
     double width() const { return max(most.x - least.x, most.y - least.y); }
 };
 
-/// Returns, for each distance range, the bounds of the visible points up to its end that `casters` may shadow; widest
-/// first.
+/// Returns one rectangle per distance range, widest first. Each bounds the visible points up to the range's end that
+/// `casters` may shadow.
 std::array<SunRect, kRanges> range_rects(std::span<const VisiblePoint> visible, const FrameT<double>& frame,
                                          const SunRect& casters) {
     double nearest = 1e300, farthest = 0;

@@ -10,9 +10,9 @@
 namespace duet::raster {
 namespace {
 
-constexpr int kSide = 64;             ///< texels of the octahedral map
-constexpr std::uint32_t kPoints = 32; ///< on the light
-constexpr float kMeetAt = 3;          ///< multiple of the reach at which the lines from all points meet
+constexpr int kSide = 64;             ///< texels along a side of the octahedral map
+constexpr std::uint32_t kPoints = 32; ///< points on the light
+constexpr float kMeetAt = 3;          ///< lines from all points on the light meet at this multiple of the reach
 
 } // namespace
 
@@ -41,7 +41,7 @@ OctahedralMap near_visibility(double radius, float reach, const std::function<Cu
             Floats width;
             const auto seen = cube.surface(broadcast<Floats>(w * (reach * kMeetAt) - from), width);
             const Vec3 q = abs(Vec3(seen.x.get(0), seen.y.get(0), seen.z.get(0)) + from);
-            // Points count by the area that they show to the direction.
+            // The weight of a point is its projected area in the direction.
             const float weight = max(dot(normal, w), 0.0f);
             texel[0] += max(q.x, max(q.y, q.z)) < reach ? 0.0f : weight;
             texel[1] += weight;

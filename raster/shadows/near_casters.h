@@ -1,6 +1,6 @@
-// What casters close to a spherical light hide of it. Depths seen from the light's center do not tell that: the center
-// does not see what lies behind such a caster, but other points of the light may, such as those of a bulb that looks
-// over the rim of a bowl.
+// Computes how much of a spherical light is hidden by casters close to it. Depths seen from the light's center do not
+// suffice: points behind such a caster do not see the center, but may see other points of the light, such as those of a
+// bulb that stands out over the rim of a bowl.
 #pragma once
 
 #include "raster/shader/octahedral_map.h"
@@ -15,18 +15,18 @@ namespace duet::raster {
 /// `reach` meters are near.
 struct CellMaps {
     CubeMap all;                    ///< shows all casters
-    std::optional<CubeMap> distant; ///< shows what is beyond `reach`; none if no near casters surround the light
-    OctahedralMap near_visibility;  ///< what the function near_visibility() returns; empty if `distant` is none
+    std::optional<CubeMap> distant; ///< shows casters beyond `reach`; none if no near casters surround the light
+    OctahedralMap near_visibility;  ///< result of near_visibility(); empty if `distant` is none
     float reach = 0;
 };
 
 /// Returns whether surfaces whose depth is below `reach` meters fill more than half of the cube about a light's center,
-/// as a shade does, and a floor alone cannot.
+/// as a lampshade does. A floor alone does not.
 bool near_casters_surround(const CubeMap& cube, float reach);
 
-/// Returns the fraction of a sphere that is visible past the casters nearer than `reach`, in channel 0, by direction in
-/// the frame of its cubes. It is exact at three times the reach. `draw` returns the cube about the sphere's
-/// center moved by a vector.
+/// Returns, in channel 0, the fraction of a sphere that is visible past the casters nearer than `reach`, by direction
+/// in the frame of its cubes. It is exact for points at three times the reach. `draw` returns the cube about a point,
+/// given relative to the sphere's center.
 OctahedralMap near_visibility(double radius, float reach, const std::function<CubeMap(Vec3d)>& draw);
 
 } // namespace duet::raster

@@ -7,34 +7,35 @@ namespace {
 
 using Mask = Floats::batch_bool_type;
 
-/// Facets of one surface meet at up to 27 degrees (tangent), or at the fraction kOfElevation of the light's elevation
-/// above the surface, and do not shade each other. A greater fraction lets more light below a roof along a wall, a
-/// smaller one draws darker lines in valleys; 0.7 minimizes the sum of both errors in a coarse trough.
+/// Facets of one surface must not shade each other. They may meet at up to 27 degrees (tangent kSteepest), or at the
+/// fraction kOfElevation of the light's elevation above the surface. A greater fraction lets more light below a roof
+/// along a wall, a smaller one draws darker lines in valleys; 0.7 minimizes the sum of both errors in a coarse trough.
 constexpr float kSteepest = 0.5f, kOfElevation = 0.7f;
-/// A texel on the light's side whose surface falls from the receiver's plane by a greater fraction of the elevation
-/// lies beyond the end of the receiver's surface, and says nothing about its light.
+/// Texels on the side of the point that is nearer to the light are ignored if their surface falls below the receiver's
+/// plane by more than this fraction of the elevation. They lie beyond the end of the receiver's surface.
 constexpr float kFalling = 0.23f;
-constexpr float kLeastKnown = 0.25f; ///< filter weight of the texels that count, at least
+constexpr float kLeastKnown = 0.25f; ///< lower bound of the total filter weight of texels that count
 constexpr float kRounding = 0x1p-20f; ///< relative error of a depth, and of a point relative to the light
 
-constexpr int kTaps = 5; ///< along each side of the filter
+constexpr int kTaps = 5; ///< taps along each side of the filter
 
-/// Weights of the quadratic B-spline, which is a box of one texel convolved twice with itself, at four texels. The
-/// second texel is at the distance f, in [0, 1), before the point.
+/// Returns the weights of the quadratic B-spline at four texels. The spline is a box of one texel convolved twice with
+/// itself. The second texel is at the distance f, in [0, 1), before the point.
 std::array<Floats, kTaps> spline(const Floats& f) {
     const Floats g = Floats(1.0f) - f, half(0.5f);
-    const auto outer = [&](const Floats& x) { // of distance x in [1, 2)
+    const auto outer = [&](const Floats& x) { // for distances x in [1, 2)
         const Floats d = max(Floats(1.5f) - x, Floats(0.0f));
         return half * d * d;
     };
-    const auto inner = [&](const Floats& x) { // of distance x in [0, 1)
+    const auto inner = [&](const Floats& x) { // for distances x in [0, 1)
         return xsimd::select(x < half, Floats(0.75f) - x * x, outer(x));
     };
     return {outer(Floats(1.0f) + f), inner(f), inner(g), outer(Floats(1.0f) + g), Floats(0.0f)};
 }
 
-/// Weights of a box of four texels at five texels. It begins at the fraction f, in [0, 1), of the first texel. Each
-/// direction weights all ranks of a dither matrix of 4 × 4 texels equally at any position, so its pattern cancels.
+/// Returns the weights of a box of four texels at five texels. The box begins at the fraction f, in [0, 1), of the
+/// first texel. Along each axis, all ranks of a dither matrix of 4 × 4 texels have equal weight at any position, so the
+/// dither pattern averages out.
 std::array<Floats, kTaps> box(const Floats& f) {
     const Floats quarter(0.25f);
     return {quarter - f * quarter, quarter, quarter, quarter, f * quarter};
@@ -57,13 +58,14 @@ SharpShadowMap::SharpShadowMap(const ShadowMap& map, const Vec3d& eye)
     }
 }
 
-/// The plane n·(q − p) = 0 meets a texel's ray o + d·w at the depth d = n·(p − o)/n·w. In a perspective view o is
-/// constant and 1/d is linear in w. In an orthographic view w is constant and d is linear in o.
+/// Returns the plane through the receiver with normal n. A texel's ray o + d·w meets the plane n·(q − p) = 0 at the
+/// depth d = n·(p − o)/n·w. In a perspective view o is constant and 1/d is linear in w. In an orthographic view w is
+/// constant and d is linear in o.
 SharpShadowMap::Plane SharpShadowMap::plane(const Floats& x, const Floats& y, const Floats& depth,
                                             const Vec3T<Floats>& n) const {
     const bool flat = map_.orthographic();
     const Vec3T<Floats> ray = broadcast<Floats>(direction_) + broadcast<Floats>(direction_dx_) * x +
-                              broadcast<Floats>(direction_dy_) * y; // to depth 1
+                              broadcast<Floats>(direction_dy_) * y; // vector to depth 1
     const Floats towards = max(-dot(n, ray), Floats(1e-6f));
     const Floats over_ray = inverse_sqrt(dot(ray, ray)), cosine = towards * over_ray, one(1.0f);
     const Floats sine = xsimd::sqrt(max(one - cosine * cosine, Floats(0.0f)));
@@ -102,7 +104,8 @@ Floats SharpShadowMap::visibility(const Vec3T<Floats>& p, Mask& inside) const {
     const Floats x0 = xsimd::floor(x - half), y0 = xsimd::floor(y - half), fx = x - half - x0, fy = y - half - y0;
     const Ints first = truncated(xsimd::select(inside, y0, zero)) * Ints(map_.side()) +
                        truncated(xsimd::select(inside, x0, zero));
-    // Reversed depth beyond which a texel is before the point, where 0 means that nothing is.
+    // A texel shades the point if its reversed depth exceeds this limit. A reversed depth of 0 means that it sees
+    // nothing.
     const Floats limit = Floats(near_ * (1 + kRounding)) / max(depth, Floats(near_));
     const auto row = [&](int j) {
         const float* texels = map_.reversed_depth().pixels().data() + j * map_.side();
@@ -119,7 +122,8 @@ Floats SharpShadowMap::visibility(const Vec3T<Floats>& p, const Vec3T<Floats>& n
     const Plane plane = this->plane(x, y, max(depth, Floats(near_)), n);
     const bool dithered = map_.dithered();
     const auto weights = dithered ? box : spline;
-    // From the first texel's beginning (the box) or center (the spline's second texel is at distance f) to the point.
+    // This is the distance from the first texel to the point, without the fraction f. It counts from the texel's
+    // beginning for the box, and from its center for the spline.
     const Floats before(dithered ? 2.0f : 1.5f);
     const Floats x0 = xsimd::floor(x - before), y0 = xsimd::floor(y - before);
     const std::array<Floats, kTaps> across = weights(x - before - x0), down = weights(y - before - y0);
@@ -138,7 +142,7 @@ Floats SharpShadowMap::visibility(const Vec3T<Floats>& p, const Vec3T<Floats>& n
             const Floats seen = map_.orthographic() ? Floats(-near_) / max(stored, Floats(1e-25f)) : stored;
             const Floats distance = xsimd::sqrt(off_x * off_x + off_y * off_y);
             const Floats change = plane.dx * off_x + plane.dy * off_y, at = plane.at + change;
-            const Mask away = change < zero; // on the side that is farther from the light
+            const Mask away = change < zero; // lanes in which the plane recedes from the light
             const Floats limit = at + plane.rounding + plane.rising * distance;
             const Floats weight = across[static_cast<std::size_t>(i)];
             row_dark += xsimd::select(seen > limit, weight, zero);

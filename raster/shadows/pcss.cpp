@@ -11,14 +11,14 @@ using Mask = Floats::batch_bool_type;
 using Vec3s = Vec3T<Floats>;
 
 constexpr int kPatterns = 16;
-/// A blocker must rise above the receiver's plane by this fraction of its distance, so that facets of a concave surface
-/// that meet at up to 6 degrees do not shade each other.
+/// A blocker must rise above the receiver's plane by this fraction of its distance from the receiver. Facets of a
+/// concave surface that meet at up to 6 degrees thus do not shade each other.
 constexpr float kLeastRise = 0.1f;
-/// Rounding of a depth and of a point relative to the light, as a fraction of its distance.
+/// This is the rounding error of a depth, and of a point relative to the light, as a fraction of its distance.
 constexpr float kRounding = 0x1p-18f;
-constexpr float kMargin = 0.02f; ///< of the light's edge by which a line may miss the light and still count
+constexpr float kMargin = 0.02f; ///< a line may miss the light by this fraction of its edge
 
-/// Tap positions, kPatterns × count of them in a (0,2)-net, by pattern and tap: (a, b) on the unit square, and the same
+/// Holds tap positions by pattern and tap, kPatterns × count in a (0,2)-net: (a, b) on the unit square, and the same
 /// points mapped to the unit disk.
 template <int kTaps> struct Taps {
     std::array<std::array<float, kPatterns>, kTaps> a, b, disk_x, disk_y, fraction;
@@ -33,7 +33,8 @@ template <int kTaps> struct Taps {
                 a[k][i] = u.x, b[k][i] = u.y;
                 const float radius = std::sqrt(u.x), angle = 2 * kPi * u.y;
                 disk_x[k][i] = radius * std::cos(angle), disk_y[k][i] = radius * std::sin(angle);
-                // Offsets from the center's direction grow with the square, so contacts close by are found too.
+                // Offsets from the center's direction grow quadratically, so that contacts near the receiver are found,
+                // too.
                 const float s = (static_cast<float>(tap) + (static_cast<float>(pattern * 7 % kPatterns) + 0.5f) /
                                                                kPatterns) / kTaps;
                 fraction[k][i] = s * s;
@@ -48,8 +49,8 @@ const Taps<SoftShadowMap::kFilterTaps> kFilter;
 struct SoftShadowMap::Outline {
     Vec3s corner, u, v, dual_u, dual_v;
     Floats per_u, per_v; ///< lengths of dual_u and dual_v
-    Emitter::Kind shape; ///< kSphere: a disk
-    Vec3s axis; ///< unit, from the receiver's side to the light's plane
+    Emitter::Kind shape; ///< kSphere stands for a disk
+    Vec3s axis; ///< unit direction from the receiver's side to the light's plane
 };
 
 struct SoftShadowMap::Receiver {
@@ -59,17 +60,18 @@ struct SoftShadowMap::Receiver {
     Floats per_height; ///< 1 / the height of p above the light's plane, along −axis
     Floats slack;
 
-    /// Returns the fraction of the way from p to the light's plane at which the surface seen in direction q blocks the
-    /// light; its negative in lanes where it lies between, but the line misses the light; 0 in all other lanes.
+    /// Returns the fraction of the line from p to the light's plane at which the surface seen in direction q blocks the
+    /// light. The fraction is negated in lanes where the surface lies in between but the line misses the light. It is 0
+    /// in all other lanes.
     Floats blocker(const Vec3s& q) const {
         Floats texel;
         const Vec3s to = cube.surface(q, texel) - p;
         const Floats f = dot(to, light.axis) * per_height;
         const Floats rise = dot(to, n), distance2 = dot(to, to);
         const Floats scale = Floats(1.0f) / max(f, Floats(1e-6f));
-        const Vec3s hit = p + to * scale - light.corner; // where the line meets the light's plane
+        const Vec3s hit = p + to * scale - light.corner; // intersection of the line with the light's plane
         const Floats a = dot(hit, light.dual_u), b = dot(hit, light.dual_v);
-        // The center of the texel that q meets is up to this far from q, as seen on the light.
+        // The texel that contains direction q has its center up to this far from q, projected onto the light.
         const Floats reach = texel * scale * Floats(0.7f);
         const Floats margin_a = multiply_add(reach, light.per_u, Floats(kMargin)),
                      margin_b = multiply_add(reach, light.per_v, Floats(kMargin)), one(1.0f);
@@ -87,7 +89,7 @@ struct SoftShadowMap::Receiver {
             return light.u * gather(taps.disk_x[tap].data(), pattern) +
                    light.v * gather(taps.disk_y[tap].data(), pattern);
         const Floats a = gather(taps.a[tap].data(), pattern), b = gather(taps.b[tap].data(), pattern);
-        if (light.shape == Emitter::Kind::kTriangle) { // the other half of the parallelogram is folded onto it
+        if (light.shape == Emitter::Kind::kTriangle) { // fold the other half of the parallelogram onto it
             const Mask beyond = a + b > Floats(1.0f);
             return light.corner + light.u * xsimd::select(beyond, Floats(1.0f) - a, a) +
                    light.v * xsimd::select(beyond, Floats(1.0f) - b, b);
@@ -125,15 +127,15 @@ SoftShadowMap::Outline SoftShadowMap::outline_from(const Vec3s& p) const {
     return {none, frame.s * radius, frame.t * radius, frame.s * over, frame.t * over, over, over, kind_, axis};
 }
 
-/// Returns a vector in the cube's frame.
+/// Returns the vector in the cube's frame.
 Vec3s SoftShadowMap::local(const Vec3s& w) const {
     const auto axis = [&](Vec3d a) { return dot(w, broadcast<Floats>(Vec3(a))); };
     return {axis(cube_.frame.s), axis(cube_.frame.t), axis(cube_.frame.n)};
 }
 
-/// Combines what a lookup finds in the maps, of points in the cube's frame. Around the near casters it is the visible
-/// fraction past all casters. From twice as far, the fractions past near and past distant casters are multiplied, as if
-/// they hid points of the light independently of each other.
+/// Combines the results of a lookup in the maps, for points in the cube's frame. Within the reach of near casters, the
+/// result is the visible fraction past all casters. From twice the reach on, it is the product of the fractions past
+/// near and past distant casters, which are thus taken to be independent.
 template <typename Lookup> Floats SoftShadowMap::combined(const Vec3s& p, const Lookup& lookup) const {
     if (!distant_) return lookup(cube_);
     const Floats zero(0.0f), one(1.0f);
@@ -157,7 +159,7 @@ Floats SoftShadowMap::visibility(const Vec3d& eye, const Vec3s& p, const Vec3s& 
     return combined(own, [&](const DepthCube& cube) { return filtered(cube, own, normal, pattern); });
 }
 
-/// Looks up one cube for points and normals in its frame.
+/// Returns the visible fraction by one cube, for points and normals in its frame.
 Floats SoftShadowMap::filtered(const DepthCube& cube, const Vec3s& own, const Vec3s& n, const Ints& pattern) const {
     const Outline light = outline_from(own);
     const Floats height = max(-dot(own, light.axis), Floats(1e-20f));
@@ -179,7 +181,7 @@ Floats SoftShadowMap::filtered(const DepthCube& cube, const Vec3s& own, const Ve
         const Vec3s l = receiver.on_light(kFilter, i, pattern);
         const auto found_at = [&](const Floats& at) { return receiver.blocker(own * (Floats(1.0f) - at) + l * at); };
         Floats found = found_at(f);
-        // Where blockers differ in depth, the line is tested at the depth of the one beside it, too.
+        // If the line misses a blocker beside it at another depth, it is tested at that depth, too.
         if (const Mask beside = found < Floats(0.0f); xsimd::any(any & beside))
             found = xsimd::select(beside, found_at(-found), found);
         dark += xsimd::select(found > Floats(0.0f), Floats(1.0f), Floats(0.0f));

@@ -1,5 +1,6 @@
-// Soft shadows of area lights in lanes: percentage-closer soft shadows (Fernando 2005, "Percentage-Closer Soft
-// Shadows") in a cube of depths seen from the light's center, with few taps that neighboring pixels share.
+// Computes soft shadows of area lights with SIMD: percentage-closer soft shadows (Fernando 2005, "Percentage-Closer
+// Soft Shadows") in a cube of depths seen from the light's center. Neighboring pixels use different taps, so few taps
+// per pixel suffice.
 #pragma once
 
 #include "raster/gbuffer/screen_projection.h"
@@ -18,17 +19,18 @@ public:
     SoftShadowMap(const CellMaps& maps, const Emitter& emitter);
 
     /// Returns the visible fraction of the light at points relative to the eye at `eye`, with unit normals. `pattern`
-    /// in [0, 16) selects the taps of each lane: those of all sixteen patterns together cover the light evenly.
+    /// in [0, 16) selects the taps of each lane; the taps of all sixteen patterns together cover the light evenly.
     Floats visibility(const Vec3d& eye, const Vec3T<Floats>& p, const Vec3T<Floats>& n, const Ints& pattern) const;
 
-    /// Returns 1 where points see the light's center, else 0; past near casters, the visible fraction.
+    /// Returns 1 where points see the light's center, else 0. If casters surround the light closely, it returns the
+    /// visible fraction past them.
     Floats visibility(const Vec3d& eye, const Vec3T<Floats>& p) const;
 
     static constexpr int kSearchTaps = 8, kFilterTaps = 8;
 
 private:
     struct Receiver;
-    /// The light as seen from a receiver: points corner + a·u + b·v with a, b in [0, 1], or a disk.
+    /// Represents the light as seen from a receiver: points corner + a·u + b·v with a, b in [0, 1], or a disk.
     struct Outline;
 
     Outline outline_from(const Vec3T<Floats>& p) const;
@@ -42,7 +44,7 @@ private:
     float reach_;                      ///< CellMaps::reach
     Emitter::Kind kind_;
     float radius_ = 0;
-    Vec3 corner_, u_, v_, dual_u_, dual_v_; ///< of a flat light, in the cube's frame; its normal is +z
+    Vec3 corner_, u_, v_, dual_u_, dual_v_; ///< geometry of a flat light in the cube's frame; its normal is +z
 };
 
 } // namespace duet::raster

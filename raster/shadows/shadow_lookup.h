@@ -1,21 +1,21 @@
-// Declares how the direct light's stage looks up shadows.
+// Declares the interface by which direct lighting samples shadows.
 #pragma once
 
 #include "raster/geometry/packet.h"
 
 namespace duet::raster {
 
-/// Looks up how much of a light the points of a batch of pixels see. Lights that lie together, such as the triangles of
-/// a mesh that glows, are one source, of which a point sees one fraction.
+/// Returns the visible fraction of a light at the points of a batch of pixels. Lights that lie together, such as the
+/// triangles of a mesh that glows, form one source with one visible fraction.
 class ShadowLookup {
 public:
     static constexpr std::size_t kUnshadowed = static_cast<std::size_t>(-1);
 
     virtual ~ShadowLookup() = default;
-    /// Returns the number of a light's source, or kUnshadowed. `light` is an index into Scene::lights.
+    /// Returns the index of a light's source, or kUnshadowed. `light` is an index into Scene::lights.
     virtual std::size_t source(std::size_t light) const = 0;
-    /// Returns whether visibility() is a noisy estimate, to be averaged over the blocks of 4 × 4 pixels whose estimates
-    /// differ.
+    /// Returns whether visibility() is a noisy estimate. If so, it must be averaged over blocks of 4 × 4 pixels, whose
+    /// estimates differ.
     virtual bool noisy(std::size_t source) const = 0;
     /// Returns the visible fraction, in [0, 1], of a source at points relative to the eye with unit normals on the
     /// viewer's side. The batch starts at column x of row y. The result is unspecified in lanes that `mask` leaves out.

@@ -6,8 +6,8 @@
 
 namespace duet::raster {
 
-/// A shadow map stores the depths that a light sees through one camera. Each is sampled at its texel's center, as
-/// exactly as in any rendered image.
+/// Stores the depths that a light sees through one camera. Each is sampled at its texel's center, as exactly as in any
+/// rendered image.
 class ShadowMap {
 public:
     /// Renders the depths of all objects but `excluded`, or of all if it is kNoObject, into side × side texels.

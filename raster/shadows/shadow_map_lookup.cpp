@@ -51,7 +51,7 @@ Floats MapShadows::sharp_visibility(const Source& source, const Vec3T<Floats>& p
     };
     for (const SharpShadowMap& view : source.views)
         if (look(view)) return result;
-    // The faces of a cube overlap by guard texels, so the first that holds a point serves it.
+    // The faces of a cube overlap by guard texels, so the first face that contains a point is used.
     for (const auto& cube : source.cubes)
         for (const SharpShadowMap& face : cube)
             if (look(face)) return result;
@@ -83,7 +83,7 @@ Floats MapShadows::visibility(std::size_t source, const Vec3T<Floats>& point, co
     const std::span<const SoftShadowMap> cells = soft_.of(source, moment_);
     if (cells.empty()) return sharp_visibility(sources_[source], p, n);
     const Ints pattern = patterns(x, y);
-    // Four cells share the rows of a block, so a batch looks at one cell only.
+    // Up to four cells alternate between the rows of a block, so a batch samples one cell only.
     if (cells.size() <= 4) return cells[static_cast<std::size_t>(y) % cells.size()].visibility(eye_, p, n, pattern);
     Floats sum(0.0f);
     for (const SoftShadowMap& cell : cells) sum += cell.visibility(eye_, p, n, pattern);

@@ -1,4 +1,4 @@
-// The shadows of all lights of a scene, sampled in lanes.
+// Samples the shadow maps of all lights of a scene with SIMD.
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"
@@ -10,7 +10,7 @@
 
 namespace duet::raster {
 
-/// Holds the soft shadow maps of a scene, which no view changes.
+/// Holds the soft shadow maps of a scene. They do not depend on the view.
 class SoftShadowMaps {
 public:
     explicit SoftShadowMaps(const Shadows& shadows);
@@ -21,11 +21,11 @@ private:
     std::vector<std::vector<std::vector<SoftShadowMap>>> maps_;
 };
 
-/// Looks up the shadows for the points of one view at one time.
+/// Samples the shadow maps at the points of one view at one time.
 class MapShadows final : public ShadowLookup {
 public:
-    /// None of the references is copied. `data` must have its shadow maps. The points are those of the G-buffer's
-    /// pixels at `time`. A point of a moving object is looked up where it is at the map's moment, so that the object
+    /// Keeps references to its arguments. `data` must have its shadow maps. The points are those of the G-buffer's
+    /// pixels at `time`. A point of a moving object is moved to its position at the map's moment, so that the object
     /// does not shade itself by its motion. `threads` = 0 stands for all.
     MapShadows(const RasterSceneData& data, const GBuffer& gbuffer, float time, int threads);
 
@@ -34,15 +34,15 @@ public:
         return source < shadows_.sources().size() ? source : kUnshadowed;
     }
     bool noisy(std::size_t source) const override { return !soft_.of(source, moment_).empty(); }
-    /// Each pixel of a block of 4 × 4 looks at one cell of an area light, with taps of its own. The mean over a block
-    /// is the shadow; add_direct_light() (raster/lighting/shadow_filter.h) computes it.
+    /// Returns a noisy estimate. Each pixel of a block of 4 × 4 samples one cell of an area light, with taps of its
+    /// own, and add_direct_light() (raster/lighting/shadow_filter.h) averages over the block.
     Floats visibility(std::size_t source, const Vec3T<Floats>& p, const Vec3T<Floats>& n, int x, int y,
                       const xsimd::batch_bool<float>& mask) const override;
 
 private:
     struct Source {
         std::vector<SharpShadowMap> views;              ///< tried in order
-        std::vector<std::vector<SharpShadowMap>> cubes; ///< six faces each; a missing face shadows nothing
+        std::vector<std::vector<SharpShadowMap>> cubes; ///< six faces each; a missing face shades nothing
     };
 
     struct Receivers {
@@ -55,7 +55,7 @@ private:
     const SoftShadowMaps& soft_;
     const GBuffer& gbuffer_;
     Vec3d eye_;
-    std::vector<std::optional<Mat4d>> to_moment_; ///< for each object: from its position now; empty if nothing moves
+    std::vector<std::optional<Mat4d>> to_moment_; ///< for each object, from its current position; empty if none moves
     std::size_t moment_;
     UnblockedTiles unblocked_;
     std::vector<Source> sources_;

@@ -11,13 +11,13 @@
 namespace duet::raster {
 namespace {
 
-constexpr int kVisiblePointsWidth = 256;             ///< pixels
-constexpr double kGuardTexels = 4;                         ///< texels
-constexpr std::int64_t kCubeTexels = 64 * (1 << 20); ///< over all cubes, at most
-constexpr std::int64_t kViewTexels = 128 * (1 << 20); ///< over all other maps, at most
-constexpr int kMinSide = 64;                          ///< texels, of any map
-constexpr double kNearReach = 6; ///< multiple of a spherical light's radius: casters nearer than this are near
-constexpr double kFloor = 1e-4; ///< relative to the scene's size: how far objects may penetrate a floor
+constexpr int kVisiblePointsWidth = 256;             ///< width in pixels of the image that finds visible points
+constexpr double kGuardTexels = 4;                         ///< texels left around the fitted bounds of a view
+constexpr std::int64_t kCubeTexels = 64 * (1 << 20); ///< upper limit for the sum of all cubes
+constexpr std::int64_t kViewTexels = 128 * (1 << 20); ///< upper limit for the sum of all other maps
+constexpr int kMinSide = 64;                          ///< texels along a side of the smallest maps
+constexpr double kNearReach = 6; ///< casters nearer than this multiple of a spherical light's radius are near
+constexpr double kFloor = 1e-4; ///< objects may penetrate a floor by this fraction of the scene's size
 
 /// Returns whether the object is a quad with the whole scene and the sun on one side. Such a quad casts no shadow, so
 /// views need not cover it.
@@ -207,7 +207,7 @@ CellMaps Shadows::draw_cell(const RasterSceneData& data, const Source& source, c
                             double moment, int threads) {
     const auto& surface = std::get<SurfaceLight>(scene_.lights[source.lights.front()]);
     const bool flat = cell.kind != Emitter::Kind::kSphere;
-    // Other objects may lie in the light's plane, so the camera is slightly in front of it.
+    // Other objects may lie in the light's plane, so the camera is placed slightly in front of it.
     const double before = flat && !surface.two_sided ? 1e-3 * std::sqrt(length(cross(cell.u, cell.v))) : 0;
     const auto draw_from = [&](Vec3d offset, int side, double near) {
         return draw_cube(data, source.emits_only ? surface.object : kNoObject,
@@ -227,7 +227,7 @@ CellMaps Shadows::draw_cell(const RasterSceneData& data, const Source& source, c
 CubeMap Shadows::draw_cube(const RasterSceneData& data, std::uint32_t excluded, Vec3d center, const Emitter* plane,
                            bool back, double moment, int side, double near, int threads) {
     CubeMap cube;
-    cube.center = Vec3d(Vec3(center)); // rounded as the camera rounds it
+    cube.center = Vec3d(Vec3(center)); // rounded in the same way as in the camera
     if (plane != nullptr) cube.frame = frame_from_normal(plane->normal);
     std::vector<Camera> views = cube_views(cube.center, cube.frame, scene_size_, side, CubeMap::kGuard);
     for (std::size_t i = 0; i < views.size(); ++i) {

@@ -13,8 +13,8 @@
 
 namespace duet::raster {
 
-/// Holds all shadow maps of a scene; they do not depend on the view.
-/// A scene with motion has maps for several moments of the shutter interval.
+/// Holds all shadow maps of a scene. They do not depend on the view. A scene with motion has maps for several moments
+/// of the shutter interval.
 class Shadows {
 public:
     /// `data` is the prepared scene except for its shadows. More than one sample per pixel causes several moments to
@@ -24,7 +24,7 @@ public:
     /// Returns the number of lights without maps; the weakest lights have none.
     std::size_t unshadowed() const { return unshadowed_; }
     std::size_t moments() const { return moments_.size(); }
-    /// Whether maps are smaller than RasterSettings::shadow_map_side requests, to limit memory.
+    /// Returns whether maps are smaller than RasterSettings::shadow_map_side requests, to limit memory.
     bool coarser() const { return coarser_; }
     std::int64_t memory_bytes() const { return memory_bytes_; }
 
@@ -33,28 +33,28 @@ public:
     struct Maps {
         std::vector<ShadowMap> views;
         std::vector<CubeMap> cubes;
-        std::vector<CellMaps> cells; ///< of surface lights: parallel to Source::cells
+        std::vector<CellMaps> cells; ///< maps of surface lights, parallel to Source::cells
     };
-    /// A source shares maps. It is one point, spot or sun light, or the coplanar surface lights of one object, or all
-    /// surface lights of an object that only emits.
+    /// Represents lights that share maps: one point, spot or sun light, or the coplanar surface lights of one object,
+    /// or all surface lights of an object that only emits.
     struct Source {
         std::vector<std::size_t> lights;
         std::vector<Emitter> cells; ///< pieces of a surface light, each with its own maps; else empty
-        bool emits_only = false;    ///< its object only emits and is excluded from its own maps
+        bool emits_only = false;    ///< whether its object only emits and is excluded from its own maps
         std::vector<Maps> moments;      ///< parallel to moments_
     };
     const std::vector<Source>& sources() const { return sources_; }
     /// Returns the index of a light's source; sources().size() if it has no maps.
     std::size_t source_of(std::size_t light) const { return source_of_[light]; }
-    /// Returns, for each object, the transform from where it is at a time to where the maps of that time show it;
+    /// Returns, for each object, the transform from its position at `time` to its position in the maps of that time;
     /// nothing for objects that do not move. The result is empty if there is only one moment.
     std::vector<std::optional<Mat4d>> motions(float time) const;
-    /// Returns the index of the moment whose maps serve a time.
+    /// Returns the index of the moment whose maps are used at a time.
     std::size_t moment_at(float time) const;
 
     static constexpr int kMoments = 8;
     static constexpr std::size_t kMaxSources = 64;
-    static constexpr int kMaxCells = 8; ///< along each side of a light
+    static constexpr int kMaxCells = 8; ///< cells along each side of a light, at most
 
 private:
     std::vector<Source> find_sources(const Scene& scene, int cells);
@@ -67,8 +67,8 @@ private:
               Source& source, double moment, Maps& maps);
     CellMaps draw_cell(const RasterSceneData& data, const Source& source, const Emitter& cell, double moment,
                        int threads);
-    /// `excluded` casts no shadow, nor does what lies at a depth below `near`. `plane` is a planar emitter, or null;
-    /// `back` says whether it also emits on its back side.
+    /// Renders a cube map. The object `excluded` casts no shadow, nor does any surface at a depth below `near`. `plane`
+    /// is a planar emitter, or null; `back` says whether it also emits on its back side.
     CubeMap draw_cube(const RasterSceneData& data, std::uint32_t excluded, Vec3d center, const Emitter* plane,
                       bool back, double moment, int side, double near, int threads);
 

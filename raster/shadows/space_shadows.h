@@ -1,4 +1,4 @@
-// Shadows at points in space, such as those of fog: one look at the shadow maps, without a surface's normal.
+// Computes shadows at points in space, such as those of fog, by one shadow map lookup without a surface normal.
 #pragma once
 
 #include "raster/shadows/pcf.h"
@@ -6,10 +6,10 @@
 
 namespace duet::raster {
 
-/// Looks up the shadows in space for one view at one time.
+/// Samples the shadow maps at points in space, for one view at one time.
 class SpaceShadows {
 public:
-    /// `data`, which is not copied, must have its shadow maps.
+    /// Keeps a reference to `data`, which must have its shadow maps.
     SpaceShadows(const RasterSceneData& data, const Vec3d& eye, float time);
 
     /// Returns the visible fraction of a light, an index into Scene::lights, at points relative to the eye. Each cell

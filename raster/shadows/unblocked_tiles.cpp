@@ -8,7 +8,8 @@
 namespace duet::raster {
 namespace {
 
-/// A part of an object that casts shadows. A convex object casts none on itself that its normals do not tell.
+/// Represents a part of an object that casts shadows. A convex object shades itself only where its normals face away
+/// from the light.
 struct Caster {
     Box3d box;
     std::uint32_t object;
@@ -38,11 +39,11 @@ std::vector<Caster> casters_of(const RasterSceneData& data) {
     return casters;
 }
 
-/// What a source's light leaves from: a box, or a direction from which it comes.
+/// Represents the origin of a source's light: a box, or the direction of a sun.
 struct Origin {
     Box3d box;
-    Vec3d sun; ///< unit; (0, 0, 0) if the box counts
-    std::uint32_t excluded = kNoObject; ///< object without a shadow on this light
+    Vec3d sun; ///< unit direction to the sun; (0, 0, 0) for other lights
+    std::uint32_t excluded = kNoObject; ///< object that does not shade this light
 };
 
 Origin origin_of(const Scene& scene, const Shadows::Source& source) {
@@ -68,7 +69,7 @@ Origin origin_of(const Scene& scene, const Shadows::Source& source) {
     return origin;
 }
 
-/// The points of a tile, and the object that all of them are on, if it is the same.
+/// Represents the points of a tile, and the object that all of them lie on, if there is one.
 struct TilePoints {
     Box3d box;
     std::uint32_t object = kNoObject;
@@ -108,7 +109,8 @@ TilePoints points_of(const GBuffer& gbuffer, int x0, int y0) {
 
 } // namespace
 
-// By the separating axis theorem: the axes of the boxes, and the normals of the planes through corresponding edges.
+// Uses the separating axis theorem. The axes are those of the boxes, and the normals of the planes through
+// corresponding edges.
 bool misses_shaft(const Box3d& a, const Box3d& b, const Box3d& box) {
     for (std::size_t axis = 0; axis < 3; ++axis)
         if (box.high[axis] < std::min(a.low[axis], b.low[axis]) || box.low[axis] > std::max(a.high[axis], b.high[axis]))
@@ -121,7 +123,7 @@ bool misses_shaft(const Box3d& a, const Box3d& b, const Box3d& box) {
             };
             const bool high_i = (corner & 1u) != 0, high_j = (corner & 2u) != 0;
             const double ni = along(a, j, high_j) - along(b, j, high_j), nj = along(b, i, high_i) - along(a, i, high_i);
-            // This is the least or the greatest of n·p over a box.
+            // bound() returns the least or the greatest value of n·p over a box.
             const auto bound = [&](const Box3d& from, bool greatest) {
                 return ni * along(from, i, (ni > 0) == greatest) + nj * along(from, j, (nj > 0) == greatest);
             };

@@ -11,8 +11,8 @@
 namespace duet::raster {
 namespace {
 
-/// Returns the dither threshold of a texel, in [0, 1): its rank plus a hash within the rank's step of 1/16, so that the
-/// mean is exact for every opacity.
+/// Returns the dither threshold of a texel, in [0, 1). It is the texel's rank plus a hash within the rank's step of
+/// 1/16, so that the mean is exact for every opacity.
 float dither(int x, int y) {
     const std::uint64_t hash = hash_combine(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
     return unit_float(dither_rank(x, y) << 28 | high_bits(hash) >> 4);

@@ -13,16 +13,16 @@ namespace duet::raster {
 /// sample of the block is farther than 14 · 2^25.2 < 2^30 from a sample of the other sign.
 struct DepthTile::TileEdges {
     using Values = std::array<std::int64_t, 3>;
-    Values at; ///< at the tile's first sample
+    Values at; ///< edge values at the tile's first sample
     Values right, down; ///< increments from block to block
     /// These are thresholds for the value at a block's first sample. Below `none`, no sample of the block is inside.
-    /// From `all` on, all samples are well inside. Both have a margin for float rounding. Each of seven roundings
-    /// (six with fused multiply-add) has an error of at most half a unit in the last place of the largest value in the
-    /// tile, and the margin has room for sixteen. So a block may be tested in vain, but none is missed.
+    /// From `all` on, all samples are well inside. Both have a margin for float rounding. Each of seven roundings (six
+    /// with fused multiply-add) has an error of at most half a unit in the last place of the largest value in the tile,
+    /// and the margin has room for sixteen. So a block may be tested unnecessarily, but none is missed.
     std::array<float, 3> none, all;
-    std::array<std::int32_t, 3> margin; ///< edge_margins
-    std::array<PacketOf<std::int32_t>, 3> step; ///< from the first sample of a packet
-    std::array<std::int32_t, 3> next_packet;    ///< from a packet to the one below
+    std::array<std::int32_t, 3> margin; ///< result of edge_margins()
+    std::array<PacketOf<std::int32_t>, 3> step; ///< increments from the first sample of a packet to each sample
+    std::array<std::int32_t, 3> next_packet;    ///< increments from a packet to the packet below
 
     TileEdges(const DrawTriangle& triangle, const PixelRect& rect, SampleOffset offset) {
         const auto& p = triangle.corners;
@@ -61,8 +61,8 @@ struct DepthTile::TileEdges {
 
 /// Computes the coverage of a row of blocks of a tile with SIMD.
 struct DepthTile::BlockRow {
-    /// Each block has one bit: in `some` where the triangle may cover samples, in `all` where it certainly covers all
-    /// samples, well inside.
+    /// `some` has a bit for each block in which the triangle may cover samples. `all` has a bit for each block whose
+    /// samples it certainly covers, well inside.
     std::uint32_t some = 0, all = 0;
 
     BlockRow(const TileEdges& edges, int row) {
@@ -85,7 +85,7 @@ struct DepthTile::BlockRow {
 struct DepthTile::BlockCoverage {
     std::uint64_t some = ~std::uint64_t{0}, well_inside = some;
 
-    BlockCoverage() = default; ///< all samples
+    BlockCoverage() = default; ///< covers all samples
     bool all_well_inside() const { return well_inside == ~std::uint64_t{0}; }
     /// Computes the coverage from the edge values at the block's first sample, for the packets of rows y0 to y1.
     /// The other packets stay empty.
@@ -164,8 +164,8 @@ template <std::size_t kSide> struct DepthTile::DepthEvaluator {
     }
 };
 
-/// Depth-tests one batch of samples from `sample_index` on against a triangle. `lanes` selects the samples that it
-/// covers, well inside.
+/// Depth-tests one batch of samples from `sample_index` on against a triangle. `lanes` selects the samples that the
+/// triangle covers, well inside.
 template <typename Lanes>
 void DepthTile::depth_test_batch(std::size_t sample_index, std::int32_t number, const Floats& reversed_depth,
                                  const Lanes& lanes) {
@@ -278,7 +278,7 @@ std::uint32_t packets_of(const std::array<std::uint64_t, 4>& samples) {
 // The function has one loop over the packets of all blocks, so the CPU can mispredict only its trip count.
 void DepthTile::draw(const CoverageMask& mask) {
     const int x = mask.x - rect_.x0, y = mask.y - rect_.y0, left = x & 7, top = y & 7;
-    const int column = x >> 3, row = y >> 3; // of the first block, which may lie just outside the tile
+    const int column = x >> 3, row = y >> 3; // block of the first sample, perhaps just outside the tile
     const std::array<std::uint64_t, 4> samples = split_over_blocks(mask.samples, left, top);
     const std::uint32_t in_tile = ((column >= 0 ? 0x0f0fu : 0) | (column + 1 < kBlocks ? 0xf0f0u : 0)) &
                                   ((row >= 0 ? 0x00ffu : 0) | (row + 1 < kBlocks ? 0xff00u : 0));

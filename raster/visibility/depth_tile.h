@@ -13,12 +13,11 @@ namespace duet::raster {
 /// Holds the depth buffer of a tile, one sample per pixel: reversed depth and the id of the visible primitive.
 ///
 /// Reversed depth (`reversed_depth`) is near / depth, in (0, 1], as a float. Its relative error is 2^-24 at any depth,
-/// as that of Hit::t itself, and no precision is lost to a far plane. At equal depth the lower id wins, so the result
-/// does not depend on the drawing order.
+/// like that of Hit::t, and no precision is lost to a far plane. At equal depth the lower id wins, so the result does
+/// not depend on the drawing order.
 ///
 /// Samples are stored in blocks of 8 × 8 (tile_sample_index). Each block has a bound of its farthest sample; primitives
-/// entirely behind it are culled (Greene, Kass and Miller 1993, "Hierarchical Z-Buffer Visibility", with two
-/// levels).
+/// entirely behind it are culled (Greene, Kass and Miller 1993, "Hierarchical Z-Buffer Visibility", with two levels).
 class DepthTile {
 public:
     DepthTile() {} // members are uninitialized until reset()
@@ -64,7 +63,7 @@ public:
     bool drawn(std::size_t block) const { return drawn_[block]; }
 
     static constexpr int kBlock = 8;
-    static constexpr int kBlocks = TileGrid::kTileSize / kBlock; ///< per side
+    static constexpr int kBlocks = TileGrid::kTileSize / kBlock; ///< blocks per side
     static_assert(kBlocks <= static_cast<int>(kPacketSize) && kBlocks % Floats::size == 0);
     static constexpr int kPacketRows = kPacketSize / kPacketWidth;
 

@@ -40,7 +40,7 @@ void HitLists::draw_triangle(const DrawTriangle& triangle) {
     const auto& c = triangle.corners;
     const std::array<EdgeFunction, 3> edges{EdgeFunction(c[0], c[1]), EdgeFunction(c[1], c[2]),
                                             EdgeFunction(c[2], c[0])};
-    std::optional<ListedTriangle> whole; // few triangles cover a pixel that is not done
+    std::optional<ListedTriangle> whole; // found when needed: few triangles cover an unfinished pixel
     const PixelRect r = intersect(tile_.rect(), pixels_within(c, offset_));
     for (int y = r.y0; y < r.y1; ++y)
         for (int x = r.x0; x < r.x1; ++x) {
@@ -59,7 +59,7 @@ void HitLists::draw_sphere(const DrawSphere& sphere) {
         for (int x = r.x0; x < r.x1; ++x) {
             if (pixel(x, y).done) continue;
             Ray ray = tile_.ray(x, y);
-            for (int side = 0; side < 2; ++side) { // front, then inside of the back
+            for (int side = 0; side < 2; ++side) { // the front side, then the inside of the back
                 const std::optional<float> t = sphere.intersect(ray);
                 if (!t) break;
                 add(x, y, {.object = sphere.object, .primitive = 0, .t = *t});

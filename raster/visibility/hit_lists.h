@@ -12,7 +12,7 @@ namespace duet::raster {
 
 /// Holds lists of Hits in front of the visible surface of each pixel, sorted front to back, one sample per pixel
 /// (Carpenter 1984, "The A-buffer, an Antialiased Hidden Surface Method"). A list stores the kStored nearest hits. If
-/// more are needed, the tile is drawn again for those behind them, so memory does not grow with the number of
+/// more are needed, the tile is drawn again for the hits behind these, so memory does not grow with the number of
 /// surfaces.
 class HitLists {
 public:
@@ -21,7 +21,7 @@ public:
     HitLists(const Geometry& geometry, const PassView& view, SampleOffset offset, std::size_t tile_index,
              const HitTile& tile);
 
-    bool empty() const { return pixels_.empty(); } ///< no primitive overlaps the tile
+    bool empty() const { return pixels_.empty(); } ///< whether no primitive overlaps the tile
 
     /// Calls take(x, y, hit) for the hits of each pixel, front to back, until it returns true for the pixel.
     template <typename Take> void for_each(const Take& take) {
@@ -85,7 +85,7 @@ private:
     SampleOffset offset_;
     std::size_t tile_index_;
     const HitTile& tile_;
-    Image<Pixel> pixels_; ///< of the tile
+    Image<Pixel> pixels_; ///< pixels of the tile
 };
 
 } // namespace duet::raster

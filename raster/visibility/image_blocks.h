@@ -1,4 +1,4 @@
-// Copies the blocks of a tile to an image, past the caches.
+// Copies the blocks of a tile to an image with stores that bypass the caches.
 #pragma once
 
 #include "common/image/image.h"
@@ -11,9 +11,9 @@ namespace duet::raster {
 
 inline constexpr int kBlock = DepthTile::kBlock;
 
-/// Copies a row of a tile's blocks to the image, from pixel row y on. row_of(block, row) returns the address of
-/// eight pixels of a block. Whole cache lines are written with non-temporal stores, because a frame is larger than
-/// what caches retain until the next one.
+/// Copies a row of a tile's blocks to the image, from pixel row y on. row_of(block, row) returns the address of eight
+/// pixels of a block. Whole cache lines are written with non-temporal stores, because a frame does not fit into the
+/// caches.
 template <typename Pixel, typename RowOf>
 void copy_blocks(const PixelRect& rect, int y, const RowOf& row_of, Image<Pixel>& image) {
     static_assert(2 * kBlock * sizeof(Pixel) == 64);

@@ -5,7 +5,7 @@
 namespace duet::raster {
 namespace {
 
-/// Converts positions in sixteenths of a pixel, relative to the pixel center.
+/// Returns the offsets of positions given in sixteenths of a pixel, relative to the pixel center.
 std::vector<SampleOffset> pattern(std::initializer_list<std::array<int, 2>> sixteenths) {
     std::vector<SampleOffset> result;
     for (const auto& [x, y] : sixteenths) result.push_back({(x + 8) * (kSubpixels / 16), (y + 8) * (kSubpixels / 16)});
@@ -70,7 +70,7 @@ void LayeredTile::add(const DepthTile& tile) {
         bool same = !layers_.empty() && layers_[0]->used_[first / kPacketSize];
         for (std::size_t i = first; same && i < first + kPacketSize; i += Ints::size)
             same = xsimd::all(Ints::load_aligned(&layers_[0]->ids_[i]) == Ints::load_aligned(tile.ids() + i));
-        if (!same) { // the first sample, or more than one primitive
+        if (!same) { // this is the first sample, or there are several primitives
             for (std::uint32_t i = first; i < first + kPacketSize; ++i) add_one(i, tile.ids()[i], offset);
             continue;
         }

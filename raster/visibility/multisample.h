@@ -28,7 +28,7 @@ private:
     friend class LayeredTile;
     static constexpr std::size_t kTile = kTileSamples;
     alignas(64) std::array<std::int32_t, kTile> ids_;
-    alignas(64) std::array<std::int32_t, kTile> counts_, sum_x_, sum_y_; ///< sums of sample offsets
+    alignas(64) std::array<std::int32_t, kTile> counts_, sum_x_, sum_y_; ///< counts and summed offsets of samples
     std::array<bool, kTile / kPacketSize> used_;                         ///< packets with any nonzero count
 };
 
@@ -46,7 +46,7 @@ public:
     std::size_t layers() const { return layers_.size(); }
     const Layer& layer(std::size_t i) const { return *layers_[i]; }
     /// Holds the input of shading for a packet of two rows of eight pixels in one layer. `packet.ids` is null if the
-    /// layer has none of them. `offsets` stores the per-sample positions that `packet` may point to.
+    /// layer has none of these pixels. `offsets` stores the per-sample positions that `packet` may point to.
     struct LayerPacket {
         SamplePacket packet;
         std::array<SampleOffset, kPacketSize> offsets;

@@ -18,18 +18,19 @@ template <VertexShader S, typename D> struct InterpolatedPacket {
     const ObjectView* object_view = nullptr; ///< null if the packet does not see triangles of exactly one object
     std::array<PacketOf<float>, kCount> at;  ///< varyings
     std::array<PacketOf<float>, kDerivatives ? kCount : 0> dx, dy; ///< screen-space derivatives of the varyings
-    std::array<PacketOf<float>, 3> ng;                             ///< as VertexInput::ng
+    std::array<PacketOf<float>, 3> ng;                             ///< like VertexInput::ng
     PacketOf<float> b1, b2; ///< barycentrics of the second and third corner; with D = double as in a Hit
     PacketOf<D> depth;      ///< camera-space −z, meters
-    /// Derivatives of b1 and b2 along the row and the column, if requested.
+    /// These are the derivatives of b1 and b2 along the row and the column, if requested.
     std::array<PacketOf<float>, 2> b1_steps, b2_steps;
-    /// A sample's bit is set if it is certainly inside the unsnapped triangle, where the solution is accurate.
+    /// The bit of a sample is set if the sample is certainly inside the unsnapped triangle, where the solution is
+    /// accurate.
     std::uint32_t inside = 0;
 };
 
-/// Solves for the samples of a packet if all see triangles of one object. S's vertex function computes the
-/// varyings. D is the precision: double, or float with errors below 2^-13, mostly below 2^-20, in barycentrics and
-/// depth (kSteepest).
+/// Interpolates varyings and depth at the samples of a packet if all see triangles of one object. S's vertex function
+/// computes the varyings. D is the precision: double, or float with errors below 2^-13, mostly below 2^-20, in
+/// barycentrics and depth (kSteepest).
 template <VertexShader S, typename D> class PacketInterpolator {
 public:
     using ResultPacket = InterpolatedPacket<S, D>;
@@ -41,8 +42,8 @@ public:
         : triangles_(triangles), view_(view), reader_(triangles), setups_(triangles, view, tile, shader),
           origin_x_(tile.x0), origin_y_(tile.y0), with_derivatives_(steps) {}
 
-    /// Calls use(first, results) for a few packets at a time. `results` holds the solutions of packets[first] and
-    /// those that follow, and is valid until use() returns. `recompute_inexact` recomputes the samples with inaccurate
+    /// Calls use(first, results) for a few packets at a time. `results` holds the solutions of consecutive packets from
+    /// packets[first] on, and is valid until use() returns. `recompute_inexact` recomputes the samples with inaccurate
     /// solutions one by one.
     template <typename Use>
     void interpolate_packets(std::span<const SamplePacket> packets, bool recompute_inexact, const Use& use);
@@ -84,16 +85,16 @@ private:
     int origin_x_, origin_y_;
     bool with_derivatives_;
     SampleOffset grid_offset_{0, 0};
-    /// Samples at that offset, relative to their packet's first pixel.
+    /// These are the positions of samples at `grid_offset_`, relative to their packet's first pixel.
     PacketOf<D> grid_xs_ = kColumns<D>, grid_ys_ = kRows<D>;
-    /// kMost packets have their triangles set up together. kAtOnce packets are solved together: enough for their work
+    /// The triangles of kMost packets are set up together. kAtOnce packets are solved together: enough for their work
     /// to overlap, few enough to fit into the L1 cache.
     static constexpr std::size_t kMost = 64, kAtOnce = 8;
     std::array<PacketSetups, kMost> packets_of_setups_;
     std::array<ResultPacket, kAtOnce> results_;
 };
 
-/// This vertex shader is empty, for users that need only barycentrics and depths.
+/// Declares no varyings, for users that need only barycentrics and depths.
 struct NoVaryings {
     static constexpr bool kTextureCoordinates = false;
     template <typename T> struct Varyings {};
@@ -124,7 +125,7 @@ inline const std::array<D, TileGrid::kTileSize> kPixels = [] {
 /// Computes the positions of samples relative to the tile's corner: on a regular grid (GridPositions) or one by one
 /// (ScatteredPositions). They are exact, even as floats.
 template <typename D> struct GridPositions {
-    std::size_t column, row;   ///< of the first pixel
+    std::size_t column, row;   ///< column and row of the first pixel
     const PacketOf<D>&xs, &ys; ///< samples relative to the first pixel
     xsimd::batch<D> x(std::size_t i) const { return xsimd::batch<D>(kPixels<D>[column]) + load(xs, i); }
     xsimd::batch<D> y(std::size_t i) const { return xsimd::batch<D>(kPixels<D>[row]) + load(ys, i); }

@@ -11,7 +11,7 @@ void PacketReader::find_object(const PacketPrimitives& samples) {
     last_run_ = &triangles_.run_of(static_cast<std::uint32_t>(*low),
                                    last_run_ != nullptr ? *last_run_ : triangles_.runs.front());
     const Run& last = triangles_.run_of(static_cast<std::uint32_t>(*high), *last_run_);
-    // Ids are in the order of objects, so all ids between two of one object belong to it.
+    // Ids are in the order of objects. If the lowest and the highest id belong to one object, all ids between do, too.
     if (last_run_->sphere || last.sphere || last.object != last_run_->object) return;
     shape_ = &triangles_.packed(last);
     object_ = &triangles_.objects[last.object];

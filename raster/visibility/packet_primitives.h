@@ -34,12 +34,12 @@ struct PacketPrimitives {
     PacketOf<std::int32_t> ids; ///< samples without a primitive repeat the id of another one
     std::uint32_t visible = 0;  ///< one bit per sample with a visible primitive
     std::uint32_t on_mesh = 0; ///< one bit per sample on a mesh or quad; 0 unless all belong to the same object
-    const TransformedObject* object = nullptr; ///< that object, or null
-    const PackedShape* shape = nullptr;        ///< triangles of that object; null for a sphere
-    std::size_t first_id = 0;                  ///< id of its first triangle
+    const TransformedObject* object = nullptr; ///< object of all samples, or null
+    const PackedShape* shape = nullptr;        ///< triangles of `object`; null for a sphere
+    std::size_t first_id = 0;                  ///< id of the first triangle of `object`
 
     std::uint32_t id(std::size_t i) const { return static_cast<std::uint32_t>(ids[i]); }
-    /// Returns the index of sample i's triangle in the one object.
+    /// Returns the index of sample i's triangle among those of `object`.
     std::size_t index(std::size_t i) const { return static_cast<std::size_t>(ids[i]) - first_id; }
 };
 
@@ -58,10 +58,10 @@ private:
 
     const Triangles& triangles_;
     const Run* last_run_ = nullptr;
-    const TransformedObject* object_ = nullptr; ///< null: the last packet did not see triangles of exactly one object
+    const TransformedObject* object_ = nullptr; ///< null unless the last packet saw one object's triangles
     const PackedShape* shape_ = nullptr;
     std::size_t first_id_ = 0;
-    std::int32_t low_id_ = 0, end_id_ = 0; ///< range of the ids of its triangles
+    std::int32_t low_id_ = 0, end_id_ = 0; ///< range of the ids of the object's triangles
 };
 
 inline bool PacketReader::all_of_last_object(const PacketPrimitives& samples) const {

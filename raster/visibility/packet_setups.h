@@ -21,14 +21,14 @@ template <VertexShader S, typename D> struct PacketSetups : PacketPrimitives {
     };
     std::array<Pair, kPacketSize / 2> pairs;
     std::size_t pair_count = 0;
-    bool one = false; ///< all samples see the same triangle
+    bool one = false; ///< whether all samples see the same triangle
 
     /// Groups the setups into pairs. It must be called after SetupCache::finish().
     void find_pairs(const SetupCache<S, D>& setups);
-    /// Calls use(lookup), where lookup.get() looks up a value of each sample's setup (see below).
+    /// Calls use(lookup), where lookup.get() reads a value of each sample's setup (see FromOneTriangle).
     template <typename Use> void with_lookup(const Use& use) const {
         const Pair& pair = pairs[0];
-        if (Floats::size < kPacketSize && one) // where a lookup takes more than one step
+        if (Floats::size < kPacketSize && one) // a lookup takes several steps here
             use(FromOneTriangle{*pair.first, static_cast<std::size_t>(lanes[0])});
         else if (pair_count == 1 && pair.first == pair.second)
             use(FromOnePacket{*pair.first, lanes});
@@ -39,9 +39,9 @@ template <VertexShader S, typename D> struct PacketSetups : PacketPrimitives {
     }
 
 private:
-    /// get(i, of) returns for one batch of samples from the i-th on a value of each sample's setup. of() selects
-    /// the array in a group of packet setups. FromOneTriangle: all samples see one triangle. FromOnePacket, FromPair:
-    /// all setups are in one or two groups of packet. FromPairs: the general case.
+    /// These classes have a function get(i, of), which returns a value of each sample's setup for one batch of samples
+    /// from the i-th on. of() selects the array in a group of setups. With FromOneTriangle, all samples see one
+    /// triangle. With FromOnePacket and FromPair, all setups are in one or two groups. FromPairs is the general case.
     struct FromOneTriangle {
         const Setups& packet;
         std::size_t lane;

@@ -1,6 +1,6 @@
-// Implements the triangle setup cache. A setup holds what all samples of a tile that see a triangle share. Setups are
-// computed for sixteen triangles at a time with SIMD and cached, because adjacent packets see mostly the same
-// triangles.
+// Implements the triangle setup cache. A setup holds the values that all samples of a tile that see a triangle share.
+// Setups are computed for sixteen triangles at a time with SIMD and cached, because adjacent packets see mostly the
+// same triangles.
 #pragma once
 
 #include "raster/geometry/geometry.h"
@@ -30,11 +30,11 @@ template <VertexShader S, typename D> struct SetupPacket {
     /// sample's depth. Beyond this bound, the planes are too inaccurate.
     static constexpr D kSteepest = std::is_same_v<D, float> ? D(1 << 8) : D(1 << 21);
 
-    PacketOf<D> x, y; ///< the origin, a pixel relative to the tile's corner
+    PacketOf<D> x, y; ///< origin: a pixel relative to the tile's corner
     Plane e1, e2, sum, depth_sum;
-    PacketOf<D> steepest, greatest; ///< maxima over e1, e2 and sum: of |coefficient| of x and y, and of 1
+    PacketOf<D> steepest, greatest; ///< greatest |coefficient| of x or y, and of 1, in e1, e2 and sum
     VaryingPackets n, n1, n2;       ///< varyings at the first corner, and their derivatives along the two barycentrics
-    std::array<PacketOf<float>, 3> ng; ///< as VertexInput::ng
+    std::array<PacketOf<float>, 3> ng; ///< like VertexInput::ng
 };
 
 /// Caches the setups of mesh and quad triangles, for one view of a tile. S's vertex function computes the varyings.
@@ -104,7 +104,7 @@ private:
     };
     std::array<Recent, 4> recent_;
     std::unique_ptr<Setups[]> packets_ = std::make_unique_for_overwrite<Setups[]>(kMost);
-    std::array<PacketOf<std::int32_t>, kMost> slot_ids_; ///< ids by slot
+    std::array<PacketOf<std::int32_t>, kMost> slot_ids_; ///< ids of triangles, indexed by slot
     std::size_t count_ = 0, finished_ = 0;            ///< slots in use, and slots with finished setups
 };
 
@@ -179,7 +179,7 @@ template <VertexShader S, typename D> void SetupCache<S, D>::begin_packet() {
     count_ = next;
 }
 
-/// The function has no branch, because whether a triangle is cached is unpredictable.
+/// This function has no branch, because whether a triangle is cached is unpredictable.
 template <VertexShader S, typename D> std::int32_t SetupCache<S, D>::lookup_or_insert_one(std::int32_t id) {
     std::uint64_t& slot = slot_table_[static_cast<std::size_t>(id) % kTableSize];
     const auto number = static_cast<std::uint32_t>(id);
@@ -220,8 +220,8 @@ void SetupCache<S, D>::set_up_varyings(std::size_t i, const Corners& corners, Fl
     const Vec3T<Floats> across = cross(p[1] - p[0], p[2] - p[0]);
     const Floats largest = max(max(abs(across.x), abs(across.y)), abs(across.z));
     const Vec3T<Floats> ng = across * (side / max(largest, Floats(std::numeric_limits<float>::min())));
-    // A quad's diagonal is not an edge. It is opposite to the second corner of the first half and to the third of
-    // the second.
+    // A quad's diagonal is not an edge. It lies opposite to the second corner of the first half and to the third corner
+    // of the second half.
     const auto second = lanes_from<float>(second_halves >> i);
     const bool quads = shape_->quads();
     const Vec3T<Floats> middle =
@@ -254,7 +254,7 @@ void SetupCache<S, D>::gather_vertices(const PacketOf<std::int32_t>& ids, Corner
     for (std::size_t i = 0; i < kPacketSize; ++i) triangles[i] = triangle(ids[i]);
     for (std::size_t k = 0; k < 3; ++k)
         for (std::size_t i = 0; i < kPacketSize; i += Quads::size)
-            for (std::size_t first = 0; first < 8; first += 4) { // offset in the vertex of four floats
+            for (std::size_t first = 0; first < 8; first += 4) { // offset in the vertex, in floats
                 const auto [x, y, z, w] = load_columns<Quads::size>(
                     [&](std::size_t lane) { return &all[triangles[i + lane][k]].p.x + first; });
                 x.store_aligned(corners[k][first].at(i));
@@ -325,7 +325,7 @@ void SetupCache<S, D>::prefetch_vertices(const PacketOf<std::int32_t>& ids) cons
         for (const std::uint32_t corner : triangle(id)) prefetch(&all[corner]);
 }
 
-/// Prefetches all vertices first, so that the cache misses overlap.
+/// Computes the new setups. It prefetches all vertices first, so that the cache misses overlap.
 template <VertexShader S, typename D> void SetupCache<S, D>::finish() {
     if (finished_ == count_) return;
     pad_last_packet();

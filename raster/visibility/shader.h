@@ -57,10 +57,10 @@ struct ObjectView {
     const RasterSceneData& data;
     const PassView& pass;
     std::uint32_t object;      ///< index into Scene::objects
-    bool identity;             ///< object space equals world space
-    bool smooth;               ///< has vertex normals, or is a sphere
-    bool has_normal_map;       ///< has a material with a normal or bump map
-    bool is_emissive;          ///< has an emissive material
+    bool identity;             ///< whether object space equals world space
+    bool smooth;               ///< whether it has vertex normals, or is a sphere
+    bool has_normal_map;       ///< whether it has a material with a normal or bump map
+    bool is_emissive;          ///< whether it has an emissive material
     Mat4 to_world, to_object;  ///< at the pass's time
     std::optional<Rgb> color;  ///< base color, if it is constant
     /// Returns true if the material is constant over the surface and does not emit light.
@@ -102,8 +102,8 @@ struct ObjectView {
     }
 };
 
-/// Holds the input of a vertex function, which is a corner of a visible triangle or a point on a sphere. All is in
-/// object space except world_….
+/// Holds the input of a vertex function, which is a corner of a visible triangle or a point on a sphere. All vectors
+/// are in object space, except those returned by functions named world_….
 template <typename T> struct VertexInput {
     Vec3T<T> p;
     Vec3T<T> n; ///< vertex normal of the mesh, or (0, 0, 0)
@@ -132,7 +132,7 @@ template <typename Evaluate> std::array<Floats, 3> evaluate_per_lane(std::size_t
     return {load(found[0], 0), load(found[1], 0), load(found[2], 0)};
 }
 
-/// Evaluates per sample what is not vectorized: base colors and normals that depend on textures, and emission.
+/// Evaluates per sample what SIMD code does not cover: base colors and normals that depend on textures, and emission.
 class ColorSource {
 public:
     virtual ~ColorSource() = default;
@@ -147,9 +147,9 @@ public:
     virtual Rgb emitted(std::size_t sample) const = 0; ///< emitted radiance towards the viewer
 };
 
-/// Holds what FragmentInput has only if a shader requests derivatives; else it is empty.
+/// Is empty unless a shader requests derivatives.
 template <typename V, bool kDerivatives> struct ScreenDerivatives {};
-/// Holds the derivatives, where they are requested.
+/// Holds the derivatives that a shader requests.
 template <typename V> struct ScreenDerivatives<V, true> {
     /// These are exact screen-space derivatives of the varyings along the row and down the column, per pixel.
     V dx, dy;
@@ -164,7 +164,7 @@ template <typename T, typename V, bool kDerivatives> struct FragmentInput : Scre
     T depth;                    ///< camera-space −z, meters
     T reversed_depth;           ///< near / depth, in (0, 1]
     const ObjectView& object;
-    const ColorSource& colors; ///< for base_color(), normal() and with_emitted() alone
+    const ColorSource& colors; ///< used only by base_color(), normal() and with_emitted()
     std::size_t first; ///< index in the packet of lane 0's sample
 
     Vec3T<T> p() const { return origin + direction * depth; } ///< in world space
@@ -260,7 +260,7 @@ template <typename S, typename T> std::array<T, kVaryings<S>> varying_floats(con
     else
         return std::bit_cast<std::array<T, kVaryings<S>>>(varyings);
 }
-/// Returns the varyings of such an array.
+/// Returns the varyings that an array from varying_floats() stores.
 template <typename S, typename T> VaryingsOf<S, T> varyings(const std::array<T, kVaryings<S>>& floats) {
     if constexpr (kVaryings<S> == 0)
         return {};
@@ -268,7 +268,7 @@ template <typename S, typename T> VaryingsOf<S, T> varyings(const std::array<T, 
         return std::bit_cast<VaryingsOf<S, T>>(floats);
 }
 
-/// Holds what a shader of the G-buffer returns for a sample.
+/// Holds the result of the G-buffer's shader for a sample.
 template <typename T> struct SurfaceAttributes {
     Vec3T<T> normal; ///< unit shading normal
     T bulge;         ///< GBuffer::bulge
