@@ -1,4 +1,4 @@
-// AovBuffers accumulates auxiliary images (AOVs) of what the camera rays hit.
+// Declares AovBuffers, which accumulates auxiliary images (AOVs) of the first hits of camera rays.
 #pragma once
 
 #include "raytrace/film/film.h"
@@ -6,17 +6,17 @@
 
 namespace duet::raytrace {
 
-/// Accumulates depth, normal, albedo and hit, as many of them as are requested. Threads may add to different pixels
-/// at the same time.
+/// Accumulates the auxiliary images depth, normal, albedo and hit that are requested. Threads may add to different
+/// pixels at the same time.
 class AovBuffers {
 public:
     AovBuffers(const RenderPlan& plan, const View& view, const AovSet& requested);
 
-    /// Returns whether any of these images is requested, so that add() has to be called.
+    /// Returns whether any image that this class accumulates is requested, so that add() has to be called.
     bool any() const { return requested_.depth || requested_.normal || requested_.albedo || requested_.hit; }
     /// Adds the first hit of a camera ray, which is sample `index` of its pixel. The hit may be invalid.
     void add(int x, int y, std::uint32_t index, const Ray& ray, const Hit& hit);
-    /// Moves the requested images to `rendering`, also those that the film provides.
+    /// Moves the requested images to `rendering`, including those that the film provides.
     void finish(const Film& film, Rendering& rendering);
     std::int64_t memory_bytes() const;
 

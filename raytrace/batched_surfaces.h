@@ -1,5 +1,5 @@
-// BatchedSurfaces decides which surfaces are batched: paths at those of one kind can be scattered together with SIMD.
-// Many scenes consist mostly of such surfaces.
+// Declares BatchedSurfaces, which decides which surfaces are batched: paths at batched surfaces of one kind are
+// scattered together with SIMD. Many scenes consist mostly of such surfaces.
 #pragma once
 
 #include "common/geometry/hit.h"
@@ -11,8 +11,8 @@
 
 namespace duet::raytrace {
 
-/// Batched surfaces have no texture and no emission, do not move, are not transformed, and have a shape and a
-/// material for which there is a batched implementation.
+/// Classifies surfaces. Batched surfaces have no texture and no emission, do not move, are not transformed, and have a
+/// shape and a material with a batched implementation.
 class BatchedSurfaces {
 public:
     enum class Geometry : std::uint8_t {
@@ -21,7 +21,7 @@ public:
         kSphere
     };
     enum class BsdfKind : std::uint8_t {
-        kDiffuse, ///< diffuse
+        kDiffuse, ///< Lambertian reflection
         kMetal,   ///< rough metal
         kMirror,  ///< smooth metal
         kGlass    ///< smooth dielectric that is not thin
@@ -40,7 +40,7 @@ public:
         }
     };
 
-    /// Classifies none of the surfaces of this many objects as batched.
+    /// Treats none of the surfaces of this many objects as batched.
     explicit BatchedSurfaces(std::size_t objects) : classes_(objects + 1, kOther) { classes_.back() = kMiss; }
     /// Classifies the surfaces of a scene. `bsdfs` holds the BSDF of each material where it is constant. The scene
     /// and `bsdfs` must outlive this object.
@@ -50,7 +50,7 @@ public:
     /// miss.
     static constexpr std::size_t kOther = Kind::kCount, kMiss = kOther + 1, kClasses = kMiss + 1;
     std::size_t class_of(const Hit& hit) const {
-        // This is mostly without a branch, because the hits of incoherent rays are unpredictable.
+        // This code has few branches, because the hits of incoherent rays are unpredictable.
         const std::size_t known = classes_[std::min<std::size_t>(hit.object, classes_.size() - 1)];
         return known == kByMaterial ? class_by_material(hit) : known;
     }
@@ -59,7 +59,7 @@ public:
         const std::size_t i = class_of(hit);
         return i < Kind::kCount ? std::optional(Kind::of_index(i)) : std::nullopt;
     }
-    /// These functions return the shape and the BSDF at a hit on a batched surface.
+    /// shape() and bsdf() return the shape and the BSDF at a hit on a batched surface.
     const Shape& shape(const Hit& hit) const { return *objects_[hit.object].shape; }
     const Bsdf& bsdf(const Hit& hit) const { return *material_at(hit, objects_[hit.object]).bsdf; }
 
@@ -71,7 +71,7 @@ private:
     struct BatchedObject {
         std::optional<Geometry> geometry;
         const Shape* shape = nullptr;
-        bool multi_material = false; ///< whether its primitives have different materials
+        bool multi_material = false; ///< whether the primitives have different materials
         BatchedMaterial material;    ///< the only material, unless multi_material
     };
 
@@ -87,7 +87,7 @@ private:
     static constexpr std::uint8_t kByMaterial = 255;
 
     const Scene* scene_ = nullptr;
-    std::vector<std::uint8_t> classes_;  ///< by object; the last element is for a miss
+    std::vector<std::uint8_t> classes_;  ///< by object; the last element represents a miss
     std::vector<BatchedObject> objects_; ///< by object; empty if no surface is batched
     std::vector<BatchedMaterial> materials_;
 };

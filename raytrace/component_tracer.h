@@ -1,5 +1,5 @@
-// ComponentTracer traces one camera sample at a time and splits its light into components, for callers that need to
-// know where light comes from.
+// Declares ComponentTracer, which traces one camera sample at a time and splits its light into components, for callers
+// that need to know where light comes from.
 #pragma once
 
 #include "raytrace/integrator/light_components.h"
@@ -21,12 +21,12 @@ struct PixelSample {
     Ray ray;
     Hit hit;
     std::optional<FirstSurface> surface;   ///< empty on a miss
-    std::optional<RayFootprint> footprint; ///< of the ray there; empty on a miss, or if no texture is filtered
+    std::optional<RayFootprint> footprint; ///< footprint at the hit; empty on a miss, or if no texture is filtered
     LightComponents light;
 };
 
-/// Traces what render() with the same settings traces: sample `index` of pixel (x, y) has the same ray, the same
-/// path and, except for rounding, the same radiance, light.sum(). If the settings need an error estimate
+/// Traces the same samples as render() with the same settings: sample `index` of pixel (x, y) has the same ray, the
+/// same path and, except for rounding, the same radiance, light.sum(). If the settings need an error estimate
 /// (PathTracerSettings::estimates_error), even and odd indices are two independent halves (see Sampler). The integrator
 /// must be path or direct.
 class ComponentTracer {

@@ -1,4 +1,5 @@
-// debug_pixel() implements `raytrace --pixel`, which prints what happens along the path of one sample of one pixel.
+// Declares debug_pixel(), which implements `raytrace --pixel`. It prints what happens along the path of one sample of
+// one pixel.
 #pragma once
 
 #include "raytrace/render.h"
@@ -7,7 +8,7 @@
 
 namespace duet::raytrace {
 
-/// Names one sample of one pixel, as named on the command line.
+/// Identifies one sample of one pixel, as given on the command line.
 struct SampleId {
     int x = 0, y = 0;
     std::uint32_t index = 0;

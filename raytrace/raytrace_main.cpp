@@ -85,9 +85,9 @@ void set_samples(const std::string& text, raytrace::PathTracerSettings& settings
     settings.samples_per_pixel = static_cast<int>(last - first);
 }
 
-// Throws Error unless the undenoised image can be written beside the denoised one.
+// Throws Error if the undenoised image cannot be written beside the denoised one.
 void check_undenoised(const OutputOptions& output, const std::string& film) {
-    if (output.path.empty() || lower_case_extension(output.path) == ".mp4") return; // of a video, frames are kept
+    if (output.path.empty() || lower_case_extension(output.path) == ".mp4") return; // a video has no such image
     const std::filesystem::path path = undenoised_path(output.path);
     check_writable_image(path);
     if (path == film)

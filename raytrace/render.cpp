@@ -13,8 +13,8 @@ namespace duet::raytrace {
 
 namespace {
 
-// Returns the fraction of the work that is done after `samples` samples per pixel and `seconds`, as far as the
-// limits on samples and time determine it.
+// Returns the fraction of the work that is done after `samples` samples per pixel and `seconds`, as far as the limits
+// on samples and time determine it.
 double fraction_done(const PathTracerSettings& settings, double samples, double seconds) {
     const double by_count = samples / static_cast<double>(settings.samples_per_pixel);
     const double by_time = settings.time_limit > 0 ? seconds / settings.time_limit : 0;
@@ -64,7 +64,8 @@ Rendering render(const PathTracerScene& prepared, const View& view, const PathTr
     const auto pixels = static_cast<double>(film.pixels().size());
     const std::int64_t samples_at_start = film.total_samples_taken();
     const auto mean_samples = [&] { return static_cast<double>(film.total_samples_taken()) / pixels; };
-    // An interrupted pass does not count, but with adaptive sampling the least number of samples says nothing.
+    // Only whole passes count. With adaptive sampling the mean number of samples is used, because the minimum is
+    // meaningless.
     double finished = settings.adaptive ? mean_samples() : film.min_samples_taken(), progress = 0;
     for (;;) {
         const SpentBudget spent{watch.seconds(), film.total_samples_taken() - samples_at_start};

@@ -1,4 +1,4 @@
-// This is the interface of the path tracer: call prepare() once per scene, and render() once per view.
+// Declares the interface of the path tracer: prepare() is called once per scene, and render() once per view.
 #pragma once
 
 #include "common/camera/camera.h"
@@ -31,8 +31,8 @@ PathTracerScene prepare(const Scene& scene, const PathTracerSettings& settings);
 Rendering render(const PathTracerScene& prepared, const View& view, const PathTracerSettings& settings,
                  Control& control);
 
-/// Returns the first hit of one ray, for oracles and tests of hits. It is bit-equal to the hits of render's camera
-/// rays.
+/// Returns the first hit of one ray, for reference comparisons and tests. It is bit-equal to the hits of render()'s
+/// camera rays.
 Hit trace(const PathTracerScene& prepared, const Ray& ray);
 
 } // namespace duet::raytrace

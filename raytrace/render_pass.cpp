@@ -15,8 +15,8 @@ namespace {
 
 Sampler::CameraNeeds camera_needs(const RenderPlan& plan) { return {plan.lens, plan.motion}; }
 
-// This function writes each number directly to its destination. If a whole point were copied right after its
-// components were written, that load would wait for their stores.
+// Writes each component directly to its destination. If a whole point were copied right after its components were
+// written, the load would stall on store forwarding.
 void set_camera_point(CameraModel::Sample& point, const RenderPlan& plan, int x, int y, const CameraRaySample& u) {
     const Vec2d offset = plan.filter.sample(u.pixel);
     point.pixel.x = x + 0.5 + offset.x;
@@ -59,10 +59,10 @@ private:
     int columns_;
 };
 
-// Camera rays are traced in batches, because those of neighboring pixels, and of one pixel's samples, are coherent.
+// Traces camera rays in batches, because the rays of neighboring pixels, and of one pixel's samples, are coherent.
 class CameraBatch {
 public:
-    /// `max_samples` is the number of samples to come.
+    /// `max_samples` is the number of samples that will be added.
     CameraBatch(const PassContext& context, const CameraModel& camera, std::size_t max_samples)
         : context_(context), camera_(camera), size_(std::min(max_samples, kMaxSamples)),
           samplers_(size_, context.settings.make_sampler()), points_(size_), rays_(size_), hits_(size_),
@@ -81,7 +81,7 @@ public:
         }
     }
 
-    // Renders the samples that have been added but not been rendered yet.
+    // Renders the samples that have been added but not yet rendered.
     void finish() {
         const std::size_t size = samples_.size();
         if (size == 0) return;
@@ -107,7 +107,7 @@ public:
     const std::optional<InvalidSample>& first_invalid() const { return first_invalid_; }
 
 private:
-    // The batch is so large that few paths are alone at a rare class of surface, and so small that it stays in the
+    // The batch is so large that few paths are alone at a rare class of surface, and so small that it fits into the
     // cache.
     static constexpr std::size_t kMaxSamples = 2048;
     struct Sample {
@@ -115,7 +115,7 @@ private:
         std::uint32_t index;
     };
 
-    // Makes the camera rays of the batch, equal to those of camera_ray.
+    // Computes the camera rays of the batch, bit-equal to those of camera_ray.
     void start_rays(std::span<Ray> rays) {
         constexpr std::size_t kChunk = 256;
         std::array<CameraRaySample, kChunk> random_samples;
@@ -135,8 +135,8 @@ private:
     const CameraModel& camera_;
     RayCounts counts_;
     std::optional<InvalidSample> first_invalid_;
-    const std::size_t size_; // samples in a batch
-    std::vector<Sample> samples_; // samples_.size() elements of the arrays below are in use
+    const std::size_t size_; // number of samples in a batch
+    std::vector<Sample> samples_; // as many elements of the following arrays are in use
     std::vector<Sampler> samplers_;
     std::vector<CameraModel::Sample> points_;
     std::vector<Ray> rays_;

@@ -1,4 +1,4 @@
-// A render consists of passes over the whole image. Each pass takes some samples of its pixels.
+// Declares a pass over the whole image. A render consists of passes, and each adds some samples to its pixels.
 #pragma once
 
 #include "common/system/control.h"
@@ -12,7 +12,7 @@ namespace duet::raytrace {
 /// Returns the camera ray of pixel (x, y) for the sampler's current sample.
 Ray camera_ray(const RenderPlan& plan, const CameraModel& camera, int x, int y, const Sampler& sampler);
 
-/// Holds everything that a pass reads and everything that it adds to.
+/// Holds everything that a pass reads, and everything that it modifies.
 struct PassContext {
     const RenderPlan& plan;
     const View& view;

@@ -38,7 +38,8 @@ int depth(const PathTracerSettings& settings) {
     return 0;
 }
 
-// The other integrators follow no light from where it enters a solid to where it leaves it.
+// Returns whether paths enter solids. Other integrators cannot follow light from its point of entry to its point of
+// exit.
 bool enters_solids(Integrator integrator) {
     return integrator == Integrator::kPath || integrator == Integrator::kNaive;
 }
@@ -75,8 +76,8 @@ RenderPlan::RenderPlan(const PathTracerSceneData& prepared_, const View& view, c
     const bool lights_useful = (prepared.scatters_diffusely && !chooser.empty()) || !skips.light_samples;
     if (samples_lights(settings.integrator) && max_depth > 0 && lights_useful) lights = &chooser;
     if (lights != nullptr && !environment_only && scene.needs.media) delta_lights = scene.first_surface_light;
-    // Paths are scattered in batches only if they need nothing that batches do not support: a medium stack, footprints,
-    // or the shadow rays and light samples that tests request.
+    // Paths are scattered in batches only if they need no medium stack, no footprints, and none of the shadow rays and
+    // light samples that tests request, because batches do not support these.
     if (!needs_medium_stack && !pixel_footprint && !black_shadow_rays && !specular_light_samples)
         batched = BatchedSurfaces(scene, *bsdfs);
 }
@@ -127,7 +128,8 @@ std::vector<SkippedWork> skipped(const RenderPlan& plan, const PathTracerSetting
     return list;
 }
 
-/// A limit of at least this many scatterings, the default of PathTracerSettings::max_depth, counts as no limit.
+/// A depth limit of at least this many scatterings, the default of PathTracerSettings::max_depth, is reported as no
+/// limit.
 constexpr int kUnlimitedDepth = 64;
 
 std::vector<std::string> approximations(const RenderPlan& plan, const PathTracerSettings& settings) {

@@ -1,5 +1,5 @@
-// RenderPlan is what a render decides once before its loop: which steps of path tracing this scene, view and
-// settings need.
+// Declares RenderPlan, the decisions that a render takes once before its loop: which steps of path tracing this scene,
+// view and settings need.
 #pragma once
 
 #include "common/camera/pixel_footprint.h"
@@ -22,33 +22,33 @@ struct RenderPlan {
     const LightSampler* lights = nullptr;                    ///< null if no light is sampled
     const Environment* environment = nullptr;                ///< null if rays that escape find no light
     const std::vector<std::optional<Bsdf>>* bsdfs = nullptr; ///< by material; empty where a texture varies it
-    std::vector<SurfaceDetail> details;                      ///< by material: what its surface points need
+    std::vector<SurfaceDetail> details;                      ///< by material: details that its surface points need
     bool emission = false;                                   ///< whether surfaces that are hit may emit
     bool hits_find_light = false; ///< whether rays may find an emitter, the environment, or a medium that emits
     bool specular_light_samples =
         false; ///< whether lights are sampled at mirrors and glass, too, which cannot reflect them
-    bool subsurface = false; ///< whether paths enter solids with subsurface scattering; else these are diffuse surfaces
-    /// Whether light meets something between surfaces: media, the inside of solids, or a dielectric that absorbs or has
-    /// a priority. Then paths have a medium stack.
+    bool subsurface = false; ///< whether paths enter solids with subsurface scattering; else solids are diffuse
+    /// This is true if media, solids, or dielectrics that absorb or have a priority lie between surfaces. Then paths
+    /// have a medium stack.
     bool needs_medium_stack = false;
     bool random_distances = false; ///< whether paths are scattered between surfaces, at random distances
-    std::size_t delta_lights = 0; ///< this many, the first of Scene::lights, are sampled along rays in media
-    bool black_shadow_rays = false; ///< whether shadow rays are traced even if the surface reflects none of the light
+    std::size_t delta_lights = 0; ///< number of lights sampled along rays in media, first in Scene::lights
+    bool black_shadow_rays = false; ///< trace shadow rays even if the surface reflects none of the light
     BatchedSurfaces batched;        ///< surfaces at which paths are scattered in batches (wavefront/batch.h)
     int max_depth = 0;
     bool russian_roulette = false; ///< whether roulette may end paths after more than one scattering
     std::optional<PixelFootprint>
-        pixel_footprint; ///< of a ray that covers a whole pixel; empty if no texture is filtered
+        pixel_footprint; ///< footprint of a ray that covers a whole pixel; empty if no texture is filtered
     bool lens = false;   ///< whether rays start at points sampled on the lens
     bool motion = false; ///< whether rays have sampled times
 
 private:
-    std::vector<std::optional<Bsdf>> no_bsdfs_; ///< what bsdfs points to if each BSDF is to be made at the hit
+    std::vector<std::optional<Bsdf>> no_bsdfs_; ///< `bsdfs` points to it if every BSDF is computed at the hit
 };
 
-/// Returns what the plan leaves out, and why.
+/// Returns the steps that the plan leaves out, with the reasons.
 std::vector<SkippedWork> skipped(const RenderPlan& plan, const PathTracerSettings& settings);
-/// Returns what the integrator leaves out although the scene has it.
+/// Returns one sentence for each feature of the scene that the integrator leaves out.
 std::vector<std::string> approximations(const RenderPlan& plan, const PathTracerSettings& settings);
 
 } // namespace duet::raytrace

@@ -28,7 +28,7 @@ void check(const View& view, const PathTracerSettings& settings) {
         throw Error(message("depth ", settings.max_depth, ": expected 0 to ", PathTracerSettings::kMostDepth));
 }
 
-// Returns the view, checked before anything is made of it.
+// Returns the view after checking it, for use in an initializer list.
 const View& checked(const Scene& scene, const View& view, const PathTracerSettings& settings) {
     check(view, settings);
     if (traces_light_paths(settings.integrator)) check_bidirectional(scene, settings);

@@ -1,4 +1,4 @@
-// RenderState is what a render keeps from pass to pass.
+// Declares RenderState, the state that a render keeps from pass to pass.
 #pragma once
 
 #include "raytrace/render_pass.h"
@@ -7,7 +7,7 @@ namespace duet::raytrace {
 
 /// Holds the film, the auxiliary images and the counts of a render. It refers to its arguments, which must outlive it.
 struct RenderState {
-    /// Throws Error as render() does.
+    /// Throws Error for the same arguments as render().
     RenderState(const PathTracerSceneData& prepared, const View& view_, const PathTracerSettings& settings_);
 
     const View& view;

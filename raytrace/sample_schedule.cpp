@@ -14,8 +14,8 @@ void add_to_all_targets(Film& film, std::uint32_t samples) {
         for (int x = 0; x < film.width(); ++x) film.pixels()(x, y).target = film.samples_taken(x, y) + samples;
 }
 
-// Holds the variance of one sample, as it is and divided by (mean² + 0.01), as the mean of the channels. Both are
-// negative if it is not known.
+// Holds the mean over the channels of the variance of one sample, and of that variance divided by (mean² + 0.01). Both
+// are negative if they are not known.
 struct SampleVariance {
     double absolute = -1, relative = -1;
 };
@@ -31,7 +31,7 @@ SampleVariance sample_variance(const Film& film, int x, int y) {
     return {sum.absolute / 3 * samples, sum.relative / 3 * samples};
 }
 
-// Returns the mean of each pixel's neighbors, of those that are known (not negative), or 0 if none is.
+// Returns for each pixel the mean of its neighbors' known (nonnegative) values, or 0 if none is known.
 Image<double> mean_of_neighbors(const Image<double>& own) {
     Image<double> result(own.width(), own.height());
     for (int y = 0; y < own.height(); ++y)
@@ -58,7 +58,7 @@ void normalize(Image<double>& values) {
         for (std::size_t i = 0; i < values.size(); ++i) values[i] /= mean;
 }
 
-// Returns s of each pixel; see allocate_samples.
+// Returns s for each pixel; see allocate_samples.
 Image<double> smoothed_variance(const Film& film) {
     Image<double> absolute(film.width(), film.height()), relative(film.width(), film.height());
     for (int y = 0; y < film.height(); ++y)
@@ -74,13 +74,13 @@ Image<double> smoothed_variance(const Film& film) {
     return s;
 }
 
-// Holds a pixel's √s, and the number of samples that it has.
+// Holds √s of a pixel, and the number of samples that it has.
 struct PixelShare {
     double deviation, taken;
     double additional(double scale) const { return std::clamp(scale * deviation - taken, 0.0, taken); }
 };
 
-constexpr double kMinVariance = 0.01; // least s; the mean of s is 1
+constexpr double kMinVariance = 0.01; // lower bound of s, whose mean is 1
 
 double total_additional(const std::vector<PixelShare>& shares, double scale) {
     double sum = 0;
@@ -117,8 +117,8 @@ void allocate_samples(Film& film, std::int64_t samples) {
         const double middle = (low + high) / 2;
         (total_additional(shares, middle) < wanted ? low : high) = middle;
     }
-    // The numbers of new samples are even, so that both replicates grow equally. What rounding takes from one pixel
-    // goes to the next.
+    // The numbers of new samples are even, so that both replicates grow equally. The rounding error of a pixel is
+    // carried over to the next.
     double carried = 0;
     for (std::size_t i = 0; i < shares.size(); ++i) {
         carried += shares[i].additional(high) / 2;
@@ -155,7 +155,7 @@ bool plan_pass(const PathTracerSettings& settings, const SpentBudget& spent, Fil
         allocate_samples(film, static_cast<std::int64_t>(count * pixels));
         if (!film.complete()) return true;
     }
-    // Adaptive sampling may have added no sample, if the image has few pixels and the pass less than one sample per
+    // Adaptive sampling may have added no sample, if the image has few pixels and the pass has less than one sample per
     // pixel.
     add_to_all_targets(film, static_cast<std::uint32_t>(std::max(count, 1.0)));
     return true;

@@ -1,4 +1,4 @@
-// The schedule decides how many samples each pixel gets, pass by pass.
+// Declares the sample schedule, which decides how many samples each pixel gets, pass by pass.
 #pragma once
 
 #include "raytrace/film/film.h"
@@ -6,11 +6,11 @@
 
 namespace duet::raytrace {
 
-/// The film's error estimates are used only from this many samples per pixel on, because a few samples that all miss
-/// the lights look converged.
+/// The film's error estimates are used only from this many samples per pixel on, because pixels whose few samples all
+/// miss the lights look converged.
 inline constexpr double kMinSamplesForError = 16;
 
-/// Counts what this render has spent. It excludes the film that the render continues.
+/// Counts the samples and the time of this render. It excludes the film that the render continues.
 struct SpentBudget {
     double seconds = 0;
     std::int64_t samples = 0;
@@ -26,16 +26,16 @@ struct SpentBudget {
 /// With PathTracerSettings::adaptive, passes from the 16th sample on distribute their samples by allocate_samples.
 bool plan_pass(const PathTracerSettings& settings, const SpentBudget& spent, Film& film);
 
-/// Raises the targets by `samples` in total, so that the error after them is least by the film's estimates. If the
-/// error is √(s/n) after n samples, n must be proportional to √s. Here s is the variance of one sample: half as it
-/// is, and half divided by (mean² + 0.01), each relative to its mean over the image. This minimizes the sum of MSE
-/// and relMSE, each relative to its value with as many evenly distributed samples, so that neither is reduced at the
-/// expense of the other.
+/// Raises the targets by `samples` in total, so as to minimize the resulting error by the film's estimates. If the
+/// error is √(s/n) after n samples, n must be proportional to √s. Here s is the variance of one sample: half of it
+/// unscaled, and half divided by (mean² + 0.01), each relative to its mean over the image. This minimizes the sum of
+/// MSE and relMSE, each relative to its value with the same number of evenly distributed samples, so that neither is
+/// reduced at the expense of the other.
 ///
 /// s is estimated from the pixel's eight neighbors. The pixel's own samples would bias it, because pixels that look
 /// dark and noiseless by chance would remain so (Kirk and Arvo 1991, "Unbiased Sampling Techniques for Image
-/// Synthesis"). No pixel gets more new samples than it has already. s counts as at least a hundredth of its mean, so
-/// that every pixel gets new samples in the end.
+/// Synthesis"). No pixel gets more new samples than it has already. s is at least a hundredth of its mean, so that
+/// every pixel gets new samples in the end.
 void allocate_samples(Film& film, std::int64_t samples);
 
 } // namespace duet::raytrace

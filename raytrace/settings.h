@@ -10,34 +10,34 @@
 
 namespace duet::raytrace {
 
-/// This is the version of what the estimators of light (path, naive, direct) converge to. It is part of the name
-/// under which compare bench stores its references. Raise it with every change of that value (a material, a light, a
-/// filter, a corrected bias), but not for changes of noise or speed alone. tests/raytrace/estimator_version_test.cpp
-/// fails if it was forgotten.
+/// This is the version of the values that the estimators of light (path, naive, direct) converge to. It is part of the
+/// name under which compare bench stores its references. It must be raised with every change of these values (a
+/// material, a light, a filter, a corrected bias), but not for changes of noise or speed alone.
+/// tests/raytrace/estimator_version_test.cpp fails if it was forgotten.
 inline constexpr int kEstimatorVersion = 7;
 
 enum class Integrator {
-    kPath,          ///< light and BSDF sampling, combined by multiple importance sampling
+    kPath,          ///< light samples and BSDF samples, combined by multiple importance sampling
     kNaive,         ///< BSDF sampling only, as in book 1 of Ray Tracing in One Weekend
     kBidirectional, ///< paths from the camera and from the lights, joined: Veach 1997, §10
-    kVcm,           ///< the same, and paths that nearly meet are merged: Georgiev et al. 2012
+    kVcm,           ///< bidirectional, with merging of vertices that nearly meet: Georgiev et al. 2012
     kPhotons,       ///< progressive photon mapping: Hachisuka and Jensen 2009
-    kMetropolis,    ///< Markov chains of such joined paths: Veach and Guibas 1997, Kelemen et al. 2002
+    kMetropolis,    ///< Markov chains of bidirectional paths: Veach and Guibas 1997, Kelemen et al. 2002
     kWhitted,       ///< mirrors, glass and hard shadows, without light between surfaces: Whitted 1980
     kDirect,        ///< emission and direct light: paths of at most one scattering event
     kUnshadowed,    ///< direct light by light sampling without visibility: the rasterizer's quantity
-    kLights,        ///< components of path: LightComponents::emission and direct, Scene::lights and their shadows
-    kEnvironment,   ///< component of path: LightComponents::environment, the environment's light on diffuse surfaces
-    kReflection,    ///< component of path: LightComponents::reflection, light through metal and glass at the first hit
+    kLights,        ///< component of path: emission, direct light of Scene::lights and its shadows (LightComponents)
+    kEnvironment,   ///< component of path: the environment's light on diffuse surfaces (LightComponents)
+    kReflection,    ///< component of path: light through metal and glass at the first hit (LightComponents)
     kNormal,        ///< the shading normal as a color: (n + 1)/2
     kAlbedo,        ///< base colors
 };
 /// Returns the integrator named "path", "naive", "bidirectional", "vcm", "photons", "metropolis", "whitted", "direct",
 /// "unshadowed", "lights", "environment", "reflection", "normal" or "albedo". Throws Error for any other name.
 Integrator integrator(std::string_view name);
-/// Returns the name that integrator() reads.
+/// Returns the name that integrator() accepts for an integrator.
 std::string_view integrator_name(Integrator integrator);
-/// Returns whether paths start at the lights, too, so that a sample reaches other pixels than its own.
+/// Returns whether some paths start at the lights, so that a sample may reach other pixels than its own.
 inline bool traces_light_paths(Integrator integrator) {
     return integrator == Integrator::kBidirectional || integrator == Integrator::kVcm ||
            integrator == Integrator::kPhotons || integrator == Integrator::kMetropolis;
@@ -58,18 +58,18 @@ struct PathTracerSettings : RenderSettings {
     Integrator integrator = Integrator::kPath;
     SamplerKind sampler = SamplerKind::kSobol;
     FilterKind filter = FilterKind::kBox;
-    /// Maximum number of scattering events, in [0, kMostDepth]: 0 = emission only, 1 = direct light.
+    /// This is the maximum number of scattering events, in [0, kMostDepth]: 0 = emission only, 1 = direct light.
     int max_depth = 64;
     static constexpr int kMostDepth = 100000;
     bool russian_roulette = true;
     bool environment = true; ///< see raster::RasterSettings::environment
     bool adaptive =
-        false; ///< more samples where the error is larger; samples_per_pixel in the mean (sample_schedule.h)
+        false; ///< more samples where the error is larger; samples_per_pixel on average (sample_schedule.h)
     std::uint32_t first_sample = 0; ///< first of the samples_per_pixel samples; more than 0 in a shard
     std::filesystem::path film; ///< file of the film, which is continued if it exists (film_checkpoint.h); empty: none
-    double film_interval = 60;  ///< seconds between two writes of that file
-    double time_limit = 0;      ///< seconds; stops between passes; 0: none
-    double error_limit = 0;     ///< estimated relMSE; stops between passes; 0: none
+    double film_interval = 60;  ///< seconds between two writes of the film file
+    double time_limit = 0;      ///< seconds after which the render ends, between passes; 0: none
+    double error_limit = 0;     ///< estimated relMSE at which the render ends, after a pass; 0: none
     bool denoise = false;       ///< Rendering::denoised; needs at least two samples per pixel
 
     /// Returns whether the film must estimate its error. Samples then fall into two replicates

@@ -20,7 +20,7 @@ bool is_untransformed(const Object& object) { return object.identity && !object.
 
 Accelerator::Accelerator(const Scene& scene, int threads)
     : scene_(scene), shapes_(scene.shapes.size()), has_alpha_masks_(scene.needs.alpha) {
-    std::vector<bool> seen_through(scene.shapes.size()); // by some object of the shape
+    std::vector<bool> seen_through(scene.shapes.size()); // whether rays may pass through some object of the shape
     for (const Object& object : scene.objects)
         if (can_be_seen_through(scene, object)) seen_through[object.shape] = true;
     BvhInput world(threads);
@@ -92,7 +92,7 @@ struct Accelerator::PacketInstances {
     }
 };
 
-// Traverses all hierarchies as `traverse` does. A distance that overflowed is no hit.
+// Traverses all hierarchies in the same way as `traverse`. A distance that overflowed is no hit.
 template <bool kAny> bool Accelerator::trace(const Ray& ray, Hit& best) const {
     best.t = min(best.t, std::numeric_limits<float>::max());
     if (!traceable(ray)) return false;
@@ -128,7 +128,7 @@ void Accelerator::closest(std::span<const Ray> rays, std::span<Hit> hits) const 
         PacketHits best(xsimd::min(packet.t_max(), max_distance));
         PacketTraversal(world_, packet, some, kAll, kNoObject, PacketInstances{*this, some}, best).run();
         best.store(their_hits);
-        if (!has_alpha_masks_) continue; // packets are traced without regard to alpha
+        if (!has_alpha_masks_) continue; // packet traversal ignores alpha masks
         for (std::size_t i = 0; i < kSize; ++i)
             if (their_hits[i].valid() && passes_alpha_mask(scene_, some[i], their_hits[i]))
                 their_hits[i] = closest(some[i]);
@@ -143,7 +143,7 @@ namespace {
 constexpr std::size_t kShearClasses = 7;
 std::size_t shear_class(const Ray& ray) {
     if (!traceable(ray) || ray.t_min != ray.t_min || ray.t_max != ray.t_max) return kShearClasses - 1;
-    const Vec3 size = abs(ray.direction); // the result of longest_axis, without a branch
+    const Vec3 size = abs(ray.direction); // as in longest_axis(), but without a branch
     const bool x = (size.x >= size.y) & (size.x >= size.z), y = !x & (size.y >= size.z);
     const std::array<float, 3> d{ray.direction.x, ray.direction.y, ray.direction.z};
     const std::size_t axis = x ? 0 : 2 - std::size_t{y};

@@ -1,4 +1,4 @@
-// The accelerator answers ray queries against the whole scene: closest hit and occlusion.
+// Declares the accelerator, which answers ray queries against the whole scene: closest hit and occlusion.
 #pragma once
 
 #include "common/rendering.h"
@@ -38,7 +38,7 @@ public:
     /// at the end of a shadow ray does not occlude itself. An `end` without an object is only a distance.
     bool occluded(const Ray& ray, const Hit& end) const;
 
-    std::int64_t primitives() const { return primitives_; } ///< of the flattened scene, counting each instance's
+    std::int64_t primitives() const { return primitives_; } ///< primitives of the scene, counted for each instance
     std::int64_t memory_bytes() const;
     BvhStatistics statistics() const;
     const Bvh& world() const { return world_; }

@@ -1,4 +1,4 @@
-// These are the data structures of the bounding volume hierarchy. bvh_build.cpp builds a binary tree of boxes,
+// Defines the data structures of the bounding volume hierarchy. bvh_build.cpp builds a binary tree of boxes,
 // bvh_collapse.cpp packs it into these wide nodes, and bvh_traverse.h traverses them.
 #pragma once
 
@@ -17,9 +17,9 @@ namespace duet::raytrace {
 /// one intersection test.
 enum class PrimitiveKind : std::uint8_t { kTriangle, kQuad, kSphere, kInstance };
 
-// Primitives are stored in leaf order with everything that their intersection test needs, so that a leaf reads
-// consecutive memory. `object` and `primitive` are the indices that a Hit reports. In the hierarchy of an instanced
-// shape, hits report the instance's object instead of `object`.
+// The following structures store primitives in leaf order, with everything that their intersection tests need, so that
+// a leaf reads consecutive memory. `object` and `primitive` are the indices that a Hit reports. In the hierarchy of an
+// instanced shape, hits report the instance's object instead of `object`.
 
 /// This is the number of primitives that are tested at once with SIMD.
 inline constexpr std::size_t kBlockSize = kSimdLanes;
@@ -107,7 +107,7 @@ struct alignas(32) BvhNode {
     std::array<Lanes, 6> planes; ///< low x, y, z, high x, y, z
     std::array<BvhRef, kWidth> children;
 
-    /// Returns the plane's values for all children. `offset` is the plane's in bytes from the node.
+    /// Returns a plane's values for all children. `offset` is the plane's position in the node, in bytes.
     const float* plane(std::size_t offset) const {
         return reinterpret_cast<const float*>(reinterpret_cast<const char*>(this) + offset);
     }
@@ -125,14 +125,14 @@ inline BvhRef BvhRef::node(std::uint32_t index) {
 struct Bvh {
     /// This is the greatest depth of a leaf below the root. It bounds the size of a traversal stack.
     static constexpr int kMaxDepth = 96;
-    static constexpr std::uint32_t kMaxLeaf = kBlockSize; ///< maximum number of primitives
+    static constexpr std::uint32_t kMaxLeaf = kBlockSize; ///< maximum number of primitives in a leaf
 
     Box3 bounds;
-    std::size_t references = 0; ///< primitives in leaves
-    /// These leaves together hold all primitives, if a single ray tests them faster than it traverses the tree.
+    std::size_t references = 0; ///< number of primitives in all leaves
+    /// The leaves of this list hold all primitives, if a single ray tests them faster than it traverses the tree.
+    /// Otherwise the list is empty.
     std::vector<BvhRef> list;
-    /// These are the nodes of the tree, and nodes[0] is the root. There are none if there is only one leaf, which is
-    /// then in `list`.
+    /// nodes[0] is the root of the tree. There are no nodes if there is only one leaf, which is then in `list`.
     std::vector<BvhNode, HugePageAllocator<BvhNode>> nodes;
     std::vector<TriangleBlock, HugePageAllocator<TriangleBlock>> triangles;
     std::vector<QuadBlock> quads;

@@ -1,5 +1,5 @@
-// The builders of binary trees share these functions, which sort sets of items into bins and evaluate the planes
-// between bins.
+// The builders of binary trees share the functions of this header. They sort sets of items into bins and evaluate the
+// planes between bins.
 #pragma once
 
 #include "common/system/parallel.h"
@@ -98,7 +98,7 @@ public:
         const Float4 position = (doubled_center(item) - low_) * scale_;
         using Int4 = xsimd::batch<std::int32_t, Float4::arch_type>;
         const Int4 last(static_cast<std::int32_t>(bins) - 1);
-        // NaN becomes a negative integer, and so index 0.
+        // NaN becomes a negative integer, and thus index 0.
         const auto index = xsimd::max(xsimd::min(xsimd::to_int(position), last), Int4(0));
         alignas(16) std::array<std::int32_t, 4> result;
         index.store_aligned(result.data());

@@ -1,5 +1,5 @@
-// These classes test rays against the polygons of a leaf with SIMD. The results are bit-equal to those of
-// intersect_triangle and intersect_quad.
+// Tests rays against the polygons of a leaf with SIMD. The results are bit-equal to those of intersect_triangle and
+// intersect_quad.
 #pragma once
 
 #include "common/geometry/quad.h"
@@ -50,8 +50,8 @@ public:
     /// range.
     unsigned certain() const { return certain_ & candidates_; }
     /// Returns a bit mask of the candidates that are hit at u and v, but so close to the ray's origin that
-    /// plane_distance must compute the distance. Most of these rays leave the polygon. For all remaining candidates,
-    /// intersect_triangle or intersect_quad decides.
+    /// plane_distance must compute the distance. Most of these rays leave the polygon. intersect_triangle or
+    /// intersect_quad must decide the candidates that are neither certain nor need a distance.
     unsigned needs_distance() const { return needs_distance_ & candidates_; }
     /// Sets the distances of all lanes that need one, whose hits become certain.
     [[gnu::always_inline]] void set_distances(Batch distances) {

@@ -1,4 +1,4 @@
-// The builders of hierarchies use these boxes: they are SIMD vectors for speed, and their areas stay in range.
+// Defines boxes for the builders of hierarchies. They are SIMD vectors for speed, and their areas do not overflow.
 #pragma once
 
 #include "common/vec/box.h"
@@ -27,7 +27,7 @@ struct Bounds {
     }
 };
 
-/// Returns the surface area of boxes relative to that of an enclosing box, which stays in range at any scale.
+/// Computes the surface area of boxes relative to that of an enclosing box, which does not overflow at any scale.
 class RelativeArea {
 public:
     explicit RelativeArea(const Bounds& whole) {

@@ -1,5 +1,5 @@
-// A hierarchy is built in two steps: a binary tree of boxes by the surface area heuristic (SAH), then its collapse
-// into wide nodes.
+// Builds a hierarchy in two steps: a binary tree of boxes by the surface area heuristic (SAH), then its collapse into
+// wide nodes.
 #pragma once
 
 #include "raytrace/acceleration/bvh_items.h"
@@ -9,9 +9,9 @@
 
 namespace duet::raytrace {
 
-/// This function removes duplicates from items that all have the same center: it moves the items to retain to the
-/// front and returns their number. Of primitives that are equal except for their (object, primitive), only the first
-/// in that order is ever a closest hit.
+/// This function removes duplicates from items that all have the same center: it moves the items to keep to the front
+/// and returns their number. Of primitives that are equal except for their (object, primitive), only the first in that
+/// order is ever a closest hit.
 using RemoveDuplicates = std::function<std::size_t(std::span<BuildItem>)>;
 
 /// Builds a binary tree over any set of boxes by the binned SAH (Wald 2007, "On fast Construction of SAH-based
@@ -30,8 +30,8 @@ struct LeafItems {
 struct CollapsedBvh {
     Bvh bvh;
     std::vector<LeafItems> leaves;
-    /// These are the expected numbers of nodes and of leaves that a ray through the root's box visits, by the SAH.
-    /// The collapse minimizes node_cost.
+    /// These are the expected numbers of nodes and of leaves that a ray through the root's box visits, by the SAH. The
+    /// collapse minimizes node_cost.
     float node_cost = 0, leaf_cost = 0;
     std::array<std::size_t, 4> elements{}; ///< number of elements in each kind's list
 };

@@ -10,8 +10,8 @@ namespace duet::raytrace {
 namespace {
 
 // Tabulates the cheapest ways to represent each binary subtree by a forest of at most n wide subtrees. Dynamic
-// programming fills it from the leaves up. The cost of a wide node is its relative area, which is the probability
-// that a ray enters it. The leaves are given, and their own cost is the same for every forest.
+// programming fills the table from the leaves up. The cost of a wide node is its relative area, which is the
+// probability that a ray enters it. The leaves are given, and their own cost is the same for every forest.
 class CollapseTable {
 public:
     CollapseTable(const BinaryTree& tree, int threads)
@@ -24,7 +24,7 @@ public:
         visit(0, kParallelDepth);
     }
 
-    /// Return the costs of the whole tree; see CollapsedBvh.
+    /// node_cost() and leaf_cost() return the costs of the whole tree; see CollapsedBvh.
     float node_cost() const { return table_[0].cost[0]; }
     float leaf_cost() const { return table_[0].leaves; }
 
@@ -38,13 +38,13 @@ public:
 
 private:
     static constexpr std::size_t kMaxSubtrees = BvhNode::kWidth - 1;
-    // Among table with the same area, those with large leaves near the root are better: rays that hit such leaves
-    // end earlier, which the area does not express. Each leaf therefore adds this fraction of its area at every
-    // level above it.
+    // Among trees of the same cost, those with large leaves near the root are better: rays that hit such leaves end
+    // earlier, which the SAH does not express. Each leaf therefore adds this fraction of its area at every level above
+    // it.
     static constexpr float kLeafPenalty = 0.1f;
 
     struct CollapseCosts {
-        std::array<float, kMaxSubtrees> cost; // cost[n - 1] is the cost as at most n wide subtrees
+        std::array<float, kMaxSubtrees> cost; // cost[n - 1] is the cost with at most n wide subtrees
         float leaves;                  // sum of the leaves' relative areas
     };
 
@@ -99,7 +99,7 @@ private:
     void add_subtrees(std::uint32_t node, std::size_t n, std::array<std::uint32_t, BvhNode::kWidth>& roots,
                       std::size_t& count) const {
         const auto& cost = table_[node].cost;
-        while (n > 1 && cost[n - 2] == cost[n - 1]) --n; // fewer subtrees cost no more
+        while (n > 1 && cost[n - 2] == cost[n - 1]) --n; // fewer subtrees have the same cost
         if (n == 1)
             roots[count++] = node;
         else
@@ -156,7 +156,7 @@ private:
             }
         }
         for (std::size_t i = 0; i < count; ++i) {
-            const BvhRef child = ref(children[i]); // this may reallocate bvh_.nodes
+            const BvhRef child = ref(children[i]); // the call may reallocate bvh_.nodes
             bvh_.nodes[packed].children[i] = child;
         }
         return packed;

@@ -76,7 +76,7 @@ void BvhInput::add_mesh(const Mesh& mesh, std::uint32_t object, bool seen_throug
 
 void BvhInput::add_instance(const Object& object, std::uint32_t index, const Shape& shape) {
     Box3 box = motion_bounds(object, shape);
-    // Hits are found in object space. The transform of the ray to that space has rounding errors, for which the box
+    // Hits are found in object space. The transform of the ray to object space has rounding errors, for which the box
     // gets a margin.
     const Vec3 margin = max(abs(box.low), abs(box.high)) * gamma_bound(16);
     box.extend(box.low - margin);
@@ -89,7 +89,7 @@ Bvh BvhInput::build() {
     BinaryTree tree = build_binary_tree(std::move(items_), threads_, unique);
     CollapsedBvh collapsed = collapse(tree, threads_);
     add_list_where_faster(tree, collapsed);
-    tree.nodes = {}; // frees them before the primitives take memory
+    tree.nodes = {}; // free this memory before the primitives are allocated
     Bvh& bvh = collapsed.bvh;
     const auto elements = [&](PrimitiveKind kind) { return collapsed.elements[static_cast<std::size_t>(kind)]; };
     bvh.triangles.resize(elements(PrimitiveKind::kTriangle));
@@ -103,11 +103,11 @@ Bvh BvhInput::build() {
     return std::move(bvh);
 }
 
-// Moves one primitive of each set of duplicates to the front, and returns the number of these. Primitives with
-// bit-equal corners, or spheres with bit-equal center and radius, are hit at exactly the same distance, where the
-// lowest (object, primitive) wins; that is the one with the lowest index here. A hash table finds duplicates in one
-// pass. Instances are never duplicates, because they may move; nor are primitives that a ray may pass through, because
-// it may hit the next one.
+// Moves one primitive of each set of duplicates to the front, and returns the number of sets. Primitives with bit-equal
+// corners, or spheres with bit-equal center and radius, are hit at exactly the same distance. There the lowest (object,
+// primitive) wins, which has the lowest index here. A hash table finds duplicates in one pass. Instances are never
+// duplicates, because they may move. Primitives that a ray may pass through are no duplicates either, because the ray
+// may hit the next one.
 std::size_t BvhInput::remove_duplicates(std::span<BuildItem> items) const {
     constexpr std::uint32_t kEmptySlot = ~0u;
     std::vector<std::uint32_t> slots(std::bit_ceil(2 * items.size()), kEmptySlot); // hash table of indices into `items`
@@ -144,7 +144,7 @@ bool BvhInput::is_unique(const BuildItem& item) const {
 BvhInput::PrimitiveKey BvhInput::key_of(const BuildItem& item) const {
     PrimitiveKey key{static_cast<std::uint32_t>(item.kind)};
     if (is_unique(item)) {
-        constexpr std::uint32_t kUnique = 0x100; // no kind of primitive
+        constexpr std::uint32_t kUnique = 0x100; // differs from every kind of primitive
         key[0] |= kUnique;
         key[1] = item.index;
         return key;

@@ -1,4 +1,4 @@
-// BvhInput builds a hierarchy over the primitives of shapes and instances.
+// Declares BvhInput, which builds a hierarchy over the primitives of shapes and instances.
 #pragma once
 
 #include "common/scene/scene.h"
@@ -9,15 +9,15 @@
 
 namespace duet::raytrace {
 
-/// Collects primitives of all kinds with their boxes, then builds a hierarchy over them. It refers to the shapes
-/// until then.
+/// Collects primitives of all kinds with their boxes, then builds a hierarchy over them. The shapes must outlive
+/// build().
 class BvhInput {
 public:
     /// `threads` is the number of build threads (0 = all). The hierarchy does not depend on it.
     explicit BvhInput(int threads) : threads_(threads) {}
 
-    /// Adds the primitives of a shape, without a transform. Their hits report `object`. Of opaque primitives at the
-    /// same place one is kept; `seen_through` says that rays may pass through those of the shape.
+    /// Adds the primitives of a shape, without a transform. Their hits report `object`. Of opaque primitives with equal
+    /// coordinates only one is kept. `seen_through` says that rays may pass through the primitives of the shape.
     void add_shape(const Shape& shape, std::uint32_t object, bool seen_through);
     /// Adds the world-space bounds of a transformed shape, over all of its motion. `index` is the index of the
     /// object.

@@ -31,7 +31,8 @@ inline Bounds BinaryNode::bounds() const {
     return {Bounds::Float4::load_unaligned(numbers), Bounds::Float4::load_unaligned(numbers + 3)};
 }
 
-/// Node 0 is the root. There are no nodes if there are no items. The depth is at most Bvh::kMaxDepth.
+/// Stores a binary tree. Node 0 is the root. There are no nodes if there are no items. The depth is at most
+/// Bvh::kMaxDepth.
 struct BinaryTree {
     std::vector<BinaryNode> nodes;
     BuildItems items; ///< in leaf order

@@ -1,4 +1,4 @@
-// LeafTest tests a ray against the primitives of leaves.
+// Declares LeafTest, which tests a ray against the primitives of leaves.
 #pragma once
 
 #include "common/geometry/hit.h"
@@ -16,7 +16,7 @@ inline bool precedes(const Hit& a, const Hit& b) {
     return a.object != b.object ? a.object < b.object : a.primitive < b.primitive;
 }
 
-/// Decides which hits of a ray count in a scene with alpha masks: those that the ray does not pass through.
+/// Decides which hits of a ray count in a scene with alpha masks: only hits that the ray does not pass through.
 struct AlphaFilter {
     const Scene& scene;
     const Ray& ray; ///< in world space
@@ -28,8 +28,8 @@ struct AlphaFilter {
 /// primitive. `instance(i, best)` is called to find the hits of instances.
 template <bool kAny, typename Instance> class LeafTest {
 public:
-    /// If `object` is not kNoObject (inside an instance), hits report it, else they report the primitive's own
-    /// object. `alpha` may be null; all hits count then.
+    /// If `object` is not kNoObject (inside an instance), hits report `object`. Otherwise they report the primitive's
+    /// own object. If `alpha` is null, all hits count.
     LeafTest(const Bvh& bvh, const Ray& ray, std::uint32_t object, const Instance& instance,
              const AlphaFilter* alpha = nullptr)
         : bvh_(bvh), object_(object), instance_(instance), alpha_(alpha) {
@@ -109,7 +109,7 @@ private:
         return consider({reported_object(block.object[lane]), block.primitive[lane], hit.u, hit.v, hit.t}, best);
     }
     bool consider(const Hit& hit, Hit& best) { return counts(hit, best) && !is_transparent(hit) && accept(hit, best); }
-    // Returns whether a hit, if it is opaque, is one to find.
+    // Returns whether an opaque hit would replace `best`.
     static bool counts(const Hit& hit, const Hit& best) {
         return precedes(hit, best) && !(kAny && hit.object == best.object && hit.primitive == best.primitive);
     }

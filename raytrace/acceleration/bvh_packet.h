@@ -1,5 +1,5 @@
-// PacketTraversal traverses a hierarchy with a packet of coherent rays: each box and each triangle is loaded once
-// and tested against all rays. The hits are bit-equal to those of `traverse<false>`.
+// Declares PacketTraversal, which traverses a hierarchy with a packet of coherent rays. Each box and each triangle is
+// loaded once and tested against all rays. The hits are bit-equal to those of `traverse<false>`.
 #pragma once
 
 #include "raytrace/acceleration/ray_packet.h"
@@ -59,8 +59,8 @@ template <typename Instances> class PacketTraversal {
 public:
     static constexpr std::size_t kSize = RayPacket::kSize;
 
-    /// `active` is a bit mask of the rays to trace. If `object` is not kNoObject (inside an instance), hits report
-    /// it as their object. instances(ray) returns the instance test that `traverse<false>` needs for one ray;
+    /// `active` is a bit mask of the rays to trace. If `object` is not kNoObject (inside an instance), hits report it
+    /// as their object. instances(ray) returns the instance test that `traverse<false>` needs for one ray;
     /// instances(instance, rays, best) tests an instance against several rays.
     PacketTraversal(const Bvh& bvh, const RayPacket& packet, std::span<const Ray, kSize> rays, unsigned active,
                     std::uint32_t object, const Instances& instances, PacketHits& best)
@@ -80,11 +80,11 @@ public:
 
 private:
     using Batch = RayPacket::Batch;
-    // Up to this many active rays are tested, a few at a time, against a whole block of polygons. More active rays
-    // are all tested against one polygon at a time.
+    // If at most this many rays are active, they are tested, a few at a time, against a whole block of polygons. More
+    // active rays are all tested against one polygon at a time.
     static constexpr int kMaxRaysPerBlockTest = kSize / 2;
-    // This many active rays or more are all tested against one sphere at a time. Fewer are each tested against a
-    // whole block of spheres.
+    // If at least this many rays are active, they are all tested against one sphere at a time. Fewer are each tested
+    // against a whole block of spheres.
     static constexpr int kMinRaysPerSphereTest = 3;
     // This is the number of rays that are tested together against a block. Each takes kBlockSize lanes.
     static constexpr std::size_t kRaysPerBatch = kSize / kBlockSize;
@@ -255,7 +255,7 @@ private:
         }
     }
 
-    // Stores these hits as the best ones of the rays.
+    // Stores the given hits as the best hits of the rays.
     void store_hits(unsigned rays, Batch t, Batch u, Batch v, std::uint32_t object, std::uint32_t primitive) {
         best_changed_ = true;
         store_lanes(t, rays, best_.t.data());

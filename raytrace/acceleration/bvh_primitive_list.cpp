@@ -1,4 +1,4 @@
-// If there are few primitives, a ray may test them all faster than it traverses a tree.
+// Decides whether a ray tests all primitives of a small scene faster than it traverses a tree.
 #include "raytrace/acceleration/bvh_build.h"
 
 #include <algorithm>

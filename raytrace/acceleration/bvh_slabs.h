@@ -1,4 +1,4 @@
-// These ray-box tests of nodes are conservative: no box that contains a hit is skipped.
+// Implements the ray-box tests of nodes. They are conservative: no box that contains a hit is skipped.
 #pragma once
 
 #include "common/vec/ray.h"
@@ -8,28 +8,28 @@
 
 namespace duet::raytrace {
 
-/// These error bounds make box tests conservative: slab distances are lower and upper bounds of the distances that
-/// the tests of primitives compute. The origin is moved by more than the rounding of both tests, in proportion to
+/// Defines error bounds that make box tests conservative: slab distances are lower and upper bounds of the distances
+/// that the tests of primitives compute. The origin is moved by more than the rounding of both tests, in proportion to
 /// the size of the whole hierarchy as seen from there. (Woop et al. count 5 roundings, the triangle's distance has 6
-/// more, the form plane·(1/d) − origin·(1/d) adds another of each, and its first product is rounded, too, where the CPU
-/// lacks fused multiply-add; this bound has room for 16.)
+/// more, the form plane·(1/d) − origin·(1/d) adds another to each of the two tests, and its first product is rounded,
+/// too, if the CPU lacks fused multiply-add; this bound has room for 16.)
 struct SlabError {
-    /// The margin of box tests, relative to the sizes of the coordinates.
+    /// This is the margin of box tests, relative to the sizes of the coordinates.
     static constexpr float kRelative = 0x1p-20f;
-    /// No reciprocal is infinite: a direction component of 0 counts as this fraction of the largest component. The
-    /// fraction is so small that a ray inside a slab, by more than the error that the slab is widened by, leaves it
-    /// beyond everything in the box.
+    /// No reciprocal is infinite: a direction component of 0 is replaced by this fraction of the largest component. The
+    /// fraction is so small that a ray leaves a slab beyond everything in the box, if its origin is inside the slab by
+    /// more than the error bound.
     static constexpr float kSmallest = 1e-12f;
 
-    /// Returns by how much the origin is moved along one axis. `extent` is the largest distance along this axis from
-    /// the origin to the hierarchy's bounds, `greatest_extent` the largest over all three axes, and `magnitude` the
-    /// absolute coordinate of the origin.
+    /// Returns the distance by which the origin is moved along one axis. `extent` is the largest distance along this
+    /// axis from the origin to the hierarchy's bounds, `greatest_extent` the largest over all three axes, and
+    /// `magnitude` the absolute coordinate of the origin.
     template <typename B> static B shift(B extent, B greatest_extent, B magnitude) {
         return (extent + extent + greatest_extent + magnitude) * B(kRelative) + B(std::numeric_limits<float>::min());
     }
     /// Returns the number whose reciprocal scales distances along one axis. `size` is the absolute component of the
     /// direction, and `greatest_size` the largest over all three axes. No product of the reciprocal with `coordinates`
-    /// is infinite, because it would be taken for the distance of a plane.
+    /// is infinite, because an infinite product would pass for the distance of a plane.
     template <typename B> static B divisor(B size, B greatest_size, B coordinates) {
         return max(max(size, greatest_size * B(kSmallest)), max(coordinates * B(0x1p-120f), B(0x1p-125f)));
     }
@@ -73,8 +73,8 @@ public:
         const auto slab = [&](std::size_t plane, Batch scale, Batch offset) {
             return multiply_add(Batch::load_aligned(node.plane(plane)), scale, offset);
         };
-        // A NaN (from values out of range) is the first argument of min and max, which then return the second, so
-        // that this slab is ignored.
+        // NaN, which results from values out of range, is the first argument of min and max. They then return the
+        // second argument, so that this slab is ignored.
         const Batch nx = slab(near_plane_[0], scale_[0], near_offset_[0]),
                     ny = slab(near_plane_[1], scale_[1], near_offset_[1]),
                     nz = slab(near_plane_[2], scale_[2], near_offset_[2]);
@@ -87,7 +87,7 @@ public:
     }
 
 private:
-    /// Returns the greatest lane, in all lanes.
+    /// Returns the largest lane, broadcast to all lanes.
     static FloatBatch<4> greatest(FloatBatch<4> v) {
         const FloatBatch<4> twos = xsimd::max(v, FloatBatch<4>(_mm_shuffle_ps(v, v, _MM_SHUFFLE(1, 0, 3, 2))));
         return xsimd::max(twos, FloatBatch<4>(_mm_shuffle_ps(twos, twos, _MM_SHUFFLE(2, 3, 0, 1))));

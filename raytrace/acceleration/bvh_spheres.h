@@ -1,5 +1,4 @@
-// These classes test rays against the spheres of a leaf with SIMD. The results are bit-equal to those of
-// intersect_sphere.
+// Tests rays against the spheres of a leaf with SIMD. The results are bit-equal to those of intersect_sphere.
 #pragma once
 
 #include "common/geometry/sphere.h"
@@ -20,8 +19,8 @@ struct SphereRay {
     explicit SphereRay(const Ray& its) : ray(its), origin(its.origin), line(Vec3d(its.direction)) {}
 };
 
-/// Tests one ray against all spheres of a block, in double precision like the scalar test. (A filter in float before
-/// that gains nothing: a ray usually starts on a sphere, which the filter cannot reject.)
+/// Tests one ray against all spheres of a block, in double precision like the scalar test. (A preceding filter in float
+/// gains nothing: a ray usually starts on a sphere, which the filter cannot reject.)
 class SphereBlockTest {
 public:
     [[gnu::always_inline]] SphereBlockTest(const SphereRay& its, const SphereBlock& block, float end) {
@@ -63,17 +62,17 @@ private:
 /// Holds the lines of N rays, one ray per lane: origin x, y, z, then direction x, y, z.
 template <std::size_t N> using LineLanes = std::array<std::array<float, N>, 6>;
 
-/// Returns 1 / d·d for the direction d of a line, as may_hit needs it. It is NaN where a square may underflow or
-/// overflow; may_hit never rejects such rays. T is float or a batch of floats.
+/// Returns 1 / d·d for the direction d of a line, which may_hit needs. It is NaN if a square may underflow or overflow;
+/// may_hit never rejects such rays. T is float or a batch of floats.
 template <typename T> T filter_scale(const Vec3T<T>& direction) {
     const T squared = dot(direction, direction);
     const auto in_range = (squared > T(1e-20f)) & (squared < T(1e20f));
     return select(in_range, T(1.0f) / squared, T(std::numeric_limits<float>::quiet_NaN()));
 }
-/// Returns a bit mask of the lanes whose line may hit its sphere. The other lines certainly miss. The test is in
-/// float. With the unit roundoff u and g = center − origin, the parameter of the closest point on the line is off by
-/// less than 10u|g|, and so is that point; its distance from the center is off by less than 14u|g|. (Where these
-/// values overflow, both sides of the comparison are infinite. Unused lanes, whose radius is NaN, are never set.)
+/// Returns a bit mask of the lanes whose line may hit its sphere. The other lines certainly miss. The test is in float.
+/// With the unit roundoff u and g = center − origin, the parameter of the closest point on the line has an error below
+/// 10u|g|, and so has the point; its distance from the center has an error below 14u|g|. (If these values overflow,
+/// both sides of the comparison are infinite. Unused lanes, whose radius is NaN, are never set.)
 template <typename Batch>
 unsigned may_hit(const Vec3T<Batch>& to_center, const Vec3T<Batch>& direction, Batch scale, Batch radius) {
     const Vec3T<Batch> closest = direction * (dot(to_center, direction) * scale) - to_center;
@@ -139,7 +138,7 @@ public:
     }
 
     unsigned hits() const { return hits_; } ///< bit mask of the rays of the subset with a hit in (t_min, end]
-    Batch t() const { return t_; }          ///< hit distances of these rays
+    Batch t() const { return t_; }          ///< hit distances of the rays in hits()
 
 private:
     unsigned hits_ = 0;

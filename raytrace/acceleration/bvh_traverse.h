@@ -1,8 +1,8 @@
-// These functions traverse a hierarchy with one ray.
+// Traverses a hierarchy with one ray.
 //
-// The result is bit-equal to that of testing every primitive, ties included. Box tests are so conservative that no
-// box with a hit is skipped (Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection", §3.3), and boxes
-// at the same distance as the closest hit are still visited.
+// The result is bit-equal to that of testing every primitive, ties included. Box tests are so conservative that no box
+// with a hit is skipped (Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection", §3.3), and boxes at the
+// same distance as the closest hit are still visited.
 #pragma once
 
 #include "raytrace/acceleration/bvh_leaf.h"
@@ -27,8 +27,8 @@ inline void prefetch(const Bvh& bvh, BvhRef child) {
         __builtin_prefetch(address + i);
 }
 
-/// Components of a ray larger than this, and directions with all components smaller than its reciprocal, would
-/// overflow during traversal. (The scene loader rejects scenes beyond 1e18.)
+/// This is the largest component of a ray that can be traced. Larger components, and directions with all components
+/// smaller than its reciprocal, would overflow during traversal. (The scene loader rejects scenes beyond 1e18.)
 inline constexpr float kLargestNumber = 1e37f;
 /// Returns whether a ray can be traced: its components are in range, and its direction is not zero. Other rays hit
 /// nothing.
@@ -40,9 +40,9 @@ inline bool traceable(const Ray& ray) {
     return in_range(ray.origin) && in_range(ray.direction) && max_component(abs(ray.direction)) >= 1 / kLargestNumber;
 }
 
-/// Stores a child on the traversal stack: the distance at which the ray enters its box, and the reference to it.
-/// Both are in one integer, so that a stack is written and sorted at least cost: floats that are not negative have
-/// the same order as their bits.
+/// Stores a child on the traversal stack: the distance at which the ray enters its box, and the reference to it. Both
+/// are packed into one integer, so that a stack is written and sorted at the least cost: nonnegative floats have the
+/// same order as their bits.
 class StackEntry {
 public:
     StackEntry() = default; // not initialized, because that would clear a stack for each ray
@@ -53,7 +53,7 @@ public:
     BvhRef child() const { return BvhRef::from_bits(static_cast<std::uint32_t>(bits_)); }
     bool nearer_than(StackEntry other) const { return bits_ < other.bits_; }
 
-    /// Returns the nearer of two and sets `farther` to the other, without a branch.
+    /// Returns the nearer of two entries and sets `farther` to the other, without a branch.
     friend StackEntry take_nearer(StackEntry a, StackEntry b, StackEntry& farther) {
         farther.bits_ = a.bits_ < b.bits_ ? b.bits_ : a.bits_;
         a.bits_ = a.bits_ < b.bits_ ? a.bits_ : b.bits_;
@@ -64,14 +64,15 @@ private:
     std::uint64_t bits_;
 };
 
-/// The children that a ray has entered and not yet visited. A step down leaves at most kWidth − 1 of them.
+/// The stack holds the children that a ray has entered and not yet visited. A step down adds at most kWidth − 1 of
+/// them.
 inline constexpr std::size_t kStackSize = (BvhNode::kWidth - 1) * Bvh::kMaxDepth + 1;
 
-/// Visits the nearest child first, so that what lies beyond the closest hit need not be visited.
+/// Visits the nearest child first, so that nodes beyond the closest hit need not be visited.
 class NearestFirst {
 public:
-    /// Returns the child of a node to visit next. `entered` is the bit mask of the children that the ray enters, not 0,
-    /// and `distance` holds where it enters them. The others are kept.
+    /// Returns the child of a node to visit next, and pushes the other children that the ray enters. `entered` is the
+    /// bit mask of these children, not 0, and `distance` holds the distances at which the ray enters them.
     BvhRef descend(const BvhNode& node, const SlabRay::Batch& distance, unsigned entered) {
         const auto first = static_cast<std::size_t>(std::countr_zero(entered));
         entered &= entered - 1;
@@ -94,7 +95,7 @@ public:
         }
         return nearest.child();
     }
-    /// Sets `next` to the last child kept that the ray enters before `end`. Returns false if there is none.
+    /// Sets `next` to the last pushed child that the ray enters before `end`. Returns false if there is none.
     bool pop(float end, BvhRef& next) {
         do {
             if (size_ == 0) return false;
@@ -109,9 +110,9 @@ private:
     std::size_t size_ = 0;
 };
 
-/// Visits the largest child first, which is the last of its node, where any hit will do (Ogaki and Derouet-Jourdan
-/// 2016, "An N-ary BVH child node sorting technique for occlusion test", sort by area likewise). The functions are
-/// those of NearestFirst.
+/// Visits the largest child of a node, which is the last one, first. It serves any-hit queries (Ogaki and
+/// Derouet-Jourdan 2016, "An N-ary BVH child node sorting technique for occlusion test", also sort by area). The
+/// functions are those of NearestFirst.
 class LargestFirst {
 public:
     BvhRef descend(const BvhNode& node, const SlabRay::Batch&, unsigned entered) {
@@ -130,7 +131,7 @@ private:
     std::size_t size_ = 0;
 };
 
-/// Tests the leaves of the list, in a hierarchy whose tree is not to be traversed.
+/// Tests the leaves of the list, for a hierarchy whose tree is not to be traversed.
 template <bool kAny, typename Instance>
 [[gnu::noinline]] bool traverse_list(const Bvh& bvh, const Ray& ray, std::uint32_t object, Hit& best,
                                      const Instance& instance, const AlphaFilter* alpha) {

@@ -1,4 +1,4 @@
-// A packet holds coherent rays, prepared to be tested together against boxes, triangles and spheres, and their hits.
+// Declares packets of coherent rays, which are tested together against boxes, triangles and spheres, and their hits.
 #pragma once
 
 #include "raytrace/acceleration/bvh_traverse.h"
@@ -7,8 +7,8 @@
 
 namespace duet::raytrace {
 
-/// Prepares a packet of as many rays as the widest batch has lanes, such as those of neighboring pixels, prepared
-/// for SIMD tests.
+/// Prepares coherent rays, such as those of neighboring pixels, for SIMD tests. A packet has as many rays as the widest
+/// batch has lanes.
 class RayPacket {
 public:
     static constexpr std::size_t kSize = kMaxSimdLanes;
@@ -29,8 +29,8 @@ public:
     const Shear<Batch>& shear() const { return shear_; }
     const LineLanes<kSize>& lines() const { return lines_; }
 
-    /// Returns a bit mask of the node's children whose box some of the rays may enter before `end`, the greatest of
-    /// their ends, and for each child a lower bound of the distance at which they enter.
+    /// Returns a bit mask of the node's children whose box some ray may enter before `end`, which is the greatest end
+    /// of the rays. For each child it also returns a lower bound of the distance at which they enter.
     SlabRay::Entered enter_any(const BvhNode& node, float end) const {
         using Boxes = SlabRay::Batch;
         const auto bound = [&](const Interval& interval, std::size_t plane, bool far) {
@@ -63,9 +63,9 @@ public:
         return {near, near <= far};
     }
 
-    /// Returns the origin that all rays share, if they do.
+    /// Returns the common origin of all rays, if they have one.
     const std::optional<Vec3>& origin() const { return origin_; }
-    /// Returns the shears of some of the rays, each repeated in its share of the lanes.
+    /// Returns the shears of some rays, each repeated in an equal number of lanes.
     template <std::size_t N> Shear<Batch> shears(const std::array<std::size_t, N>& rays) const {
         const auto pick = [&](std::size_t k) { return lanes_of(lanes_[k], rays); };
         return {shear_.kx, shear_.ky, shear_.kz, {pick(0), pick(1), pick(2)}, pick(3), pick(4), pick(5), pick(6)};
@@ -100,7 +100,7 @@ private:
 
     static_assert(offsetof(Ray, origin) == 0 && offsetof(Ray, direction) == 3 * sizeof(float) &&
                   offsetof(Ray, t_min) == 6 * sizeof(float) && offsetof(Ray, t_max) == 7 * sizeof(float));
-    // Holds the range of the reciprocal directions, and that end of the range of origins which makes the bound
+    // Holds the range of the reciprocal directions, and the end of the range of origins that makes the bound
     // conservative.
     struct Interval {
         float low, high, origin;
@@ -128,7 +128,7 @@ private:
         return lane_bits(size[z_axis] >= Batch(1 / kLargestNumber)) == kAll;
     }
 
-    // Computes for all rays what ShearedRay computes for one.
+    // Computes the values of ShearedRay for all rays.
     Shear<Batch> sheared(const Vec3T<Batch>& origin, const Vec3T<Batch>& direction) {
         const std::size_t kz = shear_.kz, next = (kz + 1) % 3, after = (kz + 2) % 3;
         const std::size_t kx = negative_[kz] ? after : next, ky = negative_[kz] ? next : after;
@@ -146,7 +146,7 @@ private:
         return shear;
     }
 
-    // Prepares the slabs as SlabRay does for one ray, with the largest error bound of all origins.
+    // Prepares the slabs in the same way as SlabRay for one ray, with the largest error bound of all origins.
     void set_slabs(const Vec3T<Batch>& origin, const Vec3T<Batch>& direction, const Box3& bounds) {
         const Box3 origins = origin_ ? Box3{*origin_, *origin_} : extent_of(origin);
         const Vec3 extents = max(abs(bounds.low - origins.high), abs(bounds.high - origins.low)),

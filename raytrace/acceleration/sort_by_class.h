@@ -1,4 +1,4 @@
-// The indices of rays or paths are sorted into a few classes, so that those of one class are processed together.
+// Sorts the indices of rays or paths into a few classes, so that all elements of a class are processed together.
 #pragma once
 
 #include <array>

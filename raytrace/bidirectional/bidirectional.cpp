@@ -9,14 +9,15 @@ namespace duet::raytrace {
 
 namespace {
 
-// Returns the MIS weight of a strategy, from the sums over the strategies whose connection is on either side.
-// It is 0 where a density is too large for a double.
+// Returns the MIS weight of a strategy from the sums over the strategies that connect closer to the light and closer to
+// the camera. It is 0 if a density is too large for a double.
 float weight(double light_side, double camera_side) {
     const double others = light_side + camera_side;
     return others >= 0 ? static_cast<float>(1 / (1 + others)) : 0;
 }
 
-// Camera subpaths use the dimensions of plain paths. Light subpaths use those behind the longest of them.
+// Camera subpaths use the same sample dimensions as the path tracer. Light subpaths use the dimensions after those of
+// the longest camera subpath.
 int light_subpath_depth(const RenderPlan& plan, int depth) { return plan.max_depth + 1 + depth; }
 
 Ray importance_ray(const SubpathVertex& at, Vec3 w) {
@@ -31,7 +32,7 @@ template <typename S> EmissionRandomSamples emission_samples(const RenderPlan& p
     return {u[4], {u[0], u[1]}, {u[2], u[3]}};
 }
 
-// Returns the sums of a light subpath at its first vertex, which the ray from the light has hit.
+// Returns the MIS sums of a light subpath at its first vertex.
 MisSums sums_at_first_hit(const RenderPlan& plan, const LightEmission& emission, const EmittedRay& emitted,
                           const SubpathVertex& at, double merging) {
     const Scene& scene = plan.scene;
@@ -90,7 +91,7 @@ template <typename S> void BidirectionalTracer::trace_light_subpath(float time, 
     }
 }
 
-// Draws the direction in which the subpath goes on, unless it ends at the vertex.
+// Draws the direction in which the subpath continues, unless it ends at the vertex.
 ScatteringT<float> BidirectionalTracer::leave(const SubpathVertex& at, const VertexRandomSamples& u, TransportMode mode,
                                               PathThroughputT<float>& path, MisSums& sums) {
     ScatteringT<float> next = scatter(at, u, mode, path, sums, merging_);
@@ -182,9 +183,10 @@ Rgb BidirectionalTracer::trace_camera_subpath(Ray ray, Hit hit, const Pinhole& p
     }
 }
 
-// In photon mapping, photons bring all light that a vertex scatters, except direct light, as light samples find that
-// better, and except what comes from directions that the BSDF draws densely: few photons arrive from these, and each
-// would count much. Such a direction is followed.
+// Returns whether photons estimate the light that arrives from a direction, in photon mapping. They do for all light
+// that a vertex scatters, with two exceptions. Direct light is left to light samples, which find it better. Directions
+// that the BSDF draws with a high density are traced, because few photons arrive from them, and each would have a large
+// weight.
 bool BidirectionalTracer::photons_bring(double bsdf_pdf) const {
     constexpr double kFollowed = 4; // per steradian; a diffuse BSDF reaches 0.32, and a rough mirror 0.08 / alpha²
     return !connects_ && !emission_.empty() && bsdf_pdf <= kFollowed;
@@ -208,7 +210,7 @@ Rgb BidirectionalTracer::emitted_light(const SubpathVertex& at, int depth, float
     const Rgb light = emitted(at.vertex.material, plan_.scene.textures, point, at.to_previous);
     if (is_black(light) || depth == 0 || plan_.lights == nullptr) return light;
     const std::int64_t index = surface_light_index(plan_.scene, point.object, point.primitive);
-    if (index < 0) return light; // no other strategy finds it
+    if (index < 0) return light; // light samples and light subpaths cannot find it
     if (wanted == Wanted::kRest) return Rgb();
     const auto [density, geometry] =
         emission_.density(static_cast<std::size_t>(index), point.p, at.to_previous, previous.p);
@@ -266,7 +268,7 @@ Rgb BidirectionalTracer::connection(const SubpathVertex& camera, const SubpathVe
            (weight(light_side, camera_side) / static_cast<float>(squared_distance));
 }
 
-// Returns the MIS weight of merging. In photon mapping, a photon counts fully, unless its direction is followed.
+// Returns the MIS weight of merging. In photon mapping it is 1, or 0 if the photon's direction is traced instead.
 float BidirectionalTracer::photon_weight(const SubpathVertex& at, const Photon& photon) const {
     const Vec3 wi = photon.to_previous;
     const double pdf = at.pdf(at.to_previous, wi, TransportMode::kRadiance);
@@ -275,8 +277,9 @@ float BidirectionalTracer::photon_weight(const SubpathVertex& at, const Photon& 
                   at.mis.over_merging(at.pdf(wi, at.to_previous, TransportMode::kImportance), merging_));
 }
 
-// A photon takes the place of a vertex of the camera subpath, so that the BSDF is the camera subpath's, and no ray is
-// traced. Its light comes from the area of the disk around that vertex.
+// Returns the light of the photons near a vertex of the camera subpath. A photon is moved to that vertex: its light is
+// scattered by the camera subpath's BSDF, without a visibility test, and spread over the area of the disk around the
+// vertex.
 Rgb BidirectionalTracer::merged_light(const SubpathVertex& at, const PhotonMap& photons) const {
     const Vertex& vertex = at.vertex;
     Rgb sum;
@@ -286,7 +289,7 @@ Rgb BidirectionalTracer::merged_light(const SubpathVertex& at, const PhotonMap& 
         const Rgb scattered = scattering(vertex, wi);
         if (is_black(scattered) || at.cosine_of_light(wi) == 0) return;
         const float mis_weight = photon_weight(at, photon);
-        // The photon's flux includes the cosine to its own surface, in place of the one here.
+        // The photon's flux includes the cosine at its own surface, which replaces the cosine at this vertex.
         sum += photon.flux * scattered * (mis_weight / abs(dot(wi, vertex.point.ns)));
     });
     return at.throughput * sum * static_cast<float>(1 / merging_);

@@ -1,9 +1,9 @@
-// Bidirectional path tracing connects paths from the camera with paths from the lights, which find what a plain path
-// tracer hardly does, as the light of a caustic (Veach 1997, §10; Lafortune and Willems 1993). Vertex connection and
-// merging also merges those of their vertices that are close (Georgiev et al. 2012; Hachisuka et al. 2012): so it finds
-// caustics in a mirror, where nothing can be connected. Merging blurs light over a radius, which shrinks with every
-// sample. Progressive photon mapping connects nothing: a camera subpath merges with photons at the first vertex that
-// spreads light (Hachisuka and Jensen 2009; Knaus and Zwicker 2011).
+// Declares bidirectional path tracing, which connects subpaths from the camera with subpaths from the lights. They find
+// light that a path tracer hardly finds, such as caustics (Veach 1997, §10; Lafortune and Willems 1993). Vertex
+// connection and merging also merges vertices of the two subpaths that are close (Georgiev et al. 2012; Hachisuka et
+// al. 2012). It finds caustics in a mirror, too, where no vertices can be connected. Merging blurs light over a radius,
+// which shrinks with every sample. Progressive photon mapping connects nothing: a camera subpath merges with photons at
+// the first vertex that scatters light diffusely (Hachisuka and Jensen 2009; Knaus and Zwicker 2011).
 #pragma once
 
 #include "raytrace/bidirectional/camera_projection.h"
@@ -15,28 +15,32 @@
 
 namespace duet::raytrace {
 
-/// Holds light that a light subpath sends to the camera, to whichever pixel sees it.
+/// Holds light that a light subpath sends to a pixel of the image.
 struct Splat {
     std::uint32_t pixel; ///< row · width + column
     Rgb light;
 };
 
 /// Traces pairs of a camera subpath and a light subpath, one pair after the other. There is one light subpath per pixel
-/// of the image, and their light is weighted for that. Random samples come from S, a Sampler or a PrimarySample.
+/// of the image, which determines the weight of its light. Random samples come from S, which is Sampler or
+/// PrimarySample.
 class BidirectionalTracer {
 public:
-    /// Refers to all arguments. `radius` is that of merging; 0: subpaths do not merge.
+    /// Keeps references to all arguments. `radius` is the radius of merging; with 0, subpaths do not merge.
     BidirectionalTracer(const RenderPlan& plan, const LightEmission& emission, const View& view, Integrator integrator,
                         float radius, RayCounts& counts);
 
-    /// Traces the light subpath of a sample, in place of the one before. `time` is that of its camera ray.
+    /// Traces the light subpath of a sample, which replaces the previous one. `time` is that of the sample's camera
+    /// ray.
     template <typename S> void trace_light_subpath(float time, S& sampler);
     /// Appends the light that the light subpath sends to pixels. `pinhole` is the view through the sample's lens point.
     void connect_to_camera(const Pinhole& pinhole, std::vector<Splat>& splats);
-    /// Appends the photons of the light subpath. There is none at its first hit, where light samples find direct light.
+    /// Appends the photons of the light subpath. There is none at its first hit, because light samples find direct
+    /// light.
     void add_photons(std::vector<Photon>& photons) const;
-    /// Returns the light that the camera ray brings, whose first hit is given and may be invalid: of the light subpath,
-    /// and of all photons that are near, if any are given. In photon mapping it needs no light subpath.
+    /// Returns the radiance along a camera ray, whose first hit is given and may be invalid. It includes the
+    /// connections with the light subpath and, if `photons` is not null, the photons nearby. In photon mapping no light
+    /// subpath is necessary.
     template <typename S>
     Rgb trace_camera_subpath(Ray ray, Hit hit, const Pinhole& pinhole, S& sampler, const PhotonMap* photons);
 
@@ -44,11 +48,11 @@ private:
     std::optional<Splat> connection_to_camera(const SubpathVertex& at, const Pinhole& pinhole);
     ScatteringT<float> leave(const SubpathVertex& at, const VertexRandomSamples& u, TransportMode mode,
                              PathThroughputT<float>& path, MisSums& sums);
-    /// This is the light for which a camera subpath still searches.
+    /// Selects the light that a camera subpath still has to find.
     enum class Wanted {
         kAll,
-        kDirect, ///< photons have brought all light that the last vertex scatters, except direct light
-        kRest,   ///< photons or light samples have found all light, except what sends no photons
+        kDirect, ///< photons have found all light at the last vertex, except direct light
+        kRest,   ///< all other light is found, except of sources that emit no photons
     };
     Rgb environment_light(Vec3 w, int depth, const LightReceiver& previous, const MisSums& sums, Wanted wanted) const;
     Rgb emitted_light(const SubpathVertex& at, int depth, float distance, const LightReceiver& previous,
@@ -68,7 +72,7 @@ private:
     const bool connects_;
     const double merging_; ///< see MisSums
     RayCounts& counts_;
-    std::deque<SubpathVertex> light_subpath_; ///< connections end at all of its vertices that are not specular
+    std::deque<SubpathVertex> light_subpath_; ///< its non-specular vertices, which can be connected
 };
 
 } // namespace duet::raytrace

@@ -34,19 +34,19 @@ void check_bidirectional(const Scene& scene, const PathTracerSettings& settings)
 
 namespace {
 
-constexpr std::size_t kRowsInGroup = 64; // whose light subpaths' splats and photons are kept until they are added
+constexpr std::size_t kRowsInGroup = 64; // splats and photons of this many rows are stored at a time
 
-// The radius of merging is at first this number of pixels, on the median of the visible surfaces. Sample i merges over
-// the first radius times (i + 1)^(-1/8): then the variance and the bias both vanish with more samples (Knaus and
-// Zwicker 2011, "Progressive Photon Mapping: A Probabilistic Approach", whose α is 3/4 here).
+// The initial radius of merging is this number of pixel widths, measured at the median of the visible surfaces. Sample
+// i merges over the initial radius times (i + 1)^(-1/8). The variance and the bias then both vanish with more samples
+// (Knaus and Zwicker 2011, "Progressive Photon Mapping: A Probabilistic Approach", whose α is 3/4 here).
 constexpr double kFirstRadius = 1.5;
 
-// Returns the radius of merging of the first sample, in meters.
+// Returns the radius of merging for the first sample, in meters.
 double first_radius(const RenderPlan& plan, const View& view) {
     constexpr int kGrid = 16; // rays per axis
     const CameraModel camera(view);
     const Pinhole pinhole = camera.pinhole();
-    std::vector<double> pixels; // widths in meters
+    std::vector<double> pixels; // widths of pixels in meters
     const auto add_pixel_at = [&](Vec3d p) {
         if (const auto seen = seen_through(pinhole, p)) pixels.push_back(1 / std::sqrt(seen->pixel_density));
     };
@@ -65,16 +65,16 @@ double first_radius(const RenderPlan& plan, const View& view) {
 
 class SampleOfAllPixels {
 public:
-    // `first_radius` is that of merging at the first sample; 0: subpaths do not merge.
+    // `first_radius` is the radius of merging for the first sample; with 0, subpaths do not merge.
     SampleOfAllPixels(const PassContext& context, const LightEmission& emission, double first_radius,
                       std::uint32_t index)
         : context_(context), emission_(emission), index_(index),
           radius_(static_cast<float>(first_radius * std::pow(index + 1.0, -0.125))),
           sums_(context.view.width, context.view.height) {}
 
-    // Returns the radiance of all pixels, or nothing if it was stopped. Where subpaths merge, all light subpaths are
-    // traced before the camera subpaths. To be connected, they are traced once more beside their camera subpaths,
-    // because keeping their vertices would take gigabytes.
+    // Returns the radiance of all pixels, or nothing if it was stopped. If subpaths merge, all light subpaths are
+    // traced before the camera subpaths. To be connected, light subpaths are traced again together with their camera
+    // subpaths, because storing their vertices would take gigabytes.
     std::optional<Image<Rgbd>> render() {
         bool complete = render_rows(true, radius_ == 0);
         if (complete && radius_ > 0) {
@@ -85,7 +85,7 @@ public:
     }
 
 private:
-    // Holds what the light subpaths of a row leave.
+    // Holds the results of the subpaths of a row.
     struct Row {
         std::vector<Splat> splats;
         std::vector<Photon> photons;
@@ -103,7 +103,7 @@ private:
             });
     }
 
-    // Returns the time of all rays where subpaths merge: a photon lights what is there at its own time only.
+    // Returns the common time of all rays if subpaths merge, because a photon is valid only at its own time.
     float common_time() const {
         Sampler sampler = context_.settings.make_sampler();
         sampler.start(0, 0, index_);
@@ -138,8 +138,8 @@ private:
 
     const PassContext& context_;
     const LightEmission& emission_;
-    const std::uint32_t index_; // of the sample, in each pixel
-    const float radius_;        // of merging; 0: none
+    const std::uint32_t index_; // index of the sample in each pixel
+    const float radius_;        // radius of merging; 0: none
     const CameraModel camera_{context_.view};
     const float time_ = common_time();
     Image<Rgbd> sums_;

@@ -2,9 +2,9 @@
 
 namespace duet::raytrace {
 
-// A pixel of a perspective view covers the area |dx × dy| of the plane at depth 1, and thus the solid angle
-// |dx × dy|·cos³θ, with cos θ = depth / distance. At the distance d that is an area of |dx × dy|·cos³θ·d² across the
-// ray (Physically Based Rendering, 3rd edition, §16.1.1).
+// A pixel of a perspective view covers the area |dx × dy| of the plane at depth 1, and thus the solid angle |dx ×
+// dy|·cos³θ, with cos θ = depth / distance. At the distance d this is an area of |dx × dy|·cos³θ·d² perpendicular to
+// the ray (Physically Based Rendering, 3rd edition, §16.1.1).
 std::optional<SeenPoint> seen_through(const Pinhole& pinhole, Vec3d p) {
     const Vec3d projected = pinhole.project(p);
     const double depth = projected.z;

@@ -10,7 +10,7 @@ namespace duet::raytrace {
 
 namespace {
 
-// The origins of rays are moved by this fraction of the coordinates' magnitudes, beyond the rounding errors of both the
+// Ray origins are offset by this fraction of the coordinates' magnitudes, which exceeds the rounding errors of both the
 // light's point and the object's transform.
 constexpr float kPositionError = gamma_bound(16);
 
@@ -99,7 +99,7 @@ EmissionDensity LightEmission::density(std::size_t index, Vec3 q, Vec3 w, Vec3 p
 
 namespace {
 
-// Draws a point on a surface light, and a direction by cosine.
+// Draws a point on a surface light, and a cosine-distributed direction.
 EmittedRay emit(const Scene& scene, const SurfaceLight& light, const EmissionRandomSamples& u) {
     const LightPoint point = std::visit([&](const auto& shape) { return point_of(shape, u.position); }, light.shape);
     const bool back = light.two_sided && u.direction.x >= 0.5f;
@@ -124,7 +124,7 @@ EmittedRay emit(const Scene&, const SpotLight& light, const EmissionRandomSample
     const Vec3 w = normalize(frame_from_normal(light.direction).to_world(local));
     return {{light.position, w}, 0, light.position, intensity(light, w)};
 }
-// The caller sets the origin of a ray from infinity.
+// Leaves the origin of the ray from infinity to the caller.
 EmittedRay emit(const Scene&, const SunLight& light, const EmissionRandomSamples&) {
     return {{{}, light.direction}, 0, {}, light.irradiance};
 }
@@ -150,7 +150,7 @@ std::optional<EmittedRay> LightEmission::sample(const EmissionRandomSamples& u, 
         ray.origin = center_ + frame.s * disk.x + frame.t * disk.y - ray.direction * static_cast<float>(radius_);
         emitted->position = ray.origin;
     }
-    // A light at one position may lie in a surface, which must not hold its rays up: see ShadowRayEnd.
+    // A point or spot light may lie in a surface, which must not block its rays: see ShadowRayEnd.
     if (!environment && is_delta(index)) ray.t_min = max_component(abs(ray.origin)) * kPositionError;
     ray.time = time;
     emitted->light = index;

@@ -13,39 +13,40 @@ namespace duet::raytrace {
 namespace {
 
 constexpr std::size_t kStepsPerChain = 128;
-constexpr std::size_t kRowsInGroup = 64, kChainsInGroup = 1024; ///< whose splats are kept until they are added
-constexpr int kMaxTiles = 16;                                   ///< of the pilot, per axis
-constexpr double kPathsPerTile = 64;                            ///< of the pilot, at least
-constexpr int kPilotPaths = 16384;                              ///< at most; fewer in images of fewer pixels
-/// A tile is taken to be at least this bright, relative to the mean of the image, so that chains also leave dark tiles.
+constexpr std::size_t kRowsInGroup = 64, kChainsInGroup = 1024; ///< splats of this many are stored at a time
+constexpr int kMaxTiles = 16;                                   ///< tiles of the pilot along each axis, at most
+constexpr double kPathsPerTile = 64;                            ///< paths of the pilot per tile, at least
+constexpr int kPilotPaths = 16384;                              ///< paths of the pilot, at most; fewer in small images
+/// The estimated brightness of a tile is at least this fraction of the image's mean, so that chains also leave dark
+/// tiles.
 constexpr double kMinBrightness = 0.02;
 
 // Holds the contribution of a path to pixels.
 struct Contribution {
     std::vector<Splat> splats;
-    /// This is the scalar contribution function I of Kelemen et al. 2002: chains visit paths in proportion to it. It is
+    /// This is the scalar contribution function I of Kelemen et al. 2002. Chains visit paths in proportion to it. It is
     /// the weighted sum of the luminance of the splats; see MetropolisPilot.
     double scalar = 0;
 };
 
-// The first block of random numbers: position in the image, point on the lens, time.
+// The first block of random samples determines the position in the image, the point on the lens, and the time.
 using FirstBlock = Sampler::Block;
 
-// Traces one pair of subpaths after the other.
+// Traces pairs of subpaths, one pair after the other.
 class PairTracer {
 public:
     PairTracer(const PassContext& context, const LightEmission& emission, RayCounts& counts)
         : context_(context), camera_(context.view), counts_(counts),
           tracer_(context.plan, emission, context.view, context.settings.integrator, 0, counts) {}
 
-    // Returns what the camera ray of these random numbers hits.
+    // Returns the camera ray of these random samples, and its hit.
     std::pair<Ray, Hit> camera_hit(const FirstBlock& u) {
         ++counts_.camera;
         const Ray ray = camera_.ray(pixel(u), lens(u), static_cast<double>(context_.plan.motion ? u[4] : 0));
         return {ray, context_.plan.prepared.accelerator.closest(ray)};
     }
 
-    // Finds what the path with this camera ray sends. S is Sampler or PrimarySample.
+    // Computes the splats of the path with this camera ray. S is Sampler or PrimarySample.
     template <typename S>
     void trace(const FirstBlock& u, const std::pair<Ray, Hit>& seen, S& sample, std::vector<Splat>& splats) {
         const auto& [ray, hit] = seen;
@@ -71,10 +72,9 @@ private:
     BidirectionalTracer tracer_;
 };
 
-// Estimates the radiance of all pixels. The mean over the independent paths estimates the mean b of the scalar
-// contribution I of all paths. A chain starts at one of them, chosen in proportion to I. In the mean over all of these
-// paths it is in equilibrium from its first step on: the contributions of its paths, times b / I, are an unbiased
-// estimate (Veach 1997, §11.3.1).
+// Estimates the radiance of all pixels. The independent paths estimate the mean b of the scalar contribution I. A chain
+// starts at one of them, chosen in proportion to I. On average over these starts, it is in equilibrium from its first
+// step on, so the contributions of its paths, times b / I, are an unbiased estimate (Veach 1997, §11.3.1).
 class ChainedSample {
 public:
     ChainedSample(const PassContext& context, const LightEmission& emission, const MetropolisPilot& pilot,
@@ -114,7 +114,7 @@ private:
             });
     }
 
-    // Returns the sampler at the independent path of a pixel, and the first block of its random numbers.
+    // Returns the sampler of a pixel's independent path, and its first block of random samples.
     std::pair<Sampler, FirstBlock> independent_path(int x, int y) const {
         std::pair<Sampler, FirstBlock> path{context_.settings.make_sampler(), {}};
         auto& [sampler, u] = path;
@@ -151,9 +151,9 @@ private:
             found.scalar += static_cast<double>(luminance(splat.light)) * pilot_.weight(splat.pixel);
     }
 
-    // Returns the weight of steps in multiple importance sampling, by the balance heuristic: a path has the density 1
-    // among independent paths, and I / b times as many among steps. Any constant in place of b gives an unbiased
-    // estimate, but not one that depends on the paths at which the chains start.
+    // Returns the weight of chain steps in multiple importance sampling, by the balance heuristic: independent paths
+    // have the density 1, and steps have kStepsPerPixel · I / b. Any constant in place of b gives an unbiased estimate,
+    // but it must not depend on the paths at which the chains start.
     double weight_of_steps(double scalar) const {
         const double steps = Metropolis::kStepsPerPixel * scalar;
         return steps > 0 ? steps / (steps + pilot_.mean_contribution()) : 0;
@@ -168,11 +168,12 @@ private:
         PrimarySample sample = start_at(u * scalars_.back(), mix_bits(seed));
         Contribution current, proposal;
         trace(sample, tracer, current);
-        double stay = 0; // the expected number of steps at the current path
+        double stay = 0; // expected number of steps at the current path
         for (std::size_t step = 0; step < kStepsPerChain; ++step) {
             sample.propose();
             trace(sample, tracer, proposal);
-            // Both paths count with the probabilities with which the chain goes on from them (Veach 1997, §11.3.2).
+            // Both paths are weighted with the probabilities with which the chain continues from them (Veach 1997,
+            // §11.3.2).
             const bool valid = std::isfinite(proposal.scalar);
             const double acceptance = valid ? std::min(1.0, proposal.scalar / current.scalar) : 0;
             stay += 1 - acceptance;
@@ -192,7 +193,7 @@ private:
         send_steps(current, stay, sent);
     }
 
-    // Returns the independent path up to which the scalar contributions sum up to this.
+    // Returns the independent path at which the cumulative scalar contribution reaches `sum`.
     PrimarySample start_at(double sum, std::uint64_t seed) const {
         const auto found = std::upper_bound(scalars_.begin(), scalars_.end() - 1, sum);
         const auto i = static_cast<int>(found - scalars_.begin());
@@ -219,7 +220,7 @@ private:
             if (!is_black(splat.light)) sent.push_back({splat.pixel, Rgb(Rgbd(splat.light) * factor)});
     }
 
-    // The film reports these pixels.
+    // Sends the invalid splats, which the film then reports.
     static void send_invalid(const Contribution& found, std::vector<Splat>& sent) {
         for (const Splat& splat : found.splats)
             if (!is_finite(splat.light)) sent.push_back(splat);
@@ -232,7 +233,7 @@ private:
     const std::uint64_t seed_;
     Image<Rgbd> sums_;
     const std::size_t chains_;
-    // These are the scalar contributions of the independent paths. Once all are traced, each is added to those before.
+    // The vector holds the scalar contributions of the independent paths; once all are traced, their cumulative sums.
     std::vector<double> scalars_;
 };
 
@@ -260,7 +261,7 @@ MetropolisPilot::MetropolisPilot(const PassContext& context, const LightEmission
 // Returns the luminance that reaches each tile, as a fraction of that of an image of luminance 1.
 std::vector<double> MetropolisPilot::light_of_tiles(const PassContext& context, const LightEmission& emission,
                                                     int paths) const {
-    constexpr int kChunk = 256; // paths that one thread traces
+    constexpr int kChunk = 256; // paths per task
     using Light = std::vector<double>;
     Light light(weights_.size());
     run_in_order<Light>(
@@ -286,7 +287,7 @@ std::vector<double> MetropolisPilot::light_of_tiles(const PassContext& context, 
     return light;
 }
 
-// A tile begins at the first row or column i with i · tiles / count = its number, rounded down.
+// Returns the number of pixels in a tile. Row or column i belongs to the tile number ⌊i · tiles / count⌋.
 double MetropolisPilot::pixels_of_tile(std::size_t tile) const {
     const auto length = [&](std::int64_t k, int count) {
         const auto first = [&](std::int64_t n) { return (n * count + tiles_ - 1) / tiles_; };

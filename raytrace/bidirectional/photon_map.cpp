@@ -11,8 +11,8 @@ namespace duet::raytrace {
 
 namespace {
 
-// The photons are sorted by slot in two steps: into buckets of adjacent slots, and within each bucket. Chunks of
-// photons, and then buckets, are work for different threads.
+// Photons are sorted by slot in two steps: into buckets of adjacent slots, and within each bucket. Threads work on
+// chunks of photons, and then on buckets.
 constexpr int kBucketBits = 6;
 constexpr std::size_t kBuckets = std::size_t{1} << kBucketBits, kChunks = 64;
 

@@ -1,5 +1,5 @@
-// A photon map finds the photons near a point: the vertices of light subpaths that vertices of camera subpaths merge
-// with (Jensen 1996; Hachisuka and Jensen 2009).
+// Declares the photon map, which finds the photons near a point. Photons are the vertices of light subpaths that
+// vertices of camera subpaths merge with (Jensen 1996; Hachisuka and Jensen 2009).
 #pragma once
 
 #include "raytrace/bidirectional/subpath.h"
@@ -9,20 +9,21 @@
 
 namespace duet::raytrace {
 
-/// Holds what a vertex of a light subpath leaves behind for merging.
+/// Represents a vertex of a light subpath that camera subpaths may merge with.
 struct Photon {
     Vec3 p;
-    Vec3 to_previous; ///< unit direction to where the light came from
-    Rgb flux; ///< throughput of the subpath, in W, times the cosine to the shading over that to the geometric normal
+    Vec3 to_previous; ///< unit direction to the previous vertex of the light subpath
+    Rgb flux;         ///< throughput of the subpath, in W, times the ratio of the shading to the geometric cosine
     MisSums mis;
     int depth; ///< number of scatterings before this vertex
 };
 
-/// Is a grid of cells of twice the radius. Cells are found by a hash, so that their number does not depend on the
-/// scene's extent (Teschner et al. 2003). The order of photons, and so of all sums, does not depend on threads.
+/// Stores photons in a grid whose cells are twice as wide as the radius. Cells are found by a hash, so that their
+/// number does not depend on the scene's extent (Teschner et al. 2003). The order of photons, and thus of all sums,
+/// does not depend on threads.
 class PhotonMap {
 public:
-    /// The radius must be positive. `threads` is the number of threads that build the grid (0 = all).
+    /// Builds the grid. The radius must be positive. `threads` is the number of threads (0 = all).
     PhotonMap(std::vector<Photon> photons, float radius, int threads);
 
     /// Calls visit(photon) for each photon within the radius of p.
@@ -42,7 +43,7 @@ private:
     Cell cell(Vec3 p) const;
     std::size_t slot_of(const Cell& cell) const;
 
-    std::vector<Photon> photons_; ///< by slot
+    std::vector<Photon> photons_; ///< sorted by slot
     std::vector<std::uint32_t> starts_;
     float radius_;
     double cells_per_meter_;

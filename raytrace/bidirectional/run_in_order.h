@@ -1,4 +1,4 @@
-// Work whose results reach any pixel: it is done on all threads, and its results are added in a fixed order.
+// Runs tasks whose results may reach any pixel on all threads, and adds the results in a fixed order.
 #pragma once
 
 #include "common/system/parallel.h"
@@ -10,9 +10,9 @@
 
 namespace duet::raytrace {
 
-/// Calls body(i, result, counts) once for each i in [0, count), and then add(result) in the order of i. So sums do not
-/// depend on threads. Meanwhile the results of a group take memory. Adds the counts to those of the pass. Returns false
-/// if it was stopped.
+/// Calls body(i, result, counts) once for each i in [0, count), in parallel, and then add(result) in the order of i, so
+/// that sums do not depend on threads. `group` results are stored at a time. The counts are added to those of the pass.
+/// Returns false if it was stopped.
 template <typename Result, typename Body, typename Add>
 bool run_in_order(const PassContext& context, std::size_t count, std::size_t group, const Body& body, const Add& add) {
     std::mutex mutex; // guards the counts

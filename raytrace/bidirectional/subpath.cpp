@@ -13,7 +13,7 @@ void MisSums::arrive(double squared_distance, double cosine) {
 
 void MisSums::scatter(double pdf, double reverse_pdf, double cosine, bool specular, double merging, bool merges) {
     earlier += std::exchange(last_merging, 0);
-    if (specular) { // both densities are infinite in the same proportion
+    if (specular) { // both densities are infinite, with a finite ratio
         connection = 0;
         earlier *= mis(cosine);
         earlier_than_merging *= mis(cosine);
@@ -33,7 +33,8 @@ double SubpathVertex::cosine_of_light(Vec3 wi) const {
     return reflected && dot(wi, ng) * dot(to_previous, ng) < 0 ? 0 : cosine(wi);
 }
 
-// A subpath samples the BSDF for the direction it came from as Vertex::wo has it: moved to the visible side.
+// Passes the direction that the subpath came from to the BSDF in the same form as Vertex::wo: moved to the visible
+// side.
 double SubpathVertex::pdf(Vec3 from, Vec3 to, TransportMode mode) const {
     const Vec3 came_from = direction_to_viewer(vertex.frame, vertex.point.ng, -from);
     return static_cast<double>(duet::pdf(vertex.bsdf, came_from, vertex.frame.to_local(to), mode));
@@ -46,15 +47,15 @@ Vec3 SubpathVertex::importance_origin(Vec3 w) const {
 
 namespace {
 
-// Returns the factor by which light from `to_light` to w differs from importance the other way round, because the
-// shading normal is not the geometric one (Veach 1997, eq. 5.19): the ratio of their cosines.
+// Returns the factor that makes the scattering of importance from `to_light` to w consistent with that of radiance, if
+// the shading normal is not the geometric normal. It is a ratio of cosines (Veach 1997, eq. 5.19).
 float shading_normal_factor(const Vertex& vertex, Vec3 to_light, Vec3 w) {
     const Vec3 ng = vertex.point.ng, ns = vertex.point.ns;
     return abs(dot(to_light, ns) * dot(w, ng)) / abs(dot(to_light, ng) * dot(w, ns));
 }
 
-// Returns whether the vertex lets light from `to_light` pass to a viewer, who is given in the frame as Vertex::wo is:
-// see is_consistent.
+// Returns whether the vertex lets light from `to_light` pass to a viewer (see is_consistent). `viewer` is a local
+// direction in the form of Vertex::wo.
 bool lets_light_pass(const Vertex& vertex, Vec3 to_light, Vec3 viewer) {
     const Vec3 light = vertex.frame.to_local(to_light);
     const Vec3 normal = same_hemisphere(light, viewer) ? vertex.point.terminator_normal : vertex.point.ng;
@@ -63,7 +64,7 @@ bool lets_light_pass(const Vertex& vertex, Vec3 to_light, Vec3 viewer) {
 
 } // namespace
 
-// The path tracer calls the BSDF with the viewer's direction first, moved to the visible side. So does this function.
+// Evaluates the BSDF with the viewer's direction first, moved to the visible side, as the path tracer does.
 Rgb SubpathVertex::importance_scattering(Vec3 w) const {
     const Frame& frame = vertex.frame;
     const Vec3 viewer = direction_to_viewer(frame, vertex.point.ng, -w), light = frame.to_local(to_previous);
@@ -77,7 +78,8 @@ ScatteringT<float> scatter(const SubpathVertex& at, const VertexRandomSamples& u
     const bool importance = mode == TransportMode::kImportance;
     ScatteringT<float> next = scatter(at.vertex, u, path, mode);
     if (next.continues && importance) {
-        // A viewer beyond the horizon of the shading normal sees a direction that was moved, which is never drawn.
+        // The BSDF is sampled on the visible side only. A direction beyond the horizon of the shading normal is thus
+        // never drawn, although a viewer there would be moved to the visible side.
         const Vec3 viewer = next.sample->wi;
         next.continues =
             dot(next.wi, at.vertex.point.ng) * viewer.z > 0 && lets_light_pass(at.vertex, at.to_previous, viewer);

@@ -6,7 +6,7 @@ namespace duet::raytrace {
 
 namespace {
 
-// The models of a band reach beyond it by a window's radius, and fill whole tiles.
+// The models of a band of rows are fitted up to a window's radius beyond the band, and in whole tiles.
 constexpr int kModelRows = 8 * DenoiseTile::kHeight;
 constexpr int kBandRows = kModelRows - 2 * kWindowRadius;
 
@@ -14,7 +14,7 @@ constexpr int kBandRows = kModelRows - 2 * kWindowRadius;
 template <typename Visit>
 void for_tiles(const HalfBuffers& halves, std::size_t half, int first_row, int end_row, int threads,
                const Visit& visit) {
-    constexpr int kTilesInTask = 4; // share the memory of the weights
+    constexpr int kTilesInTask = 4; // tiles share the memory of the weights
     const int columns = (halves.known.width() + DenoiseTile::kWidth - 1) / DenoiseTile::kWidth;
     const int rows = (end_row - first_row + DenoiseTile::kHeight - 1) / DenoiseTile::kHeight;
     const int tiles = columns * rows;

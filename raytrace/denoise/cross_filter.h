@@ -1,15 +1,15 @@
-// The cross filter applies each filter to both halves of an image, each half with the weights of the other.
+// Declares the cross filter, which filters both halves of an image, each with weights from the other half.
 #pragma once
 
 #include "raytrace/denoise/regression.h"
 
 namespace duet::raytrace {
 
-/// Holds what each filter adds to each half: [half][filter].
+/// Holds the change that each filter makes to each half: [half][filter].
 using Corrections = std::array<std::array<Planes, kFilters>, 2>;
 
-/// Filters both halves. Bands of rows are filtered one after the other, because their models would take 200 bytes per
-/// pixel. Each band is divided into tiles for the threads, on which no bit depends.
+/// Filters both halves. Bands of rows are filtered one after the other, because the models of the whole image would
+/// take 200 bytes per pixel. Threads filter tiles of a band; the result does not depend on their number.
 Corrections cross_filter(const HalfBuffers& halves, const Planes& features, int threads);
 
 } // namespace duet::raytrace

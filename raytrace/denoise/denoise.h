@@ -1,5 +1,5 @@
-// The denoiser estimates an image from the noisy halves of its film and from features: regression on features, weighted
-// by non-local means, with cross-validated error (Bitterli et al. 2016).
+// Declares the denoiser, which estimates an image from the noisy halves of its film and from features. It uses
+// regression on features, weighted by non-local means, with cross-validated error (Bitterli et al. 2016).
 #pragma once
 
 #include "common/image/image.h"

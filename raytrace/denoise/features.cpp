@@ -26,7 +26,7 @@ public:
           samplers_(kSamples, feature_sampler(settings)), random_samples_(kSamples), points_(kSamples),
           rays_(kSamples * kPixels), hits_(kSamples * kPixels) {}
 
-    // Traces a row of the image. The inverse of the depth is stored in 1/m.
+    // Traces a row of the image. The inverse depth is stored in 1/m.
     void trace(int y, Planes& features) {
         for (int x = 0; x < features.width(); x += kPixels) {
             const auto pixels = static_cast<std::size_t>(std::min(kPixels, features.width() - x));
@@ -42,9 +42,9 @@ public:
     }
 
 private:
-    static constexpr int kPixels = 64; // in a batch of rays
+    static constexpr int kPixels = 64; // pixels per batch of rays
 
-    // Makes the rays of the pixel that is the i-th of the batch.
+    // Computes the rays of the batch's i-th pixel.
     void start_rays(int x, int y, std::size_t i) {
         Sampler::start(samplers_, x, y, 0);
         Sampler::camera_ray_samples(samplers_, {plan_.lens, plan_.motion}, random_samples_);
@@ -78,16 +78,16 @@ private:
     const RenderPlan& plan_;
     const CameraModel camera_;
     const Vec3d forward_;
-    std::vector<Sampler> samplers_; // those of one pixel, as the next two
+    std::vector<Sampler> samplers_; // the first three vectors describe one pixel
     std::vector<CameraRaySample> random_samples_;
     std::vector<CameraModel::Sample> points_;
-    std::vector<Ray> rays_; // those of the batch
+    std::vector<Ray> rays_; // rays of the whole batch
     std::vector<Hit> hits_;
 };
 
 // Divides the inverse depths by their mean over the pixels where a surface is hit.
 void normalize_inverse_depth(Planes& features) {
-    constexpr double kMaxRatio = 10; // bounds what a surface close to the camera adds
+    constexpr double kMaxRatio = 10; // limits the effect of surfaces close to the camera
     double sum = 0, count = 0;
     for (int y = 0; y < features.height(); ++y)
         for (int x = 0; x < features.width(); ++x)
@@ -107,7 +107,7 @@ void normalize_inverse_depth(Planes& features) {
 
 Planes trace_features(const RenderPlan& plan, const View& view, const PathTracerSettings& settings) {
     Planes features(view.width, view.height, kFeatures);
-    constexpr int kRows = 4; // in a task
+    constexpr int kRows = 4; // rows per task
     parallel_for(static_cast<std::size_t>((view.height + kRows - 1) / kRows), settings.threads, [&](std::size_t task) {
         RowTracer tracer(plan, view, settings);
         const int first = static_cast<int>(task) * kRows;

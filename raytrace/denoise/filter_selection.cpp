@@ -12,7 +12,7 @@ constexpr std::size_t kNoFilter = kFilters;
 
 PixelBatch square(PixelBatch value) { return value * value; }
 
-// Stores the error estimates of a batch of pixels: one plane per filter, and that of the unfiltered image.
+// Stores the error estimates of a batch of pixels, in one plane for each filter and one for the unfiltered image.
 void estimate_errors(const HalfBuffers& halves, const Corrections& corrections, int x, int y, Planes& errors) {
     std::array<PixelBatch, kFilters + 1> sums;
     sums.fill(PixelBatch(0.0f));
@@ -33,7 +33,8 @@ void estimate_errors(const HalfBuffers& halves, const Corrections& corrections, 
     for (std::size_t k = 0; k <= kFilters; ++k) errors.store(k, x, y, sums[k] * known);
 }
 
-// Stores 1 for the candidate with the least error and 0 for the others, without the unfiltered image.
+// Stores 1 for the filter with the least error and 0 for the other; both are 0 if the unfiltered image has the least
+// error.
 void choose(const Planes& errors, int x, int y, Planes& choices) {
     const PixelBatch wide = errors.load(0, x, y), narrow = errors.load(1, x, y), none = errors.load(kNoFilter, x, y);
     const PixelBatch zero(0.0f), one(1.0f);
@@ -41,7 +42,7 @@ void choose(const Planes& errors, int x, int y, Planes& choices) {
     choices.store(1, x, y, xsimd::select(narrow < wide && narrow < none, one, zero));
 }
 
-// Gives the narrow filter the fraction of the unfiltered image that a firefly must not keep.
+// Moves a part of the unfiltered image's fraction to the narrow filter, in proportion to a firefly's unreliability.
 void filter_fireflies(const HalfBuffers& halves, int x, int y, Planes& fractions) {
     const PixelBatch reliability = halves.reliability[0].load(0, x, y) * halves.reliability[1].load(0, x, y);
     const PixelBatch wide = fractions.load(0, x, y), narrow = fractions.load(1, x, y), one(1.0f);

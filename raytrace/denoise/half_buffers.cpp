@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kVarianceRadius = 2;
 constexpr float kFireflyRatio = 2;
-// A pixel that is brighter is left as it is, because its square would not be finite in single precision.
+// Brighter pixels are not denoised, because their squares would overflow a float.
 constexpr double kMaxMean = 1e15;
 
 Rgbd mean(const Film::Pixel& pixel, std::size_t half) {
@@ -22,7 +22,7 @@ bool is_known(const Film::Pixel& pixel) {
     return true;
 }
 
-// Returns the variance of one sample of known pixels. See Film::variance.
+// Returns the variance of one sample for each known pixel. See Film::variance.
 Planes sample_variance(const Film& film, const Planes& known) {
     Planes variance(film.width(), film.height(), 3);
     for (int y = 0; y < film.height(); ++y)

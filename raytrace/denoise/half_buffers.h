@@ -1,4 +1,4 @@
-// HalfBuffers are the color of a film as the denoiser reads it: two independent halves, and how noisy they are.
+// Declares HalfBuffers, the denoiser's view of a film: two independent halves of its color, and their noise.
 #pragma once
 
 #include "raytrace/denoise/planes.h"
@@ -16,19 +16,20 @@ struct HalfBuffers {
           known(width, height, 1), reliability{Planes(width, height, 1), Planes(width, height, 1)} {}
 
     std::array<Planes, 2> mean;        ///< red, green, blue
-    std::array<Planes, 2> variance;    ///< of `mean`
+    std::array<Planes, 2> variance;    ///< variance of `mean`
     Planes known;                      ///< 1 where both halves have a sample; 0 elsewhere and outside of the image
-    std::array<Planes, 2> reliability; ///< weight in [0, 1] of a pixel for others: below 1 for fireflies; 0 if unknown
+    std::array<Planes, 2> reliability; ///< weight in [0, 1] for other pixels: below 1 for fireflies; 0 if unknown
 };
 
 /// Reads the halves of a film.
 ///
-/// The difference of the halves estimates the variance of one sample with one degree of freedom, which is too few to
-/// compare pixels by it. It is therefore averaged over 5 × 5 pixels.
+/// The difference of the halves estimates the variance of one sample, but with a single degree of freedom, which is too
+/// noisy to compare pixels. The estimate is therefore averaged over 5 × 5 pixels.
 ///
-/// A firefly is so bright that its half alone says nothing of its neighbors. A pixel that is more than twice as bright
-/// as the other half, and as all neighbors in both halves, counts for others in inverse proportion to its brightness.
-/// What both halves contain counts in full, so that this bias vanishes with more samples.
+/// A firefly is so bright in one half that it carries no information about its neighbors. If a pixel is more than twice
+/// as bright as in the other half and as all neighbors in both halves, its weight for other pixels is inversely
+/// proportional to its brightness. Brightness that both halves contain keeps its full weight, so this bias vanishes
+/// with more samples.
 HalfBuffers half_buffers(const Film& film, int threads);
 
 } // namespace duet::raytrace

@@ -1,4 +1,4 @@
-// NormalEquations solve small weighted least-squares problems, one per SIMD lane.
+// Declares NormalEquations, which solves small weighted least-squares problems, one per SIMD lane.
 #pragma once
 
 #include "raytrace/denoise/features.h"
@@ -7,7 +7,7 @@
 
 namespace duet::raytrace {
 
-/// A first-order model of the color around a pixel: a slope per feature, and a constant, which comes last.
+/// A first-order model of the color around a pixel has a slope per feature, and a constant, which comes last.
 inline constexpr std::size_t kTerms = kFeatures + 1;
 
 /// Accumulates the normal equations of a batch of pixels and solves them for the three color channels.
@@ -55,7 +55,7 @@ public:
 private:
     // Replaces the matrix by its Cholesky factor. The diagonal holds the inverses of the factor's diagonal.
     void decompose() {
-        const PixelBatch least(1e-20f); // for lanes without any weight, and where rounding cancels a diagonal
+        const PixelBatch least(1e-20f); // for lanes of weight 0, and for cancellation on the diagonal
         for (std::size_t i = 0; i < kTerms; ++i) {
             for (std::size_t j = 0; j < i; ++j) {
                 for (std::size_t k = 0; k < j; ++k)
@@ -69,7 +69,7 @@ private:
     }
 
     std::array<Terms, kTerms> matrix_; // the lower triangle, row by row
-    std::array<Terms, 3> right_;       // by color channel
+    std::array<Terms, 3> right_;       // right-hand sides by color channel
 };
 
 } // namespace duet::raytrace

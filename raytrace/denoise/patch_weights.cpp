@@ -4,16 +4,16 @@ namespace duet::raytrace {
 
 namespace {
 
-// The tile with the patches around its pixels, rounded up to whole batches.
+// This is the width of a tile with the patches around its pixels, rounded up to whole batches.
 constexpr int kAreaWidth = (DenoiseTile::kWidth + 2 * kPatchRadius + kBatchWidth - 1) / kBatchWidth * kBatchWidth;
 constexpr int kAreaHeight = DenoiseTile::kHeight + 2 * kPatchRadius;
 
-// Returns the squared difference of the pixels at (x, y) and those at (x + dx, y + dy), as the sum of the channels. A
-// pixel that is noisier than the other one explains no more of the difference than that: otherwise a firefly would
-// resemble everything.
+// Returns the squared difference of the pixels at (x, y) and at (x + dx, y + dy), summed over the channels. The
+// variance of the noisier pixel is limited to that of the other one, because otherwise a firefly would resemble every
+// pixel.
 PixelBatch squared_distance(const Planes& color, const Planes& variance, int x, int y, int dx, int dy) {
-    // The least variance tells equal colors from others where there is no noise. The largest distance is finite, so
-    // that the mean of a patch is.
+    // The least variance distinguishes equal colors from others in noise-free regions. The largest distance is finite,
+    // so that the mean of a patch is finite, too.
     const PixelBatch least_variance(1e-30f), largest(1e6f);
     PixelBatch sum(0.0f);
     for (std::size_t c = 0; c < 3; ++c) {

@@ -1,4 +1,4 @@
-// Planes store an image as the denoiser's SIMD loops read it: one plane of floats per channel, with a border.
+// Declares Planes, the image layout of the denoiser's SIMD loops: one plane of floats per channel, with a border.
 #pragma once
 
 #include "common/system/huge_pages.h"
@@ -10,16 +10,17 @@
 
 namespace duet::raytrace {
 
-/// A batch of horizontally neighboring pixels.
+/// Holds horizontally neighboring pixels, one per lane.
 using PixelBatch = FloatBatch<kMaxSimdLanes>;
-/// The number of pixels of a batch, as the type of coordinates.
+/// This is the number of pixels of a batch, in the type of coordinates.
 inline constexpr int kBatchWidth = static_cast<int>(kMaxSimdLanes);
 
-/// Planes hold `count` floats per pixel, all 0 at first. Each plane has a border around the image. So a window around
-/// any pixel, and a batch that begins inside of the image, can be read without a test.
+/// Stores `count` floats per pixel, initially 0. Each plane has a border around the image. A window around any pixel,
+/// and a batch that begins inside the image, can thus be read without a test.
 class Planes {
 public:
-    /// Width of the border in pixels: a tile, a window's radius, a patch's radius, and the rest of a batch fit into it.
+    /// This is the width of the border in pixels. It has room for a tile, a window's radius, a patch's radius, and the
+    /// rest of a batch.
     static constexpr int kBorder = 64;
 
     Planes(int width, int height, std::size_t count)

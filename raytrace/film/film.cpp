@@ -74,7 +74,7 @@ ImageRgb Film::variance_image() const {
     for (int y = 0; y < height(); ++y)
         for (int x = 0; x < width(); ++x) {
             Rgbd all = variance(x, y);
-            if (is_finite(all)) // of a very bright pixel it may be beyond what a float holds
+            if (is_finite(all)) // a very bright mean may overflow a float
                 for (std::size_t c = 0; c < 3; ++c) all[c] = min(all[c], double{std::numeric_limits<float>::max()});
             image(x, y) = Rgb(all);
         }

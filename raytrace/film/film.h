@@ -1,4 +1,5 @@
-// The film accumulates samples in double precision. It provides the mean and its variance of each pixel at any time.
+// Declares the film, which accumulates samples in double precision. It provides the mean of each pixel and the variance
+// of the mean at any time.
 #pragma once
 
 #include "common/image/image.h"
@@ -8,10 +9,10 @@
 
 namespace duet {
 
-/// Each pixel stores one sum of samples per replicate (see Sampler). Where there are two replicates of equal size,
+/// Stores one sum of samples per replicate (see Sampler) for each pixel. If there are two replicates of equal size,
 /// scrambled independently, the square of half the difference of their means is an unbiased estimate of the variance of
-/// the pixel's mean, for every sampler. Sums in double still grow after 2^24 samples, where sums in float would stall.
-/// Different threads may add samples to different pixels at the same time.
+/// the pixel's mean, for every sampler. Sums in double still grow after 2^24 samples, at which sums in float would
+/// stall. Different threads may add samples to different pixels at the same time.
 class Film {
 public:
     static constexpr std::size_t kReplicates = 2;
@@ -55,7 +56,7 @@ public:
     /// replicates of equal size is the smaller of their two means: a brightness that both replicates contain is real.
     double estimated_relmse() const;
 
-    /// A pixel stores the sum and the number of valid samples for each replicate.
+    /// Stores the sum and the number of valid samples for each replicate.
     struct Pixel {
         std::array<Rgbd, kReplicates> sum{};
         std::array<std::uint32_t, kReplicates> count{};

@@ -35,11 +35,11 @@ std::string camera_hash(const Camera& camera) {
 
 // Returns the film in the file if the file exists, else an empty film.
 StoredFilm load_or_create(const Scene& scene, const View& view, const PathTracerSettings& settings) {
-    if (!settings.film.empty()) // a larger film could not be read again
+    if (!settings.film.empty()) // fail now if the film will be too large to be read
         check_image_size(settings.film.string(), view.width, view.height);
     StoredFilm fresh{Film(view.width, view.height), {}, settings.first_sample};
     if (settings.film.empty()) return fresh;
-    remove_interrupted_writes(settings.film); // of killed renders; the film is locked
+    remove_interrupted_writes(settings.film); // left by killed renders; the film is locked
     fresh.settings = film_settings(scene, view, settings);
     if (!std::filesystem::exists(settings.film)) return fresh;
     StoredFilm stored = read_film(settings.film);
@@ -87,7 +87,7 @@ void FilmCheckpoint::run(const std::function<void()>& work) {
         work();
     }
     if (path_.empty()) return;
-    const std::unique_lock write_lock(write_mutex_, std::try_to_lock); // another thread is writing it
+    const std::unique_lock write_lock(write_mutex_, std::try_to_lock); // fails while another thread writes the file
     if (!write_lock || since_write_.seconds() < interval_) return;
     save();
     since_write_.restart();

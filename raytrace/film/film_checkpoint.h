@@ -1,4 +1,4 @@
-// FilmCheckpoint owns the film of a render and saves it to a file while the render runs.
+// Declares FilmCheckpoint, which owns the film of a render and saves it to a file while the render runs.
 #pragma once
 
 #include "common/scene/scene.h"
@@ -15,13 +15,13 @@
 
 namespace duet::raytrace {
 
-/// Returns everything that decides the bits of a film's samples, except for the sample numbers. A render can
+/// Returns all settings that determine the bits of a film's samples, except for the sample numbers. A render can
 /// continue a film, and films can be merged, only if these settings are equal.
 std::vector<StoredFilm::Setting> film_settings(const Scene& scene, const View& view,
                                                const PathTracerSettings& settings);
 
-/// Owns the film of one render. With PathTracerSettings::film, it starts from that file if the file exists, and writes
-/// the film there at intervals and at the end. Otherwise it starts empty.
+/// Owns the film of one render. If PathTracerSettings::film names an existing file, it starts with that film, otherwise
+/// with an empty one. It writes the film to that file at intervals and at the end.
 class FilmCheckpoint {
 public:
     /// Throws Error if the file is no film, is a film of another image or of other samples, or if another process
@@ -40,7 +40,7 @@ public:
 private:
     const std::filesystem::path path_; // empty: nothing is written
     const double interval_;
-    std::optional<FileLock> lock_; // of path_, taken before the film is read
+    std::optional<FileLock> lock_; // lock on path_, taken before the film is read
     StoredFilm stored_;
     Stopwatch since_write_;
     std::shared_mutex pixels_mutex_; // shared by threads that add to pixels, exclusive to copy all pixels

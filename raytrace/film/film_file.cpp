@@ -27,7 +27,7 @@ template <typename Get> ExrChannel integers(std::string name, const Film& film, 
     return channel;
 }
 
-/// Looks up the integer channels of an EXR file by name. A missing channel throws an Error.
+/// Finds the integer channels of an EXR file by name. A missing channel throws an Error.
 class Channels {
 public:
     Channels(const std::filesystem::path& path, const ExrFile& file) : path_(path), file_(file) {}

@@ -1,5 +1,5 @@
-// These functions write and read film files. A render can store its film as a checkpoint, a later render can continue
-// it, and the films of several computers can be merged.
+// Writes and reads film files. A render can store its film as a checkpoint, a later render can continue it, and the
+// films of several computers can be merged.
 #pragma once
 
 #include "raytrace/film/film.h"
@@ -10,9 +10,9 @@
 
 namespace duet {
 
-/// A film together with the settings that it was rendered with.
+/// Holds a film together with the settings that it was rendered with.
 struct StoredFilm {
-    /// A setting that determines the samples, for example {"seed", "0"}.
+    /// Holds a setting that determines the samples, for example {"seed", "0"}.
     struct Setting {
         std::string name, value;
         friend bool operator==(const Setting&, const Setting&) = default;

@@ -35,8 +35,8 @@ void add(Film& film, const Film& other) {
     }
 }
 
-// Returns whether the merged film is one that a single run could have rendered: every pixel has the same samples,
-// and none is missing.
+// Returns whether a single run could have rendered the merged film: every pixel has the same samples, and none is
+// missing.
 bool is_contiguous(const std::vector<NamedFilm>& films) {
     std::uint64_t next = films.front().stored.first_sample;
     for (const NamedFilm& film : films) {

@@ -1,4 +1,4 @@
-// These functions implement `raytrace merge`, which merges the films of a rendering's shards.
+// Implements `raytrace merge`, which merges the films of a rendering's shards.
 #pragma once
 
 #include "raytrace/film/film_file.h"

@@ -51,7 +51,7 @@ RadianceFunction radiance_function(Integrator integrator) {
     case Integrator::kBidirectional:
     case Integrator::kVcm:
     case Integrator::kPhotons:
-    case Integrator::kMetropolis: // light paths reach other pixels: render_bidirectional_pass()
+    case Integrator::kMetropolis: // light paths reach other pixels; see render_bidirectional_pass()
         break;
     }
     throw Error(message("the integrator ", integrator_name(integrator),

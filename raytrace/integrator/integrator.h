@@ -1,5 +1,5 @@
-// The integrators estimate how much light arrives along a camera ray. All are functions of the same type, each in a
-// file of its own.
+// Declares the integrators, which estimate the radiance along a camera ray. All are functions of the same type, each in
+// a file of its own.
 #pragma once
 
 #include "raytrace/integrator/light_components.h"
@@ -13,7 +13,7 @@ namespace duet::raytrace {
 /// Counts traced rays, and paths that Russian roulette ended, for the statistics.
 struct RayCounts {
     std::int64_t camera = 0, indirect = 0, shadow = 0;
-    std::int64_t ended = 0; ///< paths that roulette ended
+    std::int64_t ended = 0; ///< paths that Russian roulette ended
 
     RayCounts& operator+=(const RayCounts& other) {
         camera += other.camera;
@@ -24,14 +24,14 @@ struct RayCounts {
     }
 };
 
-// The first dimensions of a sample are the camera's. Each vertex of the path then has a block of its own. A
-// dimension that is not used somewhere does not shift the dimensions elsewhere.
+// The first dimensions of a sample belong to the camera. Each vertex of the path has a block of dimensions of its own,
+// so a dimension that one vertex does not use does not shift the dimensions of others.
 
 /// Holds the random samples in [0, 1) that a vertex uses. T is float, or a batch of floats for one vertex per lane.
 template <typename T> struct VertexRandomSamplesT {
     Vec2T<T> bsdf, light;
     T light_choice, lobe, roulette;
-    T distance = T(0.0f); ///< to where media scatter the path; batches have none
+    T distance = T(0.0f); ///< decides the distance at which media scatter the path; unused in batches
 };
 using VertexRandomSamples = VertexRandomSamplesT<float>;
 /// Returns the first sample dimension of the vertex after `depth` scatterings.
@@ -45,7 +45,7 @@ template <typename S> VertexRandomSamples vertex_random_samples(S& sampler, int 
     return {{u[0], u[1]}, {u[2], u[3]}, u[4], u[5], u[6], u[7]};
 }
 
-/// Returns an unbiased estimate of the radiance along a camera ray of unit direction. Its first hit is given, and
+/// Returns an unbiased estimate of the radiance along a camera ray of unit direction. `hit` is the ray's first hit, and
 /// may be invalid.
 using RadianceFunction = Rgb (*)(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler,
                                  RayCounts& counts);
@@ -59,9 +59,9 @@ Rgb reflection_radiance(const RenderPlan&, const Ray&, const Hit&, Sampler&, Ray
 Rgb normal_color(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);         ///< surface_colors.cpp
 Rgb albedo_color(const RenderPlan&, const Ray&, const Hit&, Sampler&, RayCounts&);         ///< surface_colors.cpp
 
-/// Computes path_radiance of many camera rays, bit-equal. The paths advance together, vertex by vertex (wavefront),
-/// so that the CPU overlaps the work of several paths where one alone would wait for its own results. All spans must
-/// have the same length. The rays, hits and samplers are modified.
+/// Computes path_radiance of many camera rays, bit-equal. The paths advance together, vertex by vertex (wavefront), so
+/// that the CPU overlaps the work of several paths instead of waiting for the results of one. All spans must have the
+/// same length. The rays, hits and samplers are modified.
 void path_radiances(const RenderPlan&, std::span<Ray> rays, std::span<Hit> hits, std::span<Sampler> samplers,
                     std::span<Rgb> radiances, RayCounts&); ///< wavefront/wavefront.cpp
 

@@ -1,4 +1,4 @@
-// LightComponents is the light of a camera sample, split by what the path does at its first hit.
+// Declares LightComponents, the light of a camera sample, split by what happens at the first hit of the path.
 #pragma once
 
 #include "common/image/rgb.h"
@@ -13,8 +13,8 @@ struct LightComponents {
     Rgb direct;      ///< light of Scene::lights after one scattering, except at smooth metal or glass
     Rgb environment; ///< the environment's light after one scattering at a diffuse surface, with occlusion
     Rgb reflection;  ///< all other light through metal or glass at the first hit
-    Rgb indirect;    ///< all other light through a diffuse first hit, also from moving emitters (no Scene::lights)
-    Rgb shadowed;    ///< not in the sum: what `direct` lacks because the lights are occluded
+    Rgb indirect;    ///< all other light through a diffuse first hit, including that of moving emitters
+    Rgb shadowed;    ///< not in the sum: direct light that is lost by occlusion
 
     Rgb sum() const { return emission + direct + environment + reflection + indirect; }
     /// Returns direct light without occlusion.

@@ -29,9 +29,9 @@ std::optional<LightLiSample> sample_li(const Scene& scene, const LightSampler& l
 
 namespace {
 
-// Returns the distance at which a ray toward a flat light hits it. It is computed by the test that decides all
-// other hits, so that surfaces in the light's plane are ordered before or behind the light as for any ray. A ray
-// toward the light's edge may miss it by a rounding error; then the result is `sampled`.
+// Returns the distance at which a ray toward a flat light hits it. The test is the same as for all other hits, so that
+// surfaces in the light's plane have the same order relative to the light as for any ray. A ray toward the light's edge
+// may miss it by a rounding error; then the result is `sampled`.
 float distance_to_light(const Ray& ray, const SurfaceLight& light, float sampled) {
     if (const auto* quad = std::get_if<Quad>(&light.shape)) {
         if (const auto hit = intersect_quad(ShearedRay(ray), *quad)) return hit->t;
@@ -48,15 +48,15 @@ ShadowRayEnd::ShadowRayEnd(const Scene& scene, const Ray& ray, Vec3 p, const Lig
     if (light_sample.light >= 0)
         light_ = std::get_if<SurfaceLight>(&scene.lights[static_cast<std::size_t>(light_sample.light)]);
     if (light_ == nullptr) {
-        // A point light may lie in a surface, which then does not occlude it: the ray ends a rounding error before
-        // it.
+        // A point light may lie in a surface, which must not occlude it. The ray therefore ends a rounding error before
+        // the light.
         end_.t = light_sample.delta ? light_sample.distance * (1 - gamma_bound(8)) - length(ray.origin - p)
                                     : light_sample.distance;
         return;
     }
     end_.object = light_->object;
     end_.primitive = light_->primitive;
-    // Mostly nothing is hit before the light or just behind it. Then its exact distance does not matter.
+    // Mostly nothing is hit before the light or just behind it. The light's exact distance then does not matter.
     end_.t = light_sample.distance * 1.001f;
 }
 

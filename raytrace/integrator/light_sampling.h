@@ -1,4 +1,4 @@
-// A vertex draws one light sample, which is weighted against BSDF sampling.
+// Declares light samples. A vertex draws one light sample, which is weighted against BSDF sampling.
 #pragma once
 
 #include "raytrace/integrator/vertex.h"
@@ -9,9 +9,9 @@ namespace duet::raytrace {
 /// Holds a light sample: light that arrives at a point from a light or the environment, unless it is occluded. T is
 /// float, or a batch of floats for one light sample per lane.
 template <typename T> struct LightLiSampleT {
-    Vec3T<T> wi;                        ///< unit, in world space
+    Vec3T<T> wi;                        ///< unit direction to the light, in world space
     RgbT<T> radiance;                   ///< see LightSample::radiance
-    T pdf{};                            ///< by solid angle, including the choice of the light; > 0
+    T pdf{};                            ///< density by solid angle, including the probability of the light; > 0
     MaskOf<T> delta = MaskOf<T>(false); ///< whether BSDF samples cannot find it
 };
 /// Holds a light sample of a single path.
@@ -36,13 +36,14 @@ std::optional<LightLiSample> sample_li(const Scene& scene, const LightSampler& l
 class ShadowRayEnd {
 public:
     ShadowRayEnd(const Scene& scene, const Ray& ray, Vec3 p, const LightLiSample& light_sample);
-    /// Returns the end of the ray or, for a surface light, a point just behind it. If nothing is hit before that,
+    /// Returns the end of the ray or, for a surface light, a point just behind the light. If nothing is hit before it,
     /// the light is visible.
     const Hit& conservative() const { return end_; }
     /// Returns the end at the light's exact distance along the ray.
     Hit exact(const Ray& ray) const;
     bool is_surface() const { return light_ != nullptr; }
-    /// Returns whether the light is a flat surface. Then exact() is where the ray itself hits it, if it does.
+    /// Returns whether the light is a flat surface. exact() then returns the ray's own hit on the light, if there is
+    /// one.
     bool is_flat() const { return is_surface() && !std::holds_alternative<Sphere>(light_->shape); }
 
 private:
@@ -59,8 +60,8 @@ inline bool unoccluded(const RenderPlan& plan, const AnyVertex& vertex, const Li
     return unoccluded(plan, ray, ShadowRayEnd(plan.scene, ray, light_receiver(vertex).p, light_sample));
 }
 
-/// Returns the density by solid angle with which sample_li draws the direction to `point`, which is on an
-/// emissive surface. It is 0 if that is no light that is sampled (it moves, or does not emit toward the receiver).
+/// Returns the density by solid angle with which sample_li draws the direction to `point`, which is on an emissive
+/// surface. It is 0 if the surface is not sampled as a light (it moves, or does not emit toward the receiver).
 float pdf_li(const Scene& scene, const LightSampler& lights, const LightReceiver& receiver, const SurfacePoint& point);
 /// Returns the density by solid angle with which sample_li draws the direction w to the environment.
 float pdf_li(const Environment& environment, const LightSampler& lights, const LightReceiver& receiver, Vec3 w);

@@ -1,5 +1,5 @@
-// The media of a scene along one ray. What they do to a path, and where they scatter light towards it, are questions
-// about the same columns, so the ray is followed once for all of them.
+// Declares the media of a scene along one ray. Scattering of the path and scattering of light towards it both depend on
+// the columns of the media, so the ray is followed only once.
 #pragma once
 
 #include "common/medium/density_grid.h"
@@ -11,25 +11,26 @@
 
 namespace duet::raytrace {
 
-/// A MediumOnRay is a medium on the part of a ray that is inside of its box.
+/// Represents a medium on the part of a ray that lies inside its box.
 class MediumOnRay {
 public:
-    /// Keeps a reference to the medium. The part ends at t_end, which may be infinite.
+    /// Keeps a reference to the medium. The part of the ray ends at t_end, which may be infinite.
     MediumOnRay(const Medium& medium, const Ray& ray, float t_end);
 
     const Medium& medium() const { return *medium_; }
     Interval inside() const { return inside_; } ///< may be empty
-    /// Follows the ray from a distance of the interval on until it has passed a column, > 0 or infinite.
+    /// Follows the ray from a distance in the interval until it has passed `column`, which is positive or infinite.
     PassedColumn follow(float from, float column);
-    /// Returns the distance by which it has passed the column, up to a cell of the density's grid too long.
+    /// Returns an upper bound of the distance at which the ray has passed the column. It exceeds the exact distance by
+    /// at most one cell of the density grid.
     float passed_by(float from, float column);
-    /// Returns the column up to a distance, in meters; that of the whole interval beyond its end.
+    /// Returns the column up to a distance, in meters. Beyond the interval's end it is that of the whole interval.
     float column(float t);
 
 private:
     const Medium* medium_;
     Interval inside_;
-    std::optional<DensityOnRay> density_; ///< of a medium whose density varies
+    std::optional<DensityOnRay> density_; ///< only for a medium whose density varies
 };
 
 /// Holds all media of a scene along [0, t_end] of a ray.

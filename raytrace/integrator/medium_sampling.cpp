@@ -24,7 +24,7 @@ Rgb depth_of_others(MediaOnRay& media, std::size_t index, float t) {
         if (i != index) depth += optical_depth(media[i].medium(), media[i].column(t));
     return depth;
 }
-// Returns whether another medium than media[index] is on the interval of the ray.
+// Returns whether another medium than media[index] overlaps the interval of the ray.
 bool others_overlap(MediaOnRay& media, std::size_t index, Interval interval) {
     for (std::size_t i = 0; i < media.size(); ++i) {
         const Interval other{media[i].inside().begin, std::min(media[i].inside().end, interval.end)};
@@ -33,15 +33,16 @@ bool others_overlap(MediaOnRay& media, std::size_t index, Interval interval) {
     return false;
 }
 
-// Returns the light that a medium emits on the ray, times the path's throughput. A medium alone is integrated in closed
-// form, whatever its density is. If others overlap it on the ray, the light of one random point stands for all.
+// Returns the light that a medium emits on the ray, times the path's throughput. If no other medium overlaps it on the
+// ray, it is integrated in closed form, for any density. Otherwise one random point estimates it.
 Rgb sample_emission(MediaOnRay& media, std::size_t index, Rgb throughput, RandomSequence& random) {
     const Medium& medium = media[index].medium();
     if (is_black(throughput * medium.absorption * medium.radiance)) return {};
     const Interval inside = media[index].inside();
     const float column = media[index].column(inside.end);
     if (!(column > 0)) return {};
-    // Of the light that the medium stops, σa / (σs + σa) is absorbed, and it emits as much of its radiance.
+    // The medium absorbs the fraction σa / (σs + σa) of the light that it stops, and emits the same fraction of its
+    // radiance.
     const Rgb extinction = medium.scattering + medium.absorption;
     const Rgb stopped = for_channels([&](std::size_t c) { return -std::expm1(-product(extinction[c], column)); });
     const Rgb source = throughput * medium.radiance * for_channels([&](std::size_t c) {
@@ -62,7 +63,7 @@ Rgb sample_emission(MediaOnRay& media, std::size_t index, Rgb throughput, Random
     return source * extinction * before * transmittance(depth_of_others(media, index, t)) / channel.mean(density);
 }
 
-// The optical depths of media up to a point of a ray.
+// Holds the optical depths of media up to a point of a ray.
 struct OpticalDepths {
     Rgb extinction, scattering;
 
@@ -80,9 +81,9 @@ std::optional<MediumCollision> sample_collision(MediaOnRay& media, float u, Rgb&
     RandomSequence random(u);
     for (std::size_t i = 0; i < media.size(); ++i) emitted += sample_emission(media, i, throughput, random);
     const ChosenChannel channel(throughput, random());
-    float t_end = media.t_end(); // that of the first collision so far
+    float t_end = media.t_end(); // distance of the first collision so far
     const Medium* collided = nullptr;
-    bool first = true; // the given number, which samples spread evenly, is that of the first medium on the ray
+    bool first = true; // u is stratified, so the first medium on the ray uses it
     for (MediumOnRay& on_ray : media) {
         const Interval inside = on_ray.inside();
         if (inside.empty() || inside.begin > t_end) continue;
@@ -102,13 +103,13 @@ std::optional<MediumCollision> sample_collision(MediaOnRay& media, float u, Rgb&
         density *= collided->scattering;
     }
     const float mean = channel.mean(density);
-    throughput *= mean == 0 ? Rgb() : value / mean; // of a throughput that is invalid, the result is invalid
+    throughput *= mean == 0 ? Rgb() : value / mean; // an invalid throughput stays invalid
     if (collided == nullptr) return std::nullopt;
     return MediumCollision{t_end, collided->asymmetry};
 }
 
 Rgb estimate_transmittance(std::span<const Medium> media, const Ray& ray, float t_end, float u) {
-    constexpr float kDeep = 3; // an optical depth behind which 5 % of the light are left
+    constexpr float kDeep = 3; // optical depth at which 5 % of the light is left
     RandomSequence random(u);
     Rgb depth;
     for (const Medium& medium : media) {
@@ -120,11 +121,11 @@ Rgb estimate_transmittance(std::span<const Medium> media, const Ray& ray, float 
             depth += optical_depth(medium, column_of(medium, ray.origin, ray.direction, inside));
             continue;
         }
-        const float survived = kDeep - std::log1p(-random()); // the optical depth at which roulette ends the ray
+        const float survived = kDeep - std::log1p(-random()); // optical depth at which roulette ends the ray
         const PassedColumn passed = follow(medium, ray, inside, survived / least);
         if (passed.t < kInfinity) return {};
         depth += optical_depth(medium, passed.column);
-        depth += Rgb(std::min(kDeep - least * passed.column, 0.0f)); // over the probability to survive
+        depth += Rgb(std::min(kDeep - least * passed.column, 0.0f)); // divides by the survival probability
     }
     return transmittance(depth);
 }

@@ -11,7 +11,7 @@ const Dielectric& MediumStack::dielectric(std::uint32_t material) const {
 
 const Dielectric* MediumStack::current_medium(std::int64_t without) const {
     const Dielectric* found = nullptr;
-    for (std::size_t i = count_; i-- > 0;) { // of equal priorities the last entered counts
+    for (std::size_t i = count_; i-- > 0;) { // of equal priorities, the last entered wins
         if (static_cast<std::int64_t>(materials_[i]) == without) {
             without = -1;
             continue;
@@ -30,13 +30,13 @@ void MediumStack::cross(std::uint32_t material, bool inwards) {
             ++overflow_;
         return;
     }
-    if (overflow_ > 0) { // the last entered is the first to be left
+    if (overflow_ > 0) { // the last entered is left first
         --overflow_;
         return;
     }
     const auto end = materials_.begin() + static_cast<std::ptrdiff_t>(count_);
     const auto last = std::find(std::make_reverse_iterator(end), materials_.rend(), material);
-    if (last == materials_.rend()) return; // the path started inside of it
+    if (last == materials_.rend()) return; // the path started inside this dielectric
     std::copy(last.base(), end, last.base() - 1);
     --count_;
 }

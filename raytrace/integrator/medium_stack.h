@@ -1,5 +1,5 @@
-// MediumStack is the medium stack of a path: the dielectrics that the path is inside of, what they absorb, and which of
-// them fills a point where several overlap.
+// Declares MediumStack, which tracks the dielectrics that a path is inside of, their absorption, and which of them
+// fills a point where several overlap.
 #pragma once
 
 #include "raytrace/render_plan.h"
@@ -8,10 +8,10 @@
 
 namespace duet::raytrace {
 
-/// Dielectrics with a priority may overlap, as water does with the glass that holds it. Where they overlap, only the
-/// one with the highest priority is present, and boundaries of the others inside it are ignored (Schmidt and Budge
-/// 2002, "Simple Nested Dielectrics in Ray Traced Images"). Dielectrics without a priority refract as if the outside
-/// surrounded them. The dielectric that fills a point absorbs the light there. Paths start outside of all
+/// Tracks nested dielectrics. Dielectrics with a priority may overlap, as water does with the glass that holds it. In
+/// the overlap, only the one with the highest priority is present, and boundaries of the others are ignored (Schmidt
+/// and Budge 2002, "Simple Nested Dielectrics in Ray Traced Images"). Dielectrics without a priority refract as if the
+/// outside surrounded them. The dielectric that fills a point absorbs the light there. Paths start outside of all
 /// dielectrics.
 class MediumStack {
 public:

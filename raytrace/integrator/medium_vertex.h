@@ -1,5 +1,5 @@
-// A medium vertex is a vertex of a path in a medium, which scatters it. It has the same functions as a vertex on a
-// surface (vertex.h).
+// Declares medium vertices, at which a medium scatters a path. They have the same functions as vertices on surfaces
+// (vertex.h).
 #pragma once
 
 #include "common/medium/phase_function.h"
@@ -10,14 +10,14 @@ namespace duet::raytrace {
 /// Represents a point at which a medium scatters a path.
 struct MediumVertex {
     Vec3 p;
-    Vec3 direction; ///< of the ray that arrives, unit
+    Vec3 direction; ///< unit direction of the arriving ray
     float time = 0;
-    float asymmetry = 0; ///< of the medium's phase function
+    float asymmetry = 0; ///< asymmetry of the medium's phase function
 };
 
-/// Returns the light receiver, which light reaches from all sides.
+/// Returns the light receiver, which light reaches from all directions.
 inline LightReceiver light_receiver(const MediumVertex& vertex) { return {vertex.p, Vec3(0, 0, 0)}; }
-/// Returns the phase function. The weight of the collision contains the coefficient of scattering.
+/// Returns the phase function. The weight of the collision already contains the scattering coefficient.
 inline Rgb scattering(const MediumVertex& vertex, Vec3 wi) {
     return Rgb(phase(vertex.direction, wi, vertex.asymmetry));
 }

@@ -1,4 +1,4 @@
-// Paths are traced for a sum of light, for its components, or for a log of each step.
+// Traces paths for a sum of light, for its components, or for a log of each step.
 #include "raytrace/integrator/path.h"
 
 #include "raytrace/integrator/path_log.h"
@@ -7,8 +7,7 @@ namespace duet::raytrace {
 
 namespace {
 
-// This sink splits the light of a path into components. `bounces` is the number of scatterings between the light and
-// the camera.
+// Splits the light of a path into components. `bounces` is the number of scatterings between the light and the camera.
 class ComponentSink {
 public:
     static constexpr bool kLogsEvents = false;
@@ -32,10 +31,10 @@ private:
     }
 
     LightComponents components_;
-    bool diffuse_ = false, specular_ = false; // about what scatters first
+    bool diffuse_ = false, specular_ = false; // whether the first scattering is diffuse or specular
 };
 
-// This sink adds up the light and logs each step.
+// Adds up the light and logs each step.
 class LoggingSink : public RadianceSum {
 public:
     static constexpr bool kLogsEvents = true;

@@ -1,9 +1,10 @@
-// Path is unidirectional path tracing with next event estimation. Each vertex draws a light sample and a BSDF
+// Implements unidirectional path tracing with next event estimation. Each vertex draws a light sample and a BSDF
 // sample, combined by multiple importance sampling (Kajiya 1986; Veach 1997, §9 and §10). Without light samples
 // (plan.lights is null) it is the naive path tracer, in which only BSDF samples find the lights.
 //
 // The functions at the top hold the formulas of a step. They are templates over the number type T: Path calls them for
-// one path (T = float), and wavefront/batch.cpp for a batch of paths, one per SIMD lane. Every path runs through them.
+// one path (T = float), and wavefront/batch.cpp for a batch of paths, one per SIMD lane. All paths are computed by
+// them.
 #pragma once
 
 #include "raytrace/integrator/integrator.h"
@@ -21,8 +22,8 @@
 
 namespace duet::raytrace {
 
-/// Returns the light that the vertex scatters from a light sample to the viewer, unless the light is occluded. It is
-/// not divided by the sample's density yet.
+/// Returns the light of a light sample that the vertex scatters to the viewer, unless the light is occluded. It is not
+/// divided by the sample's density yet.
 template <typename AnyVertex, typename T>
 inline RgbT<T> light_towards_viewer(const AnyVertex& vertex, const LightLiSampleT<T>& light) {
     return scattering(vertex, light.wi) * light.radiance;
@@ -32,12 +33,12 @@ inline RgbT<T> light_towards_viewer(const AnyVertex& vertex, const LightLiSample
 template <typename AnyVertex, typename T>
 inline T light_sample_weight(const AnyVertex& vertex, const LightLiSampleT<T>& light) {
     if (all(light.delta)) return T(1);
-    // BSDF samples find the environment and all emitters at rest, too.
+    // BSDF samples also find the environment and all emitters at rest.
     return mis_weight(light.pdf, select(light.delta, T(0), scattering_pdf(vertex, light.wi)));
 }
 
 /// Returns the MIS weight of light that a ray has found, against light samples at the previous vertex. `light_pdf` is
-/// the density with which these draw the ray's direction.
+/// the density with which light samples draw the ray's direction.
 inline float found_light_weight(const PreviousVertex& previous, float light_pdf) {
     return previous.no_light_sample ? 1 : mis_weight(previous.pdf, light_pdf);
 }
@@ -45,7 +46,7 @@ inline float found_light_weight(const PreviousVertex& previous, float light_pdf)
 /// Holds how a path leaves a vertex.
 template <typename T> struct ScatteringT {
     OptionalBsdfSample<T> sample;
-    MaskOf<T> scatters = has_sample(sample); ///< whether the surface scatters any light; else it absorbs all
+    MaskOf<T> scatters = has_sample(sample); ///< whether the surface scatters any light; else it absorbs all of it
     MaskOf<T> continues = MaskOf<T>(false);  ///< whether the new direction is valid, too
     Vec3T<T> wi{};                           ///< direction of the next ray, unit, in world space
 };
@@ -62,7 +63,7 @@ inline ScatteringT<T> scatter(const AnyVertex& vertex, const VertexRandomSamples
     next.continues = next.scatters & is_consistent(vertex, next.wi, s.wi);
     path.throughput *= s.weight;
     if (is_transmissive(vertex.bsdf) && mode == TransportMode::kRadiance) {
-        // Entering glass scales radiance by 1/η², and leaving it by η². Roulette must ignore both.
+        // Entering glass scales radiance by 1/η², and leaving it by η². Roulette must ignore both factors.
         const T eta2 = sqr(T(refraction_index(vertex.bsdf)));
         const T factor = select(vertex.wo.z > T(0), T(1) / eta2, eta2);
         path.refraction = select(s.transmitted, path.refraction * factor, path.refraction);
@@ -70,7 +71,7 @@ inline ScatteringT<T> scatter(const AnyVertex& vertex, const VertexRandomSamples
     return next;
 }
 
-/// A sink receives the light that a path finds. For images, this one adds up all light, from any source.
+/// Sums the light that a path finds, from any source. It is the sink for images: a sink receives all light of a path.
 class RadianceSum {
 public:
     static constexpr bool kLogsEvents = false; // whether the sink has a log() of all events
@@ -84,7 +85,7 @@ private:
     Rgb total_;
 };
 
-/// Replaces the medium stack in scenes in which light meets nothing between surfaces. It is empty.
+/// Replaces the medium stack in scenes without media and absorbing dielectrics. It is empty.
 struct NoMediumStack {
     explicit NoMediumStack(const RenderPlan&) {}
     static constexpr float relative_index() { return 0; }
@@ -96,8 +97,7 @@ inline VertexRandomSamples random_samples_at(const RenderPlan& plan, Sampler& sa
     return used ? vertex_random_samples(sampler, depth) : VertexRandomSamples{};
 }
 
-/// Traces one path. kHasMedia is true in scenes in which light meets something between surfaces
-/// (RenderPlan::needs_medium_stack).
+/// Traces one path. kHasMedia is true in scenes with media between or inside surfaces (RenderPlan::needs_medium_stack).
 template <typename Sink, bool kHasMedia> class Path {
 public:
     Path(const RenderPlan& plan, const Sampler& sampler, RayCounts& counts, Sink sink = {})
@@ -111,8 +111,8 @@ public:
         return result();
     }
 
-    /// Processes what the ray has hit after `depth` scatterings: adds the light found there, and replaces the ray by
-    /// the one that continues. Returns false if the path ends.
+    /// Processes the hit of the ray after `depth` scatterings: adds the light found there, and replaces the ray by the
+    /// one that continues. Returns false if the path ends.
     bool advance(Ray& ray, const Hit& nearest, int depth, const VertexRandomSamples& u) {
         if constexpr (kHasMedia) {
             if (solid_) return pass_solid(ray, nearest, depth, u);
@@ -133,9 +133,9 @@ public:
     }
     auto result() const { return sink_.result(); }
 
-    /// Returns the state, which a batch changes in place of advance().
+    /// Returns the state of the path. A batch modifies it instead of advance().
     PathState& state() { return state_; }
-    /// Adds the light of a light sample of a batch.
+    /// Adds the light of a light sample that a batch has drawn.
     void add(Rgb light) { sink_.add(light, LightSource::kLight, 0); }
     /// Adds light that the ray has found after `bounces` scatterings. `light_pdf` is the density with which light
     /// samples at the previous vertex find it, if any compete.
@@ -201,7 +201,7 @@ private:
         sink_.add(light, source, bounces + 1);
     }
 
-    // Only the sink that splits the light needs the source, so that a sum does not look it up.
+    // Only the sink that splits the light needs the source, so other sinks skip the search.
     LightSource source_of(const SurfacePoint& point) const {
         if constexpr (std::is_same_v<Sink, RadianceSum>) return LightSource::kLight;
         const bool sampled = surface_light_index(plan_.scene, point.object, point.primitive) >= 0;
@@ -216,8 +216,8 @@ private:
         if constexpr (kHasMedia)
             if (next.sample->transmitted) enter(vertex);
         footprint_.scatter(next.sample->pdf, next.sample->specular);
-        // Each number is written to where it is read next. If a whole ray were copied right after its components
-        // were written, that load would wait for their stores.
+        // Each component is written directly to its destination. If a whole ray were copied right after its components
+        // were written, the load would stall on store forwarding.
         state_.previous_vertex.no_light_sample = next.sample->specular || plan_.lights == nullptr;
         if (!state_.previous_vertex.no_light_sample) {
             state_.previous_vertex.receiver = light_receiver(vertex);
@@ -230,14 +230,14 @@ private:
         return true;
     }
 
-    // Notes what is on the other side of a surface that the path passes.
+    // Records the solid or the dielectric behind a surface that the path passes.
     void enter(const Vertex& vertex) {
         if (const auto* bsdf = std::get_if<SubsurfaceBsdf>(&vertex.bsdf))
             solid_ = {bsdf->interior, vertex.point.object};
         if (has_interior(vertex)) medium_stack_.cross(vertex.point.material, vertex.wo.z > 0);
     }
 
-    // Carries the path through a solid, and scatters it where it leaves. Returns false if the path ends.
+    // Carries the path through a solid, and scatters it where it leaves the solid. Returns false if the path ends.
     bool pass_solid(Ray& ray, const Hit& nearest, int depth, const VertexRandomSamples& u) {
         Rgb emitted;
         const auto exit = random_walk(plan_, *solid_, ray, nearest, u.distance, state_, emitted, counts_);
@@ -255,7 +255,7 @@ private:
         int ignored = 0;
         const Hit hit = medium_stack_.skip_ignored_boundaries(ray, nearest, state_.throughput, ignored);
         counts_.indirect += ignored;
-        // No light sample competes beyond an ignored boundary, because shadow rays end at any boundary.
+        // Light samples do not reach beyond an ignored boundary, because shadow rays end at any boundary.
         if (ignored > 0) state_.previous_vertex.no_light_sample = true;
         return hit;
     }
@@ -265,8 +265,8 @@ private:
         return glass != nullptr && !glass->thin;
     }
 
-    // Returns the transmittance of a light sample through what fills the space on its side of the surface. It is an
-    // estimate, which u decides.
+    // Returns an estimate, decided by u, of the transmittance from the vertex to a light sample. It depends on the
+    // dielectric or the media on the light's side of the surface.
     Rgb transmittance_to_light(const Vertex& vertex, const LightLiSample& light_sample, float u) const {
         const Ray ray{vertex.point.p, light_sample.wi};
         if (same_hemisphere(vertex.wo, vertex.frame.to_local(light_sample.wi)) || !has_interior(vertex))
@@ -283,8 +283,8 @@ private:
                                      : estimate_transmittance(plan_.scene.media, ray, distance, u);
     }
 
-    // Carries the path through the media on [0, t_end] of the ray, and adds the light that they emit, and that they
-    // scatter from delta lights. Returns where they scatter the path itself, if they do.
+    // Carries the path through the media on [0, t_end] of the ray. Adds the light that they emit, and the light from
+    // delta lights that they scatter towards the path. Returns where they scatter the path itself, if they do.
     std::optional<MediumCollision> pass_media(const Ray& ray, float t_end, int depth, const VertexRandomSamples& u) {
         if (!plan_.scene.needs.media || medium_stack_.in_dielectric()) return std::nullopt;
         MediaOnRay media(plan_.scene.media, ray, t_end);
@@ -325,7 +325,7 @@ private:
         return true;
     }
 
-    // Returns whether the path goes on after a scattering.
+    // Returns whether the path continues after a scattering.
     bool goes_on(int depth, const VertexRandomSamples& u) {
         if (plan_.russian_roulette && depth > 0 && !survives(u.roulette)) return false;
         ++counts_.indirect;
@@ -353,7 +353,7 @@ private:
     Sink sink_;
     PathState state_;
     std::conditional_t<kHasMedia, MediumStack, NoMediumStack> medium_stack_;
-    std::optional<EnteredSolid> solid_; // that the path is inside of
+    std::optional<EnteredSolid> solid_; // solid that the path is inside of
     PathFootprint footprint_;
 };
 

@@ -17,7 +17,8 @@ const RayFootprint* PathFootprint::widen(const Ray& ray, float t) {
         first_ = false;
         footprint_ = pixel_->at(ray, t) * fraction_;
         width_ = mean_width(footprint_);
-        // The footprint of a ray widens in proportion to its length, but that of an orthographic camera does not.
+        // The footprint of a perspective camera's ray widens in proportion to its length. That of an orthographic
+        // camera is constant.
         spread_ = (mean_width(pixel_->at(ray, 2 * t) * fraction_) - width_) / t;
         return &footprint_;
     }
@@ -28,7 +29,7 @@ const RayFootprint* PathFootprint::widen(const Ray& ray, float t) {
 }
 
 void PathFootprint::spread(float pdf) {
-    constexpr float kWidest = 0.5f; // radians; textures behind diffuse bounces retain some detail
+    constexpr float kWidest = 0.5f; // radians; textures after diffuse bounces keep some detail
     const float angle = 2 * std::sqrt(kInvPi / max(pdf, 1e-6f)) * fraction_;
     spread_ = max(spread_, min(angle, kWidest));
 }

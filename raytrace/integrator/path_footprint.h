@@ -1,19 +1,18 @@
-// A path's footprint is the area of a surface that one sample covers. It is tracked as a cone around the path
-// (Akenine-Möller et al. 2021, "Improved Shader and Texture Level of Detail Using Ray Cones").
+// Declares the footprint of a path, the area of a surface that one sample covers. It is tracked as a cone around the
+// path (Akenine-Möller et al. 2021, "Improved Shader and Texture Level of Detail Using Ray Cones").
 #pragma once
 
 #include "raytrace/integrator/vertex.h"
 
 namespace duet::raytrace {
 
-/// Tracks the width of a path's cone from vertex to vertex. It does nothing in scenes where no texture is filtered.
-/// At the first hit the footprint is the camera's own. Mirrors and glass do not change the cone's angle, whatever
-/// their curvature. Any other direction, drawn with some density, covers the solid angle 1/density, which the
-/// pixel's samples share. Textures seen through other surfaces thus blur less with every sample, and in the limit
-/// not at all.
+/// Tracks the width of a path's cone from vertex to vertex. It does nothing in scenes where no texture is filtered. At
+/// the first hit the footprint is the camera's own. Mirrors and glass do not change the cone's angle, whatever their
+/// curvature. A direction drawn with some density covers the solid angle 1/density, which the pixel's samples share.
+/// Textures seen through other surfaces thus blur less with every sample, and in the limit not at all.
 class PathFootprint {
 public:
-    /// Starts the cone of the path of a pixel's `sample`.
+    /// Starts the cone of the path of sample `sample` of a pixel.
     PathFootprint(const RenderPlan& plan, std::uint32_t sample)
         : pixel_(plan.pixel_footprint ? &*plan.pixel_footprint : nullptr),
           fraction_(pixel_ ? footprint_width(sample) : 0) {}

@@ -1,4 +1,4 @@
-// PathState is what a path carries from vertex to vertex.
+// Declares PathState, the state that a path carries from vertex to vertex.
 #pragma once
 
 #include "common/light/light_bounds.h"
@@ -13,7 +13,7 @@ struct PreviousVertex {
     bool no_light_sample = true; ///< whether no light sample competes, as after a camera ray or a delta lobe
 };
 
-/// Holds what scattering multiplies. T is float, or a batch of floats for one path per lane.
+/// Holds the factors that scattering changes. T is float, or a batch of floats for one path per lane.
 template <typename T> struct PathThroughputT {
     RgbT<T> throughput{T(1.0f)};
     T refraction = T(1.0f); ///< factor by which refractions have scaled the throughput

@@ -16,19 +16,19 @@ namespace {
 
 constexpr int kMaxRays = 30000;
 
-// Carries the path along the ray to the next collision or, if that comes first, to the hit. `hit_known` tells whether
-// `hit` is that of the ray; else it is found. Returns the distance of the collision, if there is one.
+// Carries the path along the ray to the next collision or, if that comes first, to the hit. `hit_known` says whether
+// `hit` is the ray's hit; if not, it is computed. Returns the distance of the collision, if there is one.
 std::optional<float> next_collision(const RenderPlan& plan, const SolidInterior& interior, Ray& ray, Hit& hit,
                                     bool hit_known, RandomSequence& random, PathThroughputT<float>& path) {
     const Rgb extinction = interior.scattering + interior.absorption;
     const ChosenChannel channel(path.throughput, random());
     const float drawn = -std::log1p(-random()) / extinction[channel.index];
     if (!hit_known) {
-        ray.t_max = drawn; // what is behind the collision need not be found
+        ray.t_max = drawn; // hits behind the collision do not matter
         hit = plan.prepared.accelerator.closest(ray);
     }
-    // Rounding may move a collision close to the surface to its other side. The walk then goes on as if the solid
-    // reached there, and soon meets the surface from outside, which it passes.
+    // Rounding may move a collision close to the surface to its other side. The walk then continues as if it were still
+    // inside the solid, and soon hits the surface from outside, which it passes.
     const bool collides = hit.t > drawn;
     const float t = collides ? drawn : hit.t;
     const Rgb passed = transmittance(extinction * t);
@@ -37,15 +37,15 @@ std::optional<float> next_collision(const RenderPlan& plan, const SolidInterior&
     return collides ? std::optional(t) : std::nullopt;
 }
 
-// The solids that a path is inside of. At an edge that a ray just touches, it may meet a surface from the other side
-// than it does in truth: so entering a solid twice counts once, and so does leaving it.
+// Stores the solids that a path is inside of. At an edge that a ray just touches, it may hit a surface from the wrong
+// side. Entering or leaving a solid twice therefore counts once.
 class EnteredSolids {
 public:
     explicit EnteredSolids(std::uint32_t object) { enter(object); }
     void enter(std::uint32_t object) {
         if (std::ranges::find(objects_, object) == objects_.end()) objects_.push_back(object);
     }
-    // Returns whether the path is outside of all now.
+    // Returns whether the path is now outside of all solids.
     bool leave(std::uint32_t object) {
         std::erase(objects_, object);
         return objects_.empty();
@@ -63,7 +63,7 @@ void reflect(const SurfacePoint& point, Ray& ray, RandomSequence& random) {
     ray.origin = offset_origin(point.p, point.p_error, n);
 }
 
-// Returns the ray of a viewer in front of the surface, to whom the hit is as far away as to the ray.
+// Returns a viewer's ray from in front of the surface, whose distance to the hit equals that of `ray`.
 Ray seen_from_outside(const SurfacePoint& point, const Ray& ray, const Hit& hit) {
     Ray outside{point.p + point.ng * hit.t, -point.ng};
     outside.time = ray.time;

@@ -1,5 +1,5 @@
-// Russian roulette ends paths that carry little light, and weights the others up, so that the mean stays (Arvo and Kirk
-// 1990, "Particle Transport and Image Synthesis").
+// Implements Russian roulette. It ends paths that carry little light, and increases the weight of the others, so that
+// the mean is preserved (Arvo and Kirk 1990, "Particle Transport and Image Synthesis").
 #pragma once
 
 #include "raytrace/integrator/path_state.h"
@@ -12,15 +12,15 @@ inline constexpr float kSurvivalFactor = 4;
 
 /// Holds the outcome of Russian roulette.
 template <typename T> struct RouletteT {
-    T probability; ///< of survival; may exceed 1
+    T probability; ///< survival probability; may exceed 1
     MaskOf<T> survives;
 };
-/// Decides by Russian roulette with the random number u whether the path continues, and weights survivors up for the
-/// paths that end. The throughput is taken without the factor of refraction. A path with a throughput of at least
-/// 1 / kSurvivalFactor continues for certain.
+/// Decides by the random number u whether the path continues, and divides the throughput of survivors by the survival
+/// probability. That probability ignores the factor of refraction. A path with a throughput of at least 1 /
+/// kSurvivalFactor always continues.
 template <typename T> inline RouletteT<T> russian_roulette(T u, PathThroughputT<T>& path) {
     const T probability = max_component(path.throughput) * T(kSurvivalFactor) / path.refraction;
-    const MaskOf<T> certain = !(probability < T(1)); // NaN survives, too, so that it is counted as invalid
+    const MaskOf<T> certain = !(probability < T(1)); // NaN survives, too, and is then counted as invalid
     if (all(certain)) return {probability, certain};
     path.throughput *= select(certain, T(1), T(1) / probability);
     const MaskOf<T> lucky = u < probability;

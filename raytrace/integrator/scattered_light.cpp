@@ -34,8 +34,8 @@ Rgb scattering_at(std::span<const Medium> media, const Ray& ray, float t, Vec3 w
     return sum;
 }
 
-// Returns the part of the range in which a ray is inside of the cone of a spot light, or a longer one. A point of the
-// ray is inside if its height over the apex, along the axis, is at least cos θ times its distance from there. The
+// Returns the part of the range in which a ray is inside the cone of a spot light, or a longer one. A point of the ray
+// is inside if its height over the apex, along the axis, is at least cos θ times its distance from the apex. The
 // squares of both are equal at the roots of a quadratic equation.
 Interval lit_range(const SpotLight& light, const Ray& ray, Interval range) {
     if (light.cos_outer <= 0) return range; // the cone is not convex
@@ -51,18 +51,18 @@ Interval lit_range(const SpotLight& light, const Ray& ray, Interval range) {
     const double roots[] = {q / a, q == 0 ? 0 : c / q};
     const float first = static_cast<float>(std::min(roots[0], roots[1])),
                 second = static_cast<float>(std::max(roots[0], roots[1]));
-    if (a > 0) // the ray is steeper than the cone, and stays inside of it
+    if (a > 0) // the ray is steeper than the cone, and stays inside
         return slope > 0 ? Interval{std::max(range.begin, second), range.end}
                          : Interval{range.begin, std::min(range.end, first)};
-    if (height + slope * (roots[0] + roots[1]) / 2 < 0) return {}; // the mirror image of the cone, behind the light
+    if (height + slope * (roots[0] + roots[1]) / 2 < 0) return {}; // the ray hits only the cone's mirror image
     return {std::max(range.begin, first), std::min(range.end, second)};
 }
 
-// A LightOnRay says how to sample the distances at which the light of a delta light is scattered.
+// Describes how to sample the distances at which the light of a delta light is scattered.
 struct LightOnRay {
     Interval range;
-    std::optional<EquiangularDistance> angle; // for a light at a point
-    float weight = 0; // what the light sends to the range without media and occluders, by the roughest estimate
+    std::optional<EquiangularDistance> angle; // only for point and spot lights
+    float weight = 0; // rough estimate of the light that reaches the range, without media and occluders
 };
 // Returns a weight of 0 if the light does not reach the range.
 LightOnRay light_on_ray(const Light& light, const Ray& ray, Interval range, const StoppedDistance& stopped) {
@@ -76,8 +76,8 @@ LightOnRay light_on_ray(const Light& light, const Ray& ray, Interval range, cons
     return {range, angle, average(point != nullptr ? point->intensity : spot->intensity) * angle.integral()};
 }
 
-// Chooses one delta light of at most kCandidates by its weight. If there are more, every k-th is a candidate, from a
-// random one on.
+// At most kCandidates delta lights are candidates, of which one is chosen by its weight. If there are more lights,
+// every k-th is a candidate, starting from a random one.
 constexpr std::size_t kCandidates = 8;
 
 struct ChosenLight {
@@ -130,7 +130,7 @@ std::optional<ScatteredLight> sample_scattered_light(const RenderPlan& plan, Med
     const PointOnRay point = distance.at(t);
     const float pdf = chosen->probability * point.pdf;
     if (!(pdf > 0)) return std::nullopt;                              // rounding has moved t out of the media
-    const Rgb scattering = scattering_at(media, ray, t, s->wi) / pdf; // at first, because each of both may be huge
+    const Rgb scattering = scattering_at(media, ray, t, s->wi) / pdf; // divided first, because both may be very large
     const Rgb radiance = point.transmittance * scattering * s->radiance *
                          estimate_transmittance(media, spawn_ray(plan, vertex, s->wi), s->distance, u.x);
     if (is_black(radiance)) return std::nullopt;
@@ -139,21 +139,22 @@ std::optional<ScatteredLight> sample_scattered_light(const RenderPlan& plan, Med
 
 EquiangularDistance::EquiangularDistance(const Ray& ray, Interval range, Vec3 light) : range_(range) {
     const Vec3 to_light = light - ray.at(range.begin);
-    // A light on the ray itself would leave no distance but its own to draw, so it counts as slightly beside it.
+    // If the light lay on the ray itself, only its own distance could be drawn. It is therefore moved slightly off the
+    // ray.
     height_ = std::max(length(cross(to_light, ray.direction)), 1e-5f * std::max(length(to_light), 1e-30f));
     begin_ = -dot(to_light, ray.direction);
     const float end = begin_ + (range.end - range.begin);
-    // The difference of the angles to both ends would cancel for a distant light.
+    // A difference of the angles to both ends would suffer from cancellation for a distant light.
     angle_ = end < kInfinity ? std::atan2(height_ * (range.end - range.begin), sqr(height_) + begin_ * end)
                              : std::atan2(height_, begin_);
 }
 
 float EquiangularDistance::sample(float u) const {
-    // This is the tangent of a sum of angles, less the tangent of the first. The sum is below π/2, so the denominator
-    // is positive.
+    // The distance is the tangent of a sum of angles minus the tangent of the first angle. The sum is below π/2, so the
+    // denominator is positive.
     const float cosine = std::cos(angle_ * u), sine = std::sin(angle_ * u);
     const float distance = (sqr(height_) + sqr(begin_)) * sine / (height_ * cosine - begin_ * sine);
-    return distance >= 0 ? std::min(range_.begin + distance, range_.end) : range_.end; // rounded beyond π/2
+    return distance >= 0 ? std::min(range_.begin + distance, range_.end) : range_.end; // beyond π/2 by rounding
 }
 
 float EquiangularDistance::pdf(float t) const {
@@ -162,7 +163,7 @@ float EquiangularDistance::pdf(float t) const {
 
 StoppedDistance::StoppedDistance(MediaOnRay& media, Interval range)
     : media_(media), range_(range), lit_length_(range.end - range.begin) {
-    constexpr float kDeep = 4; // an optical depth behind which 2 % of the light are left
+    constexpr float kDeep = 4; // optical depth at which 2 % of the light is left
     for (std::size_t i = 0; i < media_.size(); ++i) {
         const Medium& medium = media_[i].medium();
         shares_[i] = Rgb();
@@ -211,7 +212,7 @@ PointOnRay StoppedDistance::at(float t) {
         const float all = media_[i].column(t);
         depth += optical_depth(medium, all);
         const Interval in = inside(media_[i]);
-        if (!(in.begin <= t) || in.end < t) continue; // t is not in the medium; it may be its begin
+        if (!(in.begin <= t) || in.end < t) continue; // t is outside the medium
         const float column = all - media_[i].column(range_.begin);
         const float density = density_at(medium, media_.ray().at(t));
         for (std::size_t c = 0; c < 3; ++c)

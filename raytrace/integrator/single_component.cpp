@@ -1,5 +1,5 @@
-// These integrators compute one component of the light alone, to show it and to measure its cost. Paths continue
-// only where they can find this component.
+// Implements the integrators that compute only one component of the light, to show it and to measure its cost. Paths
+// continue only if they can still find this component.
 #include "raytrace/integrator/integrator.h"
 #include "raytrace/integrator/vertex.h"
 
@@ -13,13 +13,13 @@ bool is_diffuse(const RenderPlan& plan, const Ray& ray, const Hit& hit, const Sa
 
 } // namespace
 
-// The plan ends paths after one scattering.
+// Computes emission and direct light. The plan ends paths after one scattering.
 Rgb lights_radiance(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts) {
     const LightComponents components = path_components(plan, ray, hit, sampler, counts);
     return components.emission + components.direct;
 }
 
-// The plan samples the environment alone, and ends paths after one scattering.
+// Computes the environment's light. The plan samples only the environment, and ends paths after one scattering.
 Rgb environment_radiance(const RenderPlan& plan, const Ray& ray, const Hit& hit, Sampler& sampler, RayCounts& counts) {
     if (plan.environment == nullptr || !hit.valid() || !is_diffuse(plan, ray, hit, sampler)) return Rgb();
     return path_components(plan, ray, hit, sampler, counts).environment;

@@ -1,13 +1,13 @@
-// This integrator computes emission, and direct light without occlusion, by light sampling. The rasterizer computes
-// the same quantity in closed form.
+// Implements the integrator that computes emission, and direct light without occlusion, by light sampling. The
+// rasterizer computes the same quantity in closed form.
 #include "raytrace/integrator/path.h"
 
 namespace duet::raytrace {
 
 namespace {
 
-// Returns the environment's light as BSDF samples find it, without occlusion. At mirrors and glass there is no other
-// light.
+// Returns the environment's light that BSDF samples find, without occlusion. Mirrors and glass reflect no other light
+// here.
 Rgb environment_by_bsdf_sampling(const RenderPlan& plan, const Vertex& vertex, const VertexRandomSamples& u) {
     if (plan.environment == nullptr) return Rgb();
     PathState state;

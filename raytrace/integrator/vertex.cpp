@@ -6,7 +6,7 @@ namespace {
 
 const RayFootprint* pointer(const std::optional<RayFootprint>& footprint) { return footprint ? &*footprint : nullptr; }
 
-/// Returns a dielectric with the relative index that it has inside another one.
+/// Returns a dielectric with its index of refraction relative to the dielectric around it.
 Material with_index(const Material& material, float eta) {
     Dielectric other = std::get<Dielectric>(material);
     other.ior = eta;
@@ -18,7 +18,7 @@ Material with_index(const Material& material, float eta) {
 Vec3 origin_on_smooth_surface(const RenderPlan& plan, const SurfaceGeometryT<float>& point, Vec3 offset, float time) {
     const Vec3 n = dot(offset, point.ng) < 0 ? -point.ng : point.ng;
     const float distance = length(offset);
-    if (!(distance > 0)) return offset_origin(point.p, point.p_error, n); // its square has underflowed
+    if (!(distance > 0)) return offset_origin(point.p, point.p_error, n); // the square underflowed
     Ray ray{offset_origin(point.p, point.p_error, n), offset / distance};
     ray.time = time;
     Hit end;

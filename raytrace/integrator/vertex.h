@@ -1,4 +1,4 @@
-// A vertex of a path is a surface point with its BSDF.
+// Declares the vertex of a path: a surface point with its BSDF.
 #pragma once
 
 #include "common/vec/frame.h"
@@ -9,7 +9,7 @@
 
 namespace duet::raytrace {
 
-/// Says what a path knows of a surface by what it has passed before.
+/// Holds the properties of a surface that depend on what the path has passed before.
 struct Boundary {
     float relative_index = 0;  ///< MediumStack::relative_index() for a dielectric inside another one, else 0
     bool leaves_solid = false; ///< whether light leaves a solid there after subsurface scattering
@@ -18,11 +18,11 @@ struct Boundary {
 /// Represents a vertex of a path on a surface.
 class Vertex {
 public:
-    /// Makes the vertex at a valid hit of a ray. `footprint` is the ray's footprint there, or null if the plan needs
-    /// none. The vertex refers to the plan.
+    /// Constructs the vertex at a valid hit of a ray. `footprint` is the ray's footprint there, or null if the plan
+    /// needs none. The vertex refers to the plan.
     Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, const RayFootprint* footprint,
            const Boundary& boundary = {});
-    /// Makes the vertex at a valid hit of the camera ray of a pixel's `sample`.
+    /// Constructs the vertex at a valid hit of the camera ray of sample `sample` of a pixel.
     Vertex(const RenderPlan& plan, const Ray& ray, const Hit& hit, std::uint32_t sample);
     Vertex(const Vertex&) = delete; // bsdf may point into the vertex
     Vertex& operator=(const Vertex&) = delete;
@@ -30,10 +30,10 @@ public:
     const SurfacePoint point;
     const Material& material;
     const Frame frame; ///< local space of the BSDF, around the shading normal
-    const Vec3 wo;     ///< direction back along the ray; unit, in the local space
+    const Vec3 wo;     ///< unit direction back along the ray, in the local space
 
 private:
-    std::optional<Bsdf> own_bsdf_; // the BSDF, where it is not constant
+    std::optional<Bsdf> own_bsdf_; // the BSDF, if it is not constant
 
 public:
     const Bsdf& bsdf;
@@ -44,7 +44,8 @@ private:
     const Bsdf& make_bsdf(const RenderPlan& plan, const Boundary& boundary);
 };
 
-/// Returns an origin off point.p + offset, or off point.p if another surface lies between. The offset must not be 0.
+/// Returns an origin offset from point.p + offset, or from point.p if another surface lies between the two. The offset
+/// must not be 0.
 Vec3 origin_on_smooth_surface(const RenderPlan& plan, const SurfaceGeometryT<float>& point, Vec3 offset, float time);
 
 // The functions below are templates over the vertex: a Vertex, or the vertices of several paths in SIMD lanes
@@ -62,7 +63,7 @@ template <typename AnyVertex> inline auto light_receiver(const AnyVertex& vertex
     return LightReceiverT<T>{vertex.point.p, select(vertex.wo.z < T(0), -vertex.point.ng, vertex.point.ng)};
 }
 /// Returns whether wi is on the same side of the geometric surface and of the shading normal. `local` is wi in the
-/// frame. On the viewer's side, `terminator_normal` takes the place of the geometric normal (shading-terminator fix).
+/// frame. On the viewer's side, `terminator_normal` replaces the geometric normal (shading terminator fix).
 template <typename AnyVertex, typename T>
 inline MaskOf<T> is_consistent(const AnyVertex& vertex, Vec3T<T> wi, Vec3T<T> local) {
     const Vec3T<T> normal = select(same_hemisphere(vertex.wo, local), vertex.point.terminator_normal, vertex.point.ng);
@@ -82,18 +83,19 @@ template <typename AnyVertex, typename T> inline T scattering_pdf(const AnyVerte
     return pdf(vertex.bsdf, vertex.wo, vertex.frame.to_local(wi));
 }
 
-/// Returns the fraction of a pixel's width that its `sample` covers: the samples up to it share the pixel's area. It
-/// does not depend on how many samples follow, so that continued films and shards have the bits of a single run. In
-/// the limit nothing is blurred.
+/// Returns the fraction of a pixel's width that sample `sample` covers, if it shares the pixel's area with the samples
+/// before it. It does not depend on the number of samples that follow, so that continued films and shards are bit-equal
+/// to a single run. In the limit nothing is blurred.
 inline float footprint_width(std::uint32_t sample) { return 1 / std::sqrt(static_cast<float>(sample) + 1); }
-/// Returns the footprint of the camera ray of a pixel's `sample` at its hit, or nothing if the plan needs none.
+/// Returns the footprint of the camera ray of sample `sample` of a pixel at its hit, or nothing if the plan needs none.
 std::optional<RayFootprint> camera_footprint(const RenderPlan& plan, const Ray& ray, const Hit& hit,
                                              std::uint32_t sample);
 /// Returns the surface point that this camera ray hits.
 SurfacePoint camera_surface_point(const RenderPlan& plan, const Ray& ray, const Hit& hit, std::uint32_t sample);
 
-/// Returns the origin of a ray that leaves a point toward w (world space, unit): offset_origin(point, w), unless
-/// another surface lies between that and the point. From beyond it, the ray would miss it, or hit it from within.
+/// Returns the origin of a ray that leaves a point toward w (world space, unit). It is offset_origin(point, w), unless
+/// another surface lies between that origin and the point. From beyond such a surface, the ray would miss it, or hit it
+/// from inside.
 inline Vec3 ray_origin(const RenderPlan& plan, const SurfaceGeometryT<float>& point, Vec3 w, float time) {
     const float fraction = terminator_fraction(point, w);
     return fraction > 0 ? origin_on_smooth_surface(plan, point, point.terminator_offset * fraction, time)

@@ -1,6 +1,6 @@
-// This integrator is the ray tracer of Whitted (1980, "An Improved Illumination Model for Shaded Display"), which most
-// tutorials begin with. It follows rays through mirrors and glass to the first other surface. That is lit by every
-// light, each from its center, so that shadows are hard. Surfaces do not light each other.
+// Implements the ray tracer of Whitted (1980, "An Improved Illumination Model for Shaded Display"), with which most
+// tutorials begin. It follows rays through mirrors and glass to the first other surface, which every light illuminates
+// from its center, so that shadows are hard. Surfaces do not light each other.
 #include "raytrace/integrator/path.h"
 
 namespace duet::raytrace {
@@ -18,7 +18,7 @@ Rgb light_from_center(const RenderPlan& plan, const Vertex& vertex, std::size_t 
     return unoccluded(plan, vertex, light) ? scattered : Rgb();
 }
 
-// Returns the environment's light, which no surface occludes. It takes the place of the tutorials' ambient light.
+// Returns the environment's light without occlusion. It replaces the ambient light of the tutorials.
 Rgb ambient_light(const RenderPlan& plan, const Vertex& vertex, const VertexRandomSamples& u) {
     if (plan.environment == nullptr) return Rgb();
     PathState state;
@@ -34,7 +34,7 @@ Rgb direct_light(const RenderPlan& plan, const Vertex& vertex, const VertexRando
 
 } // namespace
 
-// Where glass both reflects and refracts, one of both is followed, by chance: many samples show both.
+// At glass, one of the reflected and the refracted ray is chosen at random. The mean of many samples contains both.
 Rgb whitted_radiance(const RenderPlan& plan, const Ray& camera_ray, const Hit& first_hit, Sampler& sampler,
                      RayCounts& counts) {
     Ray ray = camera_ray;

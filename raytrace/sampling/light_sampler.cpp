@@ -7,8 +7,8 @@ namespace duet {
 
 namespace {
 
-/// The estimates ignore shadows. So that a sun blocked by the walls does not starve the lights inside a room, this
-/// fraction of the samples is shared evenly among lights at infinity and the tree of all other lights.
+/// This fraction of the samples is shared evenly among lights at infinity and the tree of all other lights. The
+/// irradiance estimates ignore shadows, and a sun that the walls block must not starve the lights inside a room.
 constexpr float kUniformFraction = 0.5f;
 
 } // namespace
@@ -68,7 +68,7 @@ std::optional<SampledLight> LightSampler::sample(const LightReceiver& receiver, 
         const float probability = all.probability(weight(light, receiver));
         if (choose(probability)) return SampledLight{light.index, probability, u};
     }
-    return std::nullopt; // no light reaches the receiver, or u fell into the rounding error of the sum
+    return std::nullopt; // no light reaches the receiver, or u exceeds the rounded sum
 }
 
 float LightSampler::probability(const LightReceiver& receiver, std::size_t index) const {

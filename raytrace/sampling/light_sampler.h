@@ -1,4 +1,4 @@
-// This file chooses the light to sample, by the contribution of each light to a point.
+// Chooses the light to sample by the contribution of each light to a point.
 #pragma once
 
 #include "common/light/environment.h"
@@ -14,11 +14,12 @@ namespace duet {
 class LightSampler {
 public:
     LightSampler() = default;
-    /// sampled_irradiance is that of the environment, W/m² (see environment.h). At 0 the environment is not sampled.
+    /// `sampled_irradiance` is the irradiance of the environment's sampled part, W/m² (see environment.h). If it is 0,
+    /// the environment is not sampled.
     LightSampler(const std::vector<Light>& lights, float sampled_irradiance);
 
-    /// Chooses a light by its estimated irradiance at the receiver. u is in [0, 1). The result is empty where nothing
-    /// can illuminate the receiver.
+    /// Chooses a light by its estimated irradiance at the receiver. u is in [0, 1). The result is empty if no light can
+    /// illuminate the receiver.
     std::optional<SampledLight> sample(const LightReceiver& receiver, float u) const;
     /// Returns the probability with which sample chooses `index`. It is 0 for an index beyond the last.
     float probability(const LightReceiver& receiver, std::size_t index) const;
@@ -28,14 +29,14 @@ public:
     bool empty() const { return choice_count_ == 0; }
 
 private:
-    /// An InfiniteLight is at infinity: a sun or the environment. The tree of all other lights is one further choice.
+    /// Represents a light at infinity: a sun or the environment. The tree of all other lights is one further choice.
     struct InfiniteLight {
         std::size_t index;
         Vec3 to_light; ///< direction to a sun, unit; (0, 0, 0) for the environment
         float irradiance;
     };
     float weight(const InfiniteLight& light, const LightReceiver& receiver) const;
-    /// These are the weights of all choices at a receiver, W/m².
+    /// Holds the weights of all choices at a receiver, W/m².
     struct Weights {
         float tree = 0, sum = 0;
         int nonzero = 0; ///< number of choices of a weight above 0

@@ -13,8 +13,8 @@ namespace {
 constexpr std::size_t kBins = 12;
 constexpr int kMedianSplitDepth = 32; ///< from this depth on lists are halved, so that no path exceeds 64 levels
 
-/// Returns the measure of the directions into which lights with normals in a cone emit (Conty Estevez and Kulla 2018,
-/// eq. 1, for emission up to 90° from the normal).
+/// Returns the solid angle of the directions into which lights with normals in a cone emit, weighted as in Conty
+/// Estevez and Kulla 2018, eq. 1, for emission up to 90° from the normal.
 float orientation_measure(float cos_normals) {
     const float o = std::acos(clamp(cos_normals, -1.0f, 1.0f)), w = min(o + kPi / 2, kPi);
     return 2 * kPi * (1 - std::cos(o)) +
@@ -22,7 +22,7 @@ float orientation_measure(float cos_normals) {
 }
 float cost(const LightBounds& bounds) {
     if (bounds.empty()) return 0;
-    // The lights in a flat or thin box are still apart, but half its area alone would give them no cost.
+    // The cost of a flat or thin box is not its area alone, because the lights in it are still apart.
     const Vec3 d = bounds.box.diagonal();
     return bounds.intensity * orientation_measure(bounds.cos_normals) * (bounds.box.half_area() + length_squared(d));
 }
@@ -136,7 +136,7 @@ std::optional<SampledLight> LightTree::sample(const LightReceiver& receiver, flo
         sum += weights[i] = irradiance_estimate(lights_[node->first + i].bounds, receiver);
     if (!(sum > 0)) return std::nullopt;
     float left = u * sum;
-    std::uint32_t i = 0, last = node->count; // `last`: fallback where rounding leads beyond the end
+    std::uint32_t i = 0, last = node->count; // if rounding leads beyond the end, `last` is chosen
     for (; i < node->count; ++i) {
         if (!(weights[i] > 0)) continue;
         last = i;

@@ -1,4 +1,4 @@
-// This file defines a light tree, which chooses one of thousands of lights by its contribution at a point.
+// Declares the light tree, which chooses one of thousands of lights by its contribution at a point.
 #pragma once
 
 #include "common/light/light_bounds.h"
@@ -15,9 +15,9 @@ struct SampledLight {
     float remapped;    ///< random number for reuse, uniform in [0, 1)
 };
 
-/// A LightTree is a binary tree over the bounds of lights. Sampling descends from the root and chooses a child in
-/// proportion to the irradiance that its lights could cause (Conty Estevez and Kulla 2018). In a leaf it chooses
-/// among the few lights by the estimate of each. A tree of at most kLeafLights lights is a single leaf.
+/// Stores a binary tree over the bounds of lights. Sampling descends from the root and chooses a child in proportion to
+/// the irradiance that its lights could cause (Conty Estevez and Kulla 2018). In a leaf it chooses among the few lights
+/// by the estimate of each. A tree of at most kLeafLights lights is a single leaf.
 class LightTree {
 public:
     /// A leaf holds at most this many lights.
@@ -47,8 +47,8 @@ private:
         std::uint32_t first = 0;
         std::uint32_t count = 0; ///< number of lights in a leaf; 0: an inner node
     };
-    /// A TreePath is the path from the root to a light. Bit i of `bit_trail` is set where level i takes the second
-    /// child. leaf_light is the light's index in lights_.
+    /// Stores the path from the root to a light. Bit i of `bit_trail` is set where level i takes the second child.
+    /// leaf_light is the light's index in lights_.
     struct TreePath {
         std::uint64_t bit_trail = 0;
         std::uint32_t leaf_light = kNoLeaf;

@@ -1,4 +1,4 @@
-// This file defines pixel reconstruction filters.
+// Declares the pixel reconstruction filters.
 #pragma once
 
 #include "common/vec/vec.h"
@@ -9,17 +9,16 @@
 namespace duet {
 
 enum class FilterKind {
-    kBox,            ///< 1 inside the pixel, 0 outside; comparisons of the pipelines use it, as pixels share no samples
-    kBlackmanHarris, ///< smooth window over 3 × 3 pixels; edges stay as sharp and are stable in motion
+    kBox,            ///< 1 inside the pixel, 0 outside; pixels share no samples, so comparisons of the pipelines use it
+    kBlackmanHarris, ///< smooth window over 3 × 3 pixels: edges stay sharp, and are stable in motion
 };
 /// Returns the filter named "box" or "blackman-harris". Throws an Error for another name.
 FilterKind filter_kind(std::string_view name);
 /// Returns the name that filter_kind() accepts for a filter.
 std::string_view filter_name(FilterKind kind);
 
-/// Sample positions are distributed in proportion to the filter, which must not be negative. All samples then have the
-/// same weight, and each pixel uses only its own samples (Ernst, Stamminger and Greiner 2006, "Filter Importance
-/// Sampling").
+/// Distributes sample positions in proportion to the filter, which must not be negative. All samples then have the same
+/// weight, and each pixel uses only its own samples (Ernst, Stamminger and Greiner 2006, "Filter Importance Sampling").
 class PixelFilter {
 public:
     explicit PixelFilter(FilterKind kind);

@@ -15,7 +15,7 @@ Vec2 normal_pair(raytrace::RandomSequence& random) {
     return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
-// Adds normally distributed moves to all numbers. The interval [0, 1) is closed to a circle.
+// Adds normally distributed steps to all values, modulo 1.
 void move(Sampler::Block& values, float deviation, raytrace::RandomSequence& random) {
     const auto wrapped = [](float x) { return std::min(x - std::floor(x), kOneMinusEpsilon); };
     for (std::size_t i = 0; i < values.size(); i += 2) {
@@ -61,9 +61,9 @@ Sampler::Block PrimarySample::get_block() {
     return proposing_ ? block.proposal : block.values;
 }
 
-// Brings a block to the current point, whatever becomes of the proposal. Otherwise chains would be drawn to paths that
-// read it: each proposal of such a path would try other values, and reject those that are dark. Several small steps of
-// the normal distribution are one of a larger deviation.
+// Brings a block to the current point, whether or not the proposal is accepted. Otherwise chains would be attracted to
+// paths that read the block: each proposal of such a path would try other values, and reject dark ones. Several small
+// steps of the normal distribution are combined to one with a larger deviation.
 void PrimarySample::catch_up(Block& block) {
     if (block.step == steps_) return;
     if (block.step < 0 && large_step_ == 0) {

@@ -26,10 +26,10 @@ float stratum(std::uint32_t numerator, double fraction, std::uint32_t denominato
     return std::min(static_cast<float>((numerator + fraction) / denominator), kOneMinusEpsilon);
 }
 
-// Dimensions are padded (Kollig and Keller 2002): each pair of dimensions uses the points of the two-dimensional Sobol
-// sequence with its own scrambling and its own order. The order is an Owen scrambling of the index, which maps each
-// aligned block of 2^k indices to an aligned block. The first 2^k samples of each pair are therefore a net (Burley
-// 2020, §5). U is std::uint32_t, or a SIMD batch for several dimensions or samplers at once.
+// The following functions pad dimensions (Kollig and Keller 2002): each pair of dimensions uses the points of the
+// two-dimensional Sobol sequence with its own scrambling and its own order. The order is an Owen scrambling of the
+// index, which maps each aligned block of 2^k indices to an aligned block. The first 2^k samples of each pair are
+// therefore a net (Burley 2020, §5). U is std::uint32_t, or a SIMD batch for several dimensions or samplers at once.
 
 /// Returns the seed for the shuffling of a dimension from the 64 bits of the pixel's hash. The seed is well mixed.
 template <typename U> U dimension_seed(U pixel_low, U pixel_high, U dimension) {
@@ -156,7 +156,7 @@ void Sampler::start(std::span<Sampler> samplers, int pixel_x, int pixel_y, std::
 // thus shuffles the four quarters of each square of pixels. A sequence has only 2³² points, so the image is divided
 // into tiles with one sequence each.
 void Sampler::share_sequence(std::uint32_t pixel_x, std::uint32_t pixel_y) {
-    const int digits = static_cast<int>(std::bit_width(samples_per_replicate_ - 1)); // of a sample index
+    const int digits = static_cast<int>(std::bit_width(samples_per_replicate_ - 1)); // bits of a sample index
     const int side = std::max((32 - digits) / 2 - 1, 0); // a tile has 2^side × 2^side pixels
     const std::uint32_t mask = (1u << side) - 1;
     const std::uint32_t curve = spread_bits(pixel_x & mask) | spread_bits(pixel_y & mask) << 1;

@@ -1,5 +1,5 @@
-// A sampler generates the random samples of a pixel. Each number depends only on the seed, the pixel, the sample index
-// and the dimension, so images do not depend on threads, tiles or passes.
+// Declares samplers, which generate the random samples of a pixel. Each number depends only on the seed, the pixel, the
+// sample index and the dimension, so images do not depend on threads, tiles or passes.
 #pragma once
 
 #include "common/vec/vec.h"
@@ -33,10 +33,10 @@ struct CameraRaySample {
     float time = 0;
 };
 
-/// A sampler provides the dimensions of one sample of one pixel in order. With one replicate, all samples of a pixel
-/// are points of one well-distributed sequence. With two replicates, there are two sequences, scrambled independently:
-/// sample i is point ⌊i/2⌋ of replicate i mod 2. The film estimates the variance from the difference of the
-/// replicates. The disadvantage of two replicates is their error: a single sequence can reach half the squared error.
+/// Provides the dimensions of one sample of one pixel in order. With one replicate, all samples of a pixel are points
+/// of one well-distributed sequence. With two replicates, there are two sequences, scrambled independently: sample i is
+/// point ⌊i/2⌋ of replicate i mod 2. The film estimates the variance from the difference of the replicates. The
+/// disadvantage of two replicates is their error: a single sequence can reach half the squared error.
 class Sampler {
 public:
     /// kStratified and kBlueNoise need the number of samples per pixel. The number of replicates must be 1 or 2.
@@ -60,7 +60,7 @@ public:
     float get_1d();
     /// Returns the next two dimensions: two numbers in [0, 1).
     Vec2 get_2d();
-    /// A block holds eight dimensions.
+    /// This is the number of dimensions in a block.
     static constexpr std::size_t kBlock = 8;
     using Block = std::array<float, kBlock>;
     /// Returns the next eight dimensions as four pairs. The result equals that of four calls of get_2d(), but costs
@@ -70,7 +70,7 @@ public:
     /// samplers, samples[d * n + k] is the pair of sampler k at dimensions[d]. The samplers do not advance.
     static void get_2d_batch(std::span<const Sampler> samplers, std::span<const std::uint32_t> dimensions,
                              std::span<Vec2> samples);
-    /// Computes the same for a subset of the samplers: sampler k is samplers[subset[k]], and n is subset.size().
+    /// This overload takes a subset of the samplers: sampler k is samplers[subset[k]], and n is subset.size().
     static void get_2d_batch(std::span<const Sampler> samplers, std::span<const std::uint32_t> subset,
                              std::span<const std::uint32_t> dimensions, std::span<Vec2> samples);
     /// Selects the camera samples that are needed in addition to the position in the pixel.

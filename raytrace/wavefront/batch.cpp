@@ -27,13 +27,13 @@ UsedDimensions used_dimensions(const RenderPlan& plan, BatchedSurfaces::BsdfKind
             scattering == Scattering::kMetal || scattering == Scattering::kGlass, plan.russian_roulette && depth > 0};
 }
 
-#if XSIMD_WITH_AVX2 // else wavefront.cpp has no batches
+#if XSIMD_WITH_AVX2 // without AVX2, wavefront.cpp uses no batches
 
 using namespace lanes;
 
 namespace {
 
-// `load_four` reads consecutive numbers across these members.
+// `load_four` reads consecutive floats across these members.
 static_assert(offsetof(Ray, direction) == 3 * sizeof(float) && offsetof(Ray, t_min) == 6 * sizeof(float));
 static_assert(offsetof(PathThroughputT<float>, refraction) == 3 * sizeof(float));
 static_assert(offsetof(VertexRandomSamples, light) == offsetof(VertexRandomSamples, bsdf) + 2 * sizeof(float) &&
@@ -41,7 +41,7 @@ static_assert(offsetof(VertexRandomSamples, light) == offsetof(VertexRandomSampl
               offsetof(VertexRandomSamples, lobe) == offsetof(VertexRandomSamples, light) + 3 * sizeof(float) &&
               offsetof(VertexRandomSamples, roulette) == offsetof(VertexRandomSamples, light) + 4 * sizeof(float));
 
-// Holds what the formulas of path.h need of a Vertex, in lanes.
+// Holds the members of a Vertex that the formulas of path.h use, one path per lane.
 template <typename BsdfType> struct BatchVertex {
     const SurfaceGeometryT<Floats> point;
     const FrameT<Floats> frame;
@@ -60,10 +60,10 @@ private:
     }
 };
 
-// Loads the BSDFs of the paths, which all hold the type BsdfT<float>, number by number.
+// Loads the BSDFs of the paths, which all have the type BsdfT<float>, as arrays of floats.
 template <template <typename> typename BsdfT> auto numbers_of_bsdfs(std::span<const BatchPath> paths) {
-    // The numbers are loaded in rows of four. The last row overlaps the one before, or ends behind a BSDF of fewer
-    // numbers, but within the Bsdf.
+    // The floats are loaded in rows of four. The last row overlaps the one before, or ends behind a smaller BSDF, but
+    // within the variant Bsdf.
     constexpr std::size_t kRow = 4, kNumbers = std::max(sizeof(BsdfT<float>) / sizeof(float), kRow);
     static_assert(kNumbers * sizeof(float) <= sizeof(Bsdf));
     std::array<const float*, kLanes> first;
@@ -100,7 +100,7 @@ public:
         path_ = {{r, g, b}, refraction};
     }
 
-    // Adds a light sample to each path. The shadow rays are traced later.
+    // Draws a light sample for each path. The shadow rays are traced later.
     void add_light_samples(ShadowRays& shadows, RayCounts& counts) {
         store_receivers();
         const BatchLightSamples samples(plan_, paths_, vertex_.point.p);
@@ -121,7 +121,8 @@ public:
         }
     }
 
-    // Replaces the ray of each path that continues. It is flattened, because functions take batches by memory.
+    // Replaces the ray of each path that continues. All calls are inlined (flatten), because functions take batches
+    // through memory.
     [[gnu::flatten]] void leave(int depth, RayCounts& counts) {
         const VertexRandomSamplesT<Floats> u = random_samples();
         const ScatteringT<Floats> next = scatter(vertex_, u, path_);

@@ -1,5 +1,5 @@
-// A batch advances several paths at surfaces of one kind (BatchedSurfaces) together with SIMD, one
-// path per lane.
+// Declares batches, which advance several paths at surfaces of one kind (BatchedSurfaces) together with SIMD, one path
+// per lane.
 #pragma once
 
 #include "raytrace/wavefront/batch_path.h"
@@ -13,13 +13,13 @@ namespace duet::raytrace {
 struct UsedDimensions {
     bool direction = false, light = false, lobe = false, roulette = false;
 };
-/// Returns what paths at surfaces of this scattering use after `depth` scatterings.
+/// Returns the random samples that paths at surfaces of this scattering use after `depth` scatterings.
 UsedDimensions used_dimensions(const RenderPlan& plan, BatchedSurfaces::BsdfKind scattering, int depth);
 
 /// Advances up to kPathLanes paths at surfaces of one kind of plan.batched, after `depth` < plan.max_depth scatterings,
-/// as Path::advance does one path. Shadow rays are added to `shadows`, to be traced later. The result for each path is
-/// bit-equal to that for the path alone: the formulas are the same templates (path.h), and all operations are rounded
-/// the same in every lane.
+/// in the same way as Path::advance. Shadow rays are added to `shadows`, to be traced later. The result for each path
+/// is bit-equal to that of Path: the formulas are the same templates (path.h), and all operations round equally in
+/// every lane.
 void advance_batch(const RenderPlan& plan, BatchedSurfaces::Kind kind, std::span<BatchPath> paths, int depth,
                    ShadowRays& shadows, RayCounts& counts);
 

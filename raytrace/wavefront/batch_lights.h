@@ -1,4 +1,4 @@
-// The light samples of the paths of a batch.
+// Draws the light samples of the paths of a batch.
 #pragma once
 
 #include "common/light/solid_angle.h"
@@ -7,11 +7,11 @@
 
 namespace duet::raytrace::lanes {
 
-/// Draws a light sample for each path of a batch. Choices and samples are copied component by component: if a whole one
-/// were copied right after its components were written, that load would wait for the stores.
+/// Draws a light sample for each path of a batch. Choices and samples are copied component by component. If a whole one
+/// were copied right after its components were written, the load would stall on store forwarding.
 class BatchLightSamples {
 public:
-    /// `p` are the points of the paths. Their light receivers must be in the paths' states.
+    /// `p` holds the points of the paths. Their light receivers must be in the paths' states.
     BatchLightSamples(const RenderPlan& plan, std::span<const BatchPath> paths, const Vec& p) {
         pdf_.values.fill(1);
         for (std::size_t i = 0; i < paths.size(); ++i) {
@@ -37,7 +37,7 @@ public:
     LightLiSample operator[](std::size_t i) const {
         return {{wi_.vec(i), radiance_.rgb(i), pdf_.values[i], delta_.values[i] > 0}, distance_[i], light_[i]};
     }
-    /// Returns the light samples in lanes. Lanes without one have a black sample.
+    /// Returns the light samples, one per lane. Lanes without one have a black sample.
     LightLiSampleT<Floats> lanes() const {
         return {wi_.floats(), radiance_.colors(), pdf_.floats(), delta_.floats() > Floats(0.0f)};
     }
@@ -53,7 +53,7 @@ private:
         light_[i] = light.light;
     }
 
-    // Samples the lights of the paths whose light is a quad, all together. Returns a bit mask of these paths.
+    // Draws the light samples of all paths whose light is a quad together. Returns a bit mask of these paths.
     unsigned sample_quads(const std::vector<Light>& lights, std::span<const BatchPath> paths, const Vec& p) {
         unsigned quads = 0;
         LaneVectors corner, edge_u, edge_v;
@@ -85,7 +85,7 @@ private:
         return quads;
     }
 
-    unsigned chosen_ = 0, valid_ = 0; // bit masks of the paths that have a choice, and a light sample
+    unsigned chosen_ = 0, valid_ = 0; // bit masks of paths: with a chosen light, and with a light sample
     std::array<SampledLight, kLanes> choices_;
     LaneVectors wi_, radiance_;
     LaneValues pdf_, delta_;

@@ -12,9 +12,9 @@ inline constexpr std::size_t kPathLanes = kDoubleLanes;
 
 /// Describes one path of a batch. It refers to data of the caller.
 struct BatchPath {
-    std::uint32_t index; ///< identifies the path of a shadow ray
-    Ray* ray;       ///< the ray that has hit; the next ray if the path continues
-    const Hit* hit; ///< the hit of that ray
+    std::uint32_t index; ///< index that identifies the path among its shadow rays
+    Ray* ray;       ///< the ray that hit; replaced by the next ray if the path continues
+    const Hit* hit; ///< hit of `ray`
     const Shape* shape; ///< shape at the hit
     const Bsdf* bsdf;   ///< BSDF at the hit
     const VertexRandomSamples* random_samples;

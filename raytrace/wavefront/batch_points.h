@@ -1,4 +1,4 @@
-// The surface points of the paths of a batch.
+// Computes the surface points of the paths of a batch.
 #pragma once
 
 #include "common/geometry/point_on_shape.h"
@@ -8,12 +8,12 @@
 
 namespace duet::raytrace::lanes {
 
-// `load_four` reads consecutive numbers across these members.
+// `load_four` reads consecutive floats across these members.
 static_assert(offsetof(Ray, direction) == offsetof(Ray, origin) + 3 * sizeof(float) &&
               offsetof(Ray, t_min) == offsetof(Ray, direction) + 3 * sizeof(float));
 static_assert(offsetof(Sphere, radius) == offsetof(Sphere, center) + 3 * sizeof(float));
 
-/// Returns the surface points of hits on flat shapes. Triangles and quads are mixed in a batch.
+/// Returns the surface points of hits on flat shapes. A batch may mix triangles and quads.
 inline SurfaceGeometryT<Floats> flat_points(std::span<const BatchPath> paths) {
     LaneVectors corner, base, a, b; // edges are a − base and b − base
     LaneValues u, v, quad;
@@ -77,7 +77,7 @@ inline SurfaceGeometryT<Floats> smooth_points(std::span<const BatchPath> paths) 
                                                      direction.doubles()));
 }
 
-/// Returns the geometry of the points that the paths have hit on surfaces of this form, one path per lane.
+/// Returns the surface points of the paths at surfaces of this form, one path per lane.
 inline SurfaceGeometryT<Floats> surface_points(std::span<const BatchPath> paths, BatchedSurfaces::Geometry form) {
     switch (form) {
     case BatchedSurfaces::Geometry::kFlat:

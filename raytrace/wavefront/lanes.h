@@ -1,4 +1,5 @@
-// These types hold values of several paths in SIMD lanes, one path per lane, and convert them to and from scalars.
+// Defines types that hold values of several paths in SIMD lanes, one path per lane, and convert them to and from
+// scalars.
 #pragma once
 
 #include "common/image/rgb.h"
@@ -45,13 +46,13 @@ struct LaneVectors {
     Color colors() const { return {x.floats(), y.floats(), z.floats()}; }
 };
 
-/// Calls set(lane, path) for each lane. Lanes beyond the number of paths get the first path, so that their values are
-/// valid.
+/// Calls set(lane, path) for each lane. Lanes beyond the number of paths repeat the first path, so that their values
+/// are valid.
 template <typename Set> void for_lanes(std::span<const BatchPath> paths, const Set& set) {
     for (std::size_t i = 0; i < kLanes; ++i) set(i, paths[i < paths.size() ? i : 0]);
 }
 
-/// Loads four consecutive numbers of each path, starting at first(path), into four batches.
+/// Loads four consecutive floats of each path, starting at first(path), into four batches.
 template <typename First> std::array<Floats, 4> load_four(std::span<const BatchPath> paths, const First& first) {
     return load_columns<kLanes>([&](std::size_t i) { return &first(paths[i < paths.size() ? i : 0]); });
 }

@@ -1,4 +1,4 @@
-// This file overloads functions of robust.h for SIMD batches of floats.
+// Overloads functions of robust.h for SIMD batches of floats.
 #pragma once
 
 #include "common/vec/simd.h"

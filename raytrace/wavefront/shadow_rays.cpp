@@ -13,7 +13,7 @@ void ShadowRays::find_closest_hits() {
     indices_.resize(rays_.size());
     std::iota(indices_.begin(), indices_.end(), 0u);
     plan_.prepared.accelerator.closest_of_incoherent(rays_, indices_, hits_);
-    for (Ray& ray : rays_) ray.t_max = kInfinity; // the exact end may be beyond conservative()
+    for (Ray& ray : rays_) ray.t_max = kInfinity; // the exact end may lie beyond conservative()
 }
 
 bool ShadowRays::is_unoccluded(std::size_t i) const {
@@ -24,8 +24,8 @@ bool ShadowRays::is_unoccluded(std::size_t i) const {
     if (!nearest.valid()) return true;
     if (!end.is_surface()) return false;
     if (!end.is_flat()) return !plan_.prepared.accelerator.occluded(ray, end.exact(ray));
-    // exact() is where the ray itself hits a flat light. The light is visible if and only if the closest hit does
-    // not precede it.
+    // exact() is the ray's own hit on a flat light. The light is visible if and only if the closest hit does not
+    // precede it.
     const bool is_end =
         nearest.object == end.conservative().object && nearest.primitive == end.conservative().primitive;
     return is_end || !precedes(nearest, end.exact(ray));

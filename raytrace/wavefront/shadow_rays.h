@@ -1,4 +1,4 @@
-// ShadowRays collects shadow rays, to trace them together.
+// Declares ShadowRays, which collects shadow rays to trace them together.
 #pragma once
 
 #include "raytrace/integrator/light_sampling.h"
@@ -18,8 +18,8 @@ public:
         pending_.push_back({path, light, ShadowRayEnd(plan_.scene, ray, p, light_sample)});
         rays_.push_back(ray);
     }
-    /// Traces all rays. Calls on_unoccluded(path, light) for each that is not occluded, in order. Then the list is
-    /// empty.
+    /// Traces all rays and calls on_unoccluded(path, light) for each one that is not occluded, in order. The list is
+    /// empty afterwards.
     template <typename Unoccluded> void trace(const Unoccluded& on_unoccluded) {
         find_closest_hits();
         for (std::size_t i = 0; i < pending_.size(); ++i)
@@ -41,7 +41,7 @@ private:
     const RenderPlan& plan_;
     std::vector<PendingRay> pending_;
     std::vector<Ray> rays_;  ///< parallel to pending_
-    std::vector<Hit> hits_;  ///< the closest hits, where they have been traced
+    std::vector<Hit> hits_;  ///< closest hits of the rays, if they have been traced
     std::vector<std::uint32_t> indices_; ///< indices of all rays
 };
 

@@ -1,5 +1,5 @@
-// A wavefront is a set of paths that advance together, vertex by vertex. This file only schedules them: it sorts the
-// paths by what their rays have hit, and advances those at batched surfaces (BatchedSurfaces) of one kind in batches.
+// Schedules a wavefront, a set of paths that advance together, vertex by vertex. It sorts the paths by the surfaces
+// that their rays hit, and advances those at batched surfaces (BatchedSurfaces) of one kind in batches.
 #include "raytrace/acceleration/sort_by_class.h"
 #include "raytrace/integrator/path.h"
 #include "raytrace/wavefront/batch.h"
@@ -17,7 +17,7 @@ namespace {
 // Draws only the random samples that the vertices of paths use.
 class UsedDimensionSampler {
 public:
-    /// `random_samples` is indexed by path; `indices` are the paths.
+    /// `random_samples` is indexed by path; `indices` holds the indices of the paths.
     void draw(std::span<const Sampler> samplers, std::span<const std::uint32_t> indices, int depth,
               const UsedDimensions& used, std::vector<VertexRandomSamples>& random_samples) {
         const std::array<bool, 4> is_used{used.direction, used.light, used.light || used.lobe, used.roulette};
@@ -42,7 +42,7 @@ private:
     std::vector<Vec2> pairs_;
 };
 
-// Sorts paths by the class of what their rays have hit (BatchedSurfaces).
+// Sorts paths by the class of their rays' hits (BatchedSurfaces).
 class ByClass {
 public:
     explicit ByClass(std::size_t most) : classes_(most), sorted_(most) {}
@@ -90,7 +90,7 @@ public:
 
 private:
     using Kind = BatchedSurfaces::Kind;
-    // The fewest paths that are advanced as a batch are more than the two that SSE4.2 has lanes for.
+    // Fewer paths than this are not advanced as a batch. With SSE4.2 a batch has only two lanes, so no batches form.
     static constexpr std::size_t kMinBatch = 3;
 
     void advance(int depth) {
@@ -128,7 +128,7 @@ private:
                 return escape_to(*even, indices, depth);
             if (const auto* sky = std::get_if<SkyEnvironment>(environment)) return escape_to(*sky, indices, depth);
         }
-        // A ray that hits nothing uses random samples only where the path may be scattered on its way.
+        // A ray that hits nothing uses random samples only if media may scatter the path on its way.
         if (plan_.random_distances) draw_all(indices, depth);
         for (const std::uint32_t i : indices) advance_alone(i, depth);
     }

@@ -1,4 +1,4 @@
-// These functions convert vectors between SIMD batches of floats and of doubles with the same number of lanes.
+// Converts vectors between SIMD batches of floats and of doubles with the same number of lanes.
 #pragma once
 
 #include "common/vec/simd.h"
