@@ -1,5 +1,5 @@
-// The headers that most sources include and that take longest to parse. They are compiled once (option DUET_PRECOMPILE
-// of CMakeLists.txt). Each source includes what it uses all the same, because the option may be off.
+// These are the headers that most sources include and that take longest to parse. They are compiled once (option
+// DUET_PRECOMPILE of CMakeLists.txt). Each source includes what it uses all the same, because the option may be off.
 #pragma once
 
 #include <algorithm>

@@ -96,7 +96,7 @@ struct RenderStatistics {
 /// A Rendering is what a pipeline returns: the image, the requested auxiliary images, and statistics.
 struct Rendering {
     ImageRgb radiance; ///< linear radiance
-    ImageRgb denoised; ///< the same without most of its noise; empty unless the path tracer was to denoise it
+    ImageRgb denoised; ///< radiance without most of its noise; empty unless denoising was requested (path tracer)
     // Auxiliary images are empty unless requested. Depth, normal and albedo are means over the samples that hit a
     // surface; hit is the hit of sample 0.
     ImageFloat depth;   ///< camera-space −z in meters; infinity on a miss

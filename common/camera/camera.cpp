@@ -82,7 +82,7 @@ CameraModel::CameraModel(const View& view)
     right_ = normalize(cross(forward, usable_up(forward, camera.up)));
     up_ = cross(right_, forward);
 
-    // Half the extent of the image is in meters (orthographic) or at unit depth (perspective).
+    // This is half the height of the image: in meters (orthographic), or at unit depth (perspective).
     const double half_height = orthographic ? camera.height / 2 : std::tan(radians(camera.fov_degrees) / 2);
     const double half_width = half_height * view.width / view.height;
     const Vec3d corner = up_ * half_height - right_ * half_width;

@@ -62,7 +62,7 @@ inline PointOnShapeT<T> point_on_sphere(const Vec3T<T>& center, T radius, const 
     return point;
 }
 
-/// Twice the bound of one rounding to float.
+/// This is twice the bound on the relative error of one rounding to float.
 inline constexpr double kPointRounding = 2 * static_cast<double>(kRoundoff<float>);
 
 /// Sets the shading normal, and the shading-terminator fix by the offset to the smooth surface. The other fields must

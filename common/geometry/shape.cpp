@@ -92,7 +92,7 @@ bool is_closed_outwards(const Mesh& mesh) {
         while (parent[i] != i) i = parent[i] = parent[parent[i]];
         return i;
     };
-    std::vector<std::uint32_t> first(mesh.positions.size() + 1); // index in `ends` of the first edge that leaves each
+    std::vector<std::uint32_t> first(mesh.positions.size() + 1); // index in `ends` of each vertex's first edge
     const auto for_edges = [&](const auto& visit) {
         for (const auto& t : mesh.triangles)
             for (std::size_t i = 0; i < 3; ++i) {

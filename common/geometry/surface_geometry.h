@@ -1,4 +1,4 @@
-// This file defines what of a surface point decides where rays start and end.
+// This file defines the fields of a surface point that determine where rays to and from it start and end.
 #pragma once
 
 #include "common/vec/robust.h"
@@ -6,7 +6,7 @@
 
 namespace duet {
 
-/// These fields of a surface point decide where rays origin and end. T is float, or a batch of floats for several
+/// These fields of a surface point determine where rays start and end. T is float, or a batch of floats for several
 /// points.
 template <typename T> struct SurfaceGeometryT {
     Vec3T<T> p;       ///< position in world space
@@ -28,11 +28,11 @@ template <typename T> inline Vec3T<T> offset_origin(Vec3T<T> p, Vec3T<T> p_error
     return rounded_away(p + offset, offset);
 }
 
-/// Returns the fraction of point.terminator_offset by which a ray in direction w starts off the triangle. It is 1 below
-/// the triangle's plane, as long as w is above the plane of point.terminator_normal. Above, it falls to 0, because
-/// there the triangles around a convex one are not in the way.
+/// Returns the fraction of point.terminator_offset by which a ray in direction w starts off the triangle. It is 1 where
+/// w points below the triangle's plane, but above the plane of point.terminator_normal. For directions above the
+/// triangle's plane it falls to 0, because the neighboring triangles of a convex surface do not block them.
 template <typename T> inline T terminator_fraction(const SurfaceGeometryT<T>& point, Vec3T<T> w) {
-    constexpr float kHighest = 0.25f; // sine of the elevation from which on the fraction is 0
+    constexpr float kHighest = 0.25f; // sine of the elevation at and above which the fraction is 0
     const T zero(0), one(1), side = dot(point.terminator_offset, point.ng); // 0 if there is no terminator_offset
     const T elevation = select(side < zero, -dot(w, point.ng), dot(w, point.ng));
     const MaskOf<T> lifted = dot(w, point.terminator_normal) * side > zero;

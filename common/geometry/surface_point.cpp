@@ -10,7 +10,7 @@ namespace duet {
 
 namespace {
 
-// Holds what only textures need (SurfaceDetail::kAll).
+// Holds the fields that only textures need (SurfaceDetail::kAll).
 struct Parameterization {
     Vec2 uv;
     Vec3d dpdu, dpdv; // in object space

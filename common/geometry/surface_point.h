@@ -9,8 +9,7 @@
 
 namespace duet {
 
-/// A SurfacePoint is a point of a surface with what textures, materials and lights need there, in world space unless
-/// noted.
+/// A SurfacePoint holds what textures, materials and lights need at a point of a surface, in world space unless noted.
 struct SurfacePoint : SurfaceGeometryT<float> {
     Vec2 uv;             ///< texture coordinates
     Vec2 duv_dx, duv_dy; ///< change of uv from this sample to its neighbors; (0, 0): textures are not filtered

@@ -42,7 +42,8 @@ constexpr std::array kFixedSizes{
     FixedSize{"v3i", 12},
 };
 
-/// Fields takes fields off the front of some bytes, and returns none where the bytes end early.
+/// Reads consecutive fields from the front of a string of bytes. Each function returns nothing where the bytes end
+/// early.
 class Fields {
 public:
     explicit Fields(std::string_view bytes) : rest_(bytes) {}
@@ -60,7 +61,7 @@ public:
         for (std::size_t i = 4; i-- > 0;) value = value << 8 | static_cast<unsigned char>((*taken)[i]);
         return value;
     }
-    /// Takes a text that ends with NUL, which is not returned.
+    /// Reads a text that ends with NUL, and returns it without the NUL.
     std::optional<std::string_view> text() {
         const std::size_t end = rest_.find('\0');
         if (end == rest_.npos) return {};

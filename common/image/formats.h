@@ -20,8 +20,8 @@ std::string encode_jpeg(const ImageRgb& image, const WriteOptions& options);
 std::string encode_tga(const ImageRgb& image, const WriteOptions& options);
 ///@}
 
-/// The project implements these formats itself. Errors and results are as above.
-///@{
+/// The project implements these formats itself. As above, the decoders throw Error for a file that is malformed or over
+/// the limits, and the encoders return the bytes of a file. @{
 StoredImage decode_ppm(const ImageBytes& file);
 StoredImage decode_pfm(const ImageBytes& file);
 StoredImage decode_hdr(const ImageBytes& file);

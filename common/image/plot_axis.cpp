@@ -18,7 +18,7 @@ double tick_step(double span, int count) {
 
 Axis linear_axis(AxisRequest request) {
     auto& [low, high, logarithmic, tight, whole, count] = request;
-    if (!tight && low > 0 && low < 0.4 * high) low = 0; // readers compare heights above 0
+    if (!tight && low > 0 && low < 0.4 * high) low = 0; // the axis starts at 0, so that heights show ratios
     if (!tight && high < 0 && high > 0.4 * low) high = 0;
     if (!(low < high)) { // widen the range around a single value
         const double room = low == 0 ? 1 : std::abs(low) * 0.5;

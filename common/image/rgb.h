@@ -66,7 +66,8 @@ template <Arithmetic T> bool is_finite(RgbT<T> c) {
     return std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b);
 }
 
-/// A pixel of four 8-bit channels, as displays use it. The name of the variable says how the values are encoded.
+/// An Rgba8 is a pixel of four 8-bit channels, as displays use it. The name of the variable says how the values are
+/// encoded.
 struct Rgba8 {
     std::uint8_t r = 0, g = 0, b = 0, a = 255;
     friend bool operator==(const Rgba8&, const Rgba8&) = default;

@@ -1,4 +1,4 @@
-// Defines what image files hold, as stored, and the limits of their sizes.
+// This file defines the values of image files as stored, and the limits of their sizes.
 #pragma once
 
 #include "common/image/image.h"

@@ -44,8 +44,9 @@ float filmic_curve(float x) {
     return std::min(s * (2.51f * s + 0.03f) / (s * (2.43f * s + 0.59f) + 0.14f), 1.0f);
 }
 
-// One side of AgX's sigmoid (AgX.py, equation_full_curve): from the pivot, where the slope is 2, it approaches a limit
-// at a distance of `width` by `height`. `x` is the distance to the pivot, and the power sets the sharpness of the bend.
+// Returns one side of AgX's sigmoid (AgX.py, equation_full_curve) at the distance x from its pivot. The slope is 2 at
+// the pivot. The curve approaches the height `height` toward the distance `width`, and `power` sets the sharpness of
+// the bend.
 float sigmoid_side(float x, float width, float height, float power) {
     constexpr float kSlope = 2;
     const float scale = kSlope * width * std::pow(std::pow(kSlope * width / height, power) - 1, -1 / power);
@@ -68,7 +69,8 @@ const ColorMatrix kAgxInset = gray_preserving({{{0.842479062f, 0.0784336f, 0.079
                                                 {0.0423756549f, 0.0784336f, 0.879142974f}}});
 
 // Returns noise in [0, 1) whose values in each small neighborhood are spread evenly (Jimenez 2014, "Next Generation
-// Post Processing in Call of Duty: Advanced Warfare", interleaved gradient noise). The channels are shifted.
+// Post Processing in Call of Duty: Advanced Warfare", interleaved gradient noise). Each channel uses the pattern at a
+// different offset.
 double dither_noise(std::size_t x, std::size_t y, std::size_t channel) {
     const auto fraction = [](double v) { return v - std::floor(v); };
     const double column = static_cast<double>(x) + 5.588238 * static_cast<double>(channel);

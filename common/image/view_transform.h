@@ -1,5 +1,5 @@
-// This file implements the view transform: the way from linear radiance, which has no upper limit, to the 8-bit values
-// of a display.
+// This file implements the view transform, which maps linear radiance without an upper limit to the 8-bit values of a
+// display.
 #pragma once
 
 #include "common/image/image.h"

@@ -1,6 +1,6 @@
-// Implements the programs of the Debian package: each is this launcher, installed under the program's name. It starts
-// lib/duet/LEVEL/NAME beside its own folder, where LEVEL is the best that this CPU runs of the levels that the package
-// has. The environment variable DUET_LEVEL replaces the CPU's level; empty, it stands for a CPU that is too old.
+// This launcher is installed under the name of each program of the Debian package. It starts lib/duet/LEVEL/NAME beside
+// its own folder, where LEVEL is the highest x86-64 level that the CPU supports. The environment variable DUET_LEVEL
+// replaces the CPU's level; an empty value stands for a CPU below all levels.
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -11,7 +11,8 @@
 
 namespace {
 
-/// The levels of the x86-64 psABI, by the instructions that Duet's code and its compilers use of them.
+/// Returns the highest level of the x86-64 psABI that the CPU supports, such as "x86-64-v3", or an empty string below
+/// x86-64-v2. It tests only those instructions of a level that Duet's code and its compilers use.
 std::string cpu_level() {
     if (!__builtin_cpu_supports("sse4.2") || !__builtin_cpu_supports("popcnt")) return "";
     if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma") || !__builtin_cpu_supports("bmi2"))

@@ -24,8 +24,8 @@ template <typename T> MaskOf<T> is_usable_pdf(T pdf) { return (pdf > T(1e-45)) &
 template <typename T> struct AreaSampling {
     Vec3T<T> area_vector, to_plane;
 
-    /// Returns whether p lies on an emitting side: the front, and the back of a light that is two-sided there. The
-    /// light's own plane is on no side.
+    /// Returns whether p lies on an emitting side: the front, and the back of a light that is two-sided there. A point
+    /// in the light's own plane lies on neither side.
     MaskOf<T> emits(MaskOf<T> two_sided) const {
         const T front = -dot(area_vector, to_plane);
         return (front > T(0.0)) | ((front < T(0.0)) & two_sided);

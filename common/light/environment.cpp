@@ -25,8 +25,8 @@ Vec2 image_uv(const ImageEnvironment& e, Vec3 w) {
             clamp(uv.y, 0.0f, kOneMinusEpsilon)};
 }
 
-/// A Band is the range of y that a row of the image covers. band returns that of row k of `rows`, counted from the
-/// bottom.
+/// A Band is the range of y that a row of the image covers. The function band() returns the one of row k of `rows`,
+/// counted from the bottom.
 struct Band {
     double low, extent;
 };

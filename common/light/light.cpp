@@ -9,8 +9,8 @@ namespace {
 
 using Triangle = SurfaceLight::Triangle;
 
-/// Returns the sample of a light at a single position: intensity over squared distance. It is computed in double, so
-/// that neither intermediate overflows.
+/// Returns the sample of a light at a single position: intensity over squared distance. The computation is in double,
+/// so that no intermediate value overflows.
 std::optional<LightSample> sample_position(Vec3 position, Rgb intensity, Vec3 p) {
     const Vec3d to_light = Vec3d(position) - Vec3d(p);
     const double d2 = length_squared(to_light);

@@ -39,7 +39,7 @@ template <typename T> struct BsdfSampleLanes {
     const BsdfSampleT<T>& operator*() const { return sample; }
     const BsdfSampleT<T>* operator->() const { return &sample; }
 };
-/// Sample() of a BSDF returns this: std::optional for a single surface.
+/// This is the return type of a BSDF's sample(): std::optional for a single surface, BsdfSampleLanes for a batch.
 template <typename T>
 using OptionalBsdfSample = std::conditional_t<Arithmetic<T>, std::optional<BsdfSampleT<T>>, BsdfSampleLanes<T>>;
 /// Returns the sample where it is valid, else nothing.

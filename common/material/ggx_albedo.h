@@ -28,7 +28,7 @@ struct GgxAlbedo {
 GgxAlbedo ggx_albedo(float alpha, float cosine);
 /// Returns 1 − energy: the fraction of light that single scattering misses, because it hits a second microfacet.
 float ggx_energy_loss(float alpha, float cosine);
-/// Looks up each lane of a batch.
+/// Returns ggx_energy_loss for each lane of a batch.
 template <typename Batch> Batch ggx_energy_loss(Batch alpha, Batch cosine) {
     constexpr std::size_t kLanes = sizeof(Batch) / sizeof(float);
     alignas(Batch) std::array<float, kLanes> alphas, cosines;

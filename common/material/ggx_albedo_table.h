@@ -10,7 +10,7 @@
 
 namespace duet {
 
-/// Holds tables by roughness and angle, and maps roughness and angle to their rows and columns.
+/// Holds tables of GGX's directional albedo, and maps roughness and angle to their rows and columns.
 struct GgxAlbedoTables {
     static constexpr int kSize = 32;
     static constexpr float kSmoothest = 0.01f, kRoughest = 1; // range of roughness = √alpha

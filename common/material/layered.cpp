@@ -16,7 +16,7 @@ float gray_multiple_scattering(float f0, float mean_energy_loss) {
     return ggx_multiple_scattering(schlick_average(Rgb(f0)), mean_energy_loss).r;
 }
 
-/// Returns E(w), the albedo of a dielectric layer: single scattering plus the part of the lost light that multiple
+/// Returns E(w), the albedo of a dielectric layer: single scattering plus the fraction of the lost light that multiple
 /// scattering returns.
 float layer_albedo(GgxAlbedo single, float f0, float multiple_scattering, float mean_energy_loss) {
     return min(single.albedo(f0) + multiple_scattering * (1 - single.energy) * kPi * mean_energy_loss, 1.0f);
@@ -148,7 +148,7 @@ float LayeredBsdf::passed(float cosine) const {
 float LayeredBsdf::mean_passed() const {
     if (coat == 0)
         return max(1 - mean_layer_albedo(ggx_average_albedo(glossy.alpha), dielectric, dielectric_multiple), 1e-4f);
-    constexpr int kSteps = 16; // of the squared cosine, over which the mean is even
+    constexpr int kSteps = 16; // equal steps of the squared cosine, as 2∫ f μ dμ = ∫ f d(μ²)
     float sum = 0;
     for (int i = 0; i < kSteps; ++i) sum += passed(std::sqrt((static_cast<float>(i) + 0.5f) / kSteps));
     return max(sum / kSteps, 1e-4f);

@@ -64,7 +64,8 @@ struct LayeredBsdf {
     Albedos albedos(float cosine) const;
     /// Returns the fraction of the light from this cosine, in [0, 1], that passes the dielectric and the coat.
     float passed(float cosine) const;
-    /// Returns the fraction of diffuse light that passes both: the cosine-weighted mean of passed(), at least 0.0001.
+    /// Returns the fraction of diffuse light that passes the dielectric and the coat: the cosine-weighted mean of
+    /// passed(), at least 0.0001.
     float mean_passed() const;
 };
 

@@ -20,8 +20,8 @@ using Material = std::variant<Diffuse, Metal, Dielectric, Emissive, Principled, 
 using Bsdf = std::variant<DiffuseBsdf, RoughDiffuseBsdf, MetalBsdf, LayeredBsdf, RoughDielectricBsdf, DielectricBsdf,
                           ThinDielectricBsdf, SubsurfaceBsdf, SubsurfaceExitBsdf>;
 
-/// Returns the BSDF of a material at a point, where textures have been evaluated. In place of subsurface scattering it
-/// has diffuse reflection, which scatters as much light.
+/// Returns the BSDF of a material at a point, with its textures evaluated there. Subsurface scattering is replaced by
+/// diffuse reflection, which scatters as much light.
 Bsdf bsdf_at(const Material& material, const TextureSet& textures, const SurfacePoint& point);
 
 /// Returns the mean free path of the light inside of the material, in meters, or null if this kind of material cannot
@@ -51,7 +51,7 @@ inline float pdf(const Bsdf& bsdf, Vec3 wo, Vec3 wi, TransportMode mode = Transp
     return std::visit([&](const auto& b) { return b.pdf(wo, wi, mode); }, bsdf);
 }
 
-// These functions do the same for a BSDF of a known type, as in a batch of surfaces.
+// These functions evaluate, sample and query a BSDF of a known type, as in a batch of surfaces.
 template <typename BsdfType>
 concept KnownBsdf = requires { BsdfType::kTransmissive; };
 template <KnownBsdf BsdfType, typename Vec> auto eval(const BsdfType& bsdf, const Vec& wo, const Vec& wi) {

@@ -6,7 +6,7 @@
 
 namespace duet {
 
-/// Holds tables by index, roughness and angle, and maps these to their rows and columns.
+/// Holds tables of rough glass's energy, and maps index of refraction, roughness and angle to their rows and columns.
 struct RoughGlassTables {
     static constexpr int kIndices = 20, kAlphas = 20, kAngles = 48;
     using Curve = std::array<float, kAngles>; // one value per angle

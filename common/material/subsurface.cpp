@@ -9,8 +9,8 @@ namespace duet {
 
 namespace {
 
-// Per meter; the index of refraction is 1.3 or 1.5 (Jensen, Marschner, Levoy and Hanrahan 2001, "A Practical Model for
-// Subsurface Light Transport", figure 5).
+// The coefficients are per meter. The index of refraction is 1.3 or 1.5 (Jensen, Marschner, Levoy and Hanrahan 2001, "A
+// Practical Model for Subsurface Light Transport", figure 5).
 constexpr MeasuredSolid kMeasuredSolids[] = {
     {"apple", {2290, 2390, 1970}, {3.0f, 3.4f, 46}, 1.3f},
     {"chicken", {150, 210, 380}, {15, 77, 190}, 1.3f},

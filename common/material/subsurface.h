@@ -17,20 +17,20 @@
 
 namespace duet {
 
-/// The constants of van de Hulst's formula A = (1 − s)(1 − a·s) / (1 + b·s) with s² = 1 − α.
+/// These are the constants of van de Hulst's formula A = (1 − s)(1 − a·s) / (1 + b·s) with s² = 1 − α.
 inline constexpr float kHulstA = 0.139f, kHulstB = 1.17f;
 
-/// Describes what fills a solid. It scatters light evenly in all directions.
+/// Describes the medium inside a solid. It scatters isotropically.
 struct SolidInterior {
-    Rgb scattering; ///< σs: the fraction of light that is scattered per meter, 1/m
-    Rgb absorption; ///< σa: the fraction of light that is absorbed per meter, 1/m
+    Rgb scattering; ///< scattering coefficient σs, 1/m
+    Rgb absorption; ///< absorption coefficient σa, 1/m
 };
-// Of light that arrives at the surface from inside, the layers on top reflect a part back. Its walks would be up to
-// five times as long. Walks without that reflection, in an interior of the albedo that is seen through the layers, come
-// as far if their mean free path is longer by free_path_factor() (tested).
+// The layers on top reflect a fraction of the light from inside back. Random walks that follow this reflection would be
+// up to five times as long. Instead, the walks ignore it in an interior of the albedo that is seen through the layers.
+// They then come as far if their mean free path is longer by free_path_factor() (tested).
 
-/// Returns the interior of which an infinitely thick layer reflects the fraction `albedo` of diffuse light, in [0, 1],
-/// and in which light comes as far as mean_free_path between two collisions on average, > 0, in meters.
+/// Returns the interior of which an infinitely thick layer reflects the fraction `albedo` of diffuse light, in [0, 1].
+/// mean_free_path is the mean distance between two collisions, in meters, > 0.
 SolidInterior solid_interior(Rgb albedo, Rgb mean_free_path);
 /// Returns s = √(1 − α), where α is the probability that a collision scatters the light and does not absorb it, for the
 /// albedo in [0, 1] of an infinitely thick layer. This is the root of van de Hulst's formula (thick_layer_albedo),
@@ -40,8 +40,8 @@ template <typename T> T similarity_parameter(const T& albedo) {
     const T b = T(1 + kHulstA) + T(kHulstB) * albedo, c = T(1.0f) - albedo;
     return T(2.0f) * c / (b + sqrt(b * b - T(4 * kHulstA) * c));
 }
-/// Returns the factor of the mean free path that stands for reflection at the inner side of the surface, which reflects
-/// the fraction internal_reflectance of the light. `albedo` is that of the interior without the surface.
+/// Returns the factor of the mean free path that accounts for reflection at the inner side of the surface, which
+/// reflects the fraction internal_reflectance of the light. `albedo` is that of the interior without the surface.
 template <typename T> T free_path_factor(const T& albedo, const T& internal_reflectance) {
     return T(1.0f) + albedo * internal_reflectance / (T(1.0f) - internal_reflectance);
 }
@@ -50,11 +50,11 @@ template <typename T> T free_path_factor(const T& albedo, const T& internal_refl
 /// Scattering", vol. 2; the inverse: Kulla and Conty 2017, "Revisiting Physically Based Shading at Imageworks").
 float thick_layer_albedo(float single_scattering_albedo);
 
-/// Holds what has been measured of a real solid or liquid.
+/// Holds the measured coefficients of a real solid or liquid.
 struct MeasuredSolid {
     std::string_view name;
-    Rgb scattering; ///< reduced coefficient σs' = σs·(1 − g), which replaces σs where scattering counts as even, 1/m
-    Rgb absorption; ///< σa, 1/m
+    Rgb scattering; ///< reduced scattering coefficient σs' = σs·(1 − g), to be used with isotropic scattering, 1/m
+    Rgb absorption; ///< absorption coefficient σa, 1/m
     float ior;      ///< index of refraction
 
     /// Returns the albedo of an infinitely thick layer without a surface.
@@ -67,13 +67,13 @@ std::span<const MeasuredSolid> measured_solids();
 /// Returns the solid of that name, or null for an unknown name.
 const MeasuredSolid* find_measured_solid(std::string_view name);
 
-/// The surface of a solid, seen from outside (wo.z > 0). eval and pdf are those of the light that it reflects. Light
-/// also enters the solid, which only sample finds: its sample is marked as transmitted.
+/// A SubsurfaceBsdf is the surface of a solid, seen from outside (wo.z > 0). eval and pdf are those of the reflected
+/// light. Light also enters the solid, which only sample finds: its sample is marked as transmitted.
 struct SubsurfaceBsdf {
     static constexpr bool kTransmissive = false;
 
-    LayeredBsdf surface; ///< what reflects light
-    float entering;      ///< fraction of what passes the layers that enters the solid, in [0, 1]
+    LayeredBsdf surface; ///< layers that reflect light
+    float entering;      ///< fraction of the light below the layers that enters the solid, in [0, 1]
     SolidInterior interior;
 
     /// Returns the BSDF of the reflected light, without the cosine.
@@ -87,15 +87,16 @@ private:
     float entering_probability(float cosine) const;
 };
 
-/// The surface of a solid at a point where light leaves it. The light that comes from inside is diffuse, so that its
-/// direction does not matter: wo is any direction outside, where all light is sent.
+/// A SubsurfaceExitBsdf is the surface of a solid at a point where light leaves it. The light that comes from inside is
+/// diffuse, so that its direction does not matter: wo is any direction outside, where all light is sent.
 struct SubsurfaceExitBsdf {
     static constexpr bool kTransmissive = false;
 
-    LayeredBsdf surface; ///< what the light passes
+    LayeredBsdf surface; ///< layers that the light passes
     float mean_passed;   ///< surface.mean_passed()
 
-    /// Returns the fraction of the light from inside per solid angle that leaves towards wi, over the cosine.
+    /// Returns the fraction of the light from inside that leaves towards wi per solid angle, divided by the cosine of
+    /// wi.
     Rgb eval(Vec3 wo, Vec3 wi, TransportMode mode) const;
     /// Draws a direction outside, with the density of Lambert's law.
     std::optional<BsdfSample> sample(Vec3 wo, float lobe, Vec2 u, TransportMode mode) const;

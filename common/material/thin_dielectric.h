@@ -7,7 +7,8 @@
 
 namespace duet {
 
-/// What a thin sheet of glass reflects and transmits, with all light that goes back and forth in it.
+/// Holds the fractions of light that a thin sheet of glass reflects and transmits, after any number of reflections
+/// inside.
 template <typename T> struct SheetFractions {
     T reflected, transmitted;
 };

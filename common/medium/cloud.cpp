@@ -34,7 +34,7 @@ DensityGrid make_cloud(const Cloud& cloud, const Box3& box) {
                 if (!(inside > 0)) continue; // beyond the ellipsoid that touches the sides
                 const double noise = fractal_noise(p * half * static_cast<double>(cloud.scale), cloud.octaves);
                 const double excess = noise + 3 * static_cast<double>(cloud.coverage) - 3 + 2 * inside;
-                // A thin shell at the ellipsoid fades out, however loud the noise is.
+                // The density fades out in a thin shell at the ellipsoid, however large the noise is.
                 const double fade = std::min(1.0, 8 * inside);
                 densities[x + count(0) * (y + count(1) * z)] =
                     static_cast<float>(fade * clamp(excess / static_cast<double>(cloud.softness), 0.0, 1.0));

@@ -1,4 +1,4 @@
-// Clouds made of noise.
+// This file defines clouds made of noise.
 #pragma once
 
 #include "common/medium/density_grid.h"

@@ -23,8 +23,9 @@ int cell_of(float coordinate, int side, int low, int high) {
 
 // Visits the cells of [low, high) that the ray passes between s and s_end, in order. A cell has the given side. Calls
 // visit(cell, s where the ray enters, s where it leaves), until that returns false; returns whether it never did
-// (Amanatides and Woo 1987, "A Fast Voxel Traversal Algorithm for Ray Tracing"). Where the ray leaves is computed from
-// the cell's index, so that errors do not add up. The outermost cells have no end: what rounding leaves over is theirs.
+// (Amanatides and Woo 1987, "A Fast Voxel Traversal Algorithm for Ray Tracing"). The s where the ray leaves is computed
+// from the cell's index, so that errors do not add up. The outermost cells extend without bound, so that they include
+// points that rounding moves out of the grid.
 template <typename Visit>
 bool visit_cells(const GridRay& ray, float s, float s_end, int side, const Cell& low, const Cell& high, Visit visit) {
     Cell cell{}, step{}, last{};
@@ -81,15 +82,16 @@ public:
         return lerp(lerp(along_x(0), along_x(1), y), lerp(along_x(2), along_x(3), y), z);
     }
 
-    /// Returns the column between both distances.
+    /// Returns the column between two distances: the integral of the density.
     double column(float begin, float end) const {
         // Simpson's second rule is exact for polynomials of degree three.
         const std::array<float, 4> f = densities(begin, end);
         return static_cast<double>(end - begin) * static_cast<double>(f[0] + 3 * (f[1] + f[2]) + f[3]) * 0.125;
     }
 
-    /// Returns where the column from `begin` on, which is more than `wanted` at `end`, equals it: by Newton's method,
-    /// kept inside of the bounds by bisection. The density is a polynomial in u, which runs from 0 to 1.
+    /// Returns the distance at which the column from `begin` on equals `wanted`; at `end` the column must exceed it.
+    /// The search uses Newton's method, with bisection to stay within the bounds. The density is a polynomial in u,
+    /// which runs from 0 to 1.
     float find(float begin, float end, double wanted) const {
         const std::array<float, 4> at = densities(begin, end);
         std::array<double, 4> f{};
@@ -113,7 +115,7 @@ public:
     }
 
 private:
-    /// Returns the densities at both distances, and at a third and two thirds of the way.
+    /// Returns the densities at `begin` and `end`, and at one third and two thirds of the distance between them.
     std::array<float, 4> densities(float begin, float end) const {
         using Floats = FloatBatch<4>;
         const float third = (end - begin) / 3;
@@ -250,7 +252,7 @@ DensityGrid::Reached DensityOnRay::follow(double column) {
 double DensityOnRay::column(float t) {
     const float s = t - inside_.begin;
     extend(std::numeric_limits<double>::infinity(), s);
-    const auto next = std::ranges::lower_bound(steps_, s, {}, &Step::begin); // the first that begins at s or behind
+    const auto next = std::ranges::lower_bound(steps_, s, {}, &Step::begin); // first step that begins at or after s
     if (next == steps_.begin()) return 0;
     const Step& step = *std::prev(next);
     if (s >= step.end) return step.column_after;

@@ -12,7 +12,8 @@
 
 namespace duet {
 
-/// A ray in the coordinates of a grid, in which a cell has side 1. The parameter is the distance in meters.
+/// A GridRay is a ray in the coordinates of a grid, in which a cell has side 1. Its parameter is the distance in
+/// meters.
 struct GridRay {
     Vec3 origin, direction;
 
@@ -35,14 +36,14 @@ public:
     /// Returns the density at a point of the box.
     float density(const Box3& box, Vec3 p) const;
 
-    /// Where a ray has passed a given column, and the column up to there.
+    /// Holds the distance at which a ray has passed a given column, and the column up to there.
     struct Reached {
-        float t = 0;       ///< infinite if the ray leaves before
-        double column = 0; ///< at most the one that was given
+        float t = 0;       ///< infinite if the ray leaves the grid before
+        double column = 0; ///< at most the given column
     };
-    /// Follows a ray through an interval on which it is inside of the box, until the integral of the density over the
-    /// distance, which is called the column, has the given value, > 0 or infinite. In meters. It is as exact as floats
-    /// are: inside of a cell the density along a ray is a cubic polynomial, which Simpson's second rule integrates
+    /// Follows a ray through an interval on which it is inside of the box, until its column has the given value, in
+    /// meters, > 0 or infinite. The column is the integral of the density over the distance. It is exact up to
+    /// rounding: within a cell, the density along a ray is a cubic polynomial, which Simpson's second rule integrates
     /// exactly. Blocks of cells without density are skipped.
     Reached follow(const Box3& box, const Ray& ray, Interval inside, double column) const;
 
@@ -60,23 +61,24 @@ private:
     float largest_ = 0;
 };
 
-/// A DensityOnRay is the density of a grid along a ray. It follows the ray once, no farther than it is asked, and
-/// remembers the columns of the cells.
+/// A DensityOnRay is the density of a grid along a ray. It follows the ray once, only as far as the calls need, and
+/// stores the columns of the cells.
 class DensityOnRay {
 public:
-    /// Keeps a reference to the grid. On the interval the ray is inside of the box.
+    /// Stores a reference to the grid. The ray must be inside of the box on the whole interval.
     DensityOnRay(const DensityGrid& grid, const Box3& box, const Ray& ray, Interval inside);
     /// Returns what DensityGrid::follow returns.
     DensityGrid::Reached follow(double column);
-    /// Returns the distance by which a column has been passed, up to a cell too long; infinite if it never is.
+    /// Returns a distance at which the column has been passed, too large by at most one cell; infinite if the ray never
+    /// passes it.
     float passed_by(double column);
-    /// Returns the column from the begin of the interval up to a t in it, in meters.
+    /// Returns the column from the beginning of the interval up to a t in it, in meters.
     double column(float t);
 
 private:
-    struct Step { // through a cell
+    struct Step { // a step through one cell
         std::array<int, 3> cell;
-        float begin, end; // distances from the begin of the interval
+        float begin, end; // distances from the beginning of the interval
         double column_before, column_after;
     };
     void extend(double column, float s_end);
@@ -87,7 +89,7 @@ private:
     Interval inside_;
     std::vector<Step> steps_; // through cells of blocks that are not empty
     float followed_ = 0;      // the distance up to which steps_ go
-    double column_ = 0;       // that of followed_
+    double column_ = 0;       // column up to followed_
 };
 
 } // namespace duet

@@ -16,20 +16,20 @@ namespace duet {
 
 class DensityGrid; // common/medium/density_grid.h
 
-/// A scene may have at most this many media, because each ray looks at each.
+/// A scene may have at most this many media, because each ray is tested against each of them.
 inline constexpr std::size_t kMaxMedia = 64;
 
 /// A Medium fills an axis-aligned box; a box without bounds is all of space. Where several overlap, their coefficients
 /// add up. Glass and other dielectrics displace it: it is not inside of them.
 struct Medium {
     Box3 box = unbounded();
-    Rgb scattering; ///< σs: the fraction of light that is scattered per meter where the density is 1, 1/m
-    Rgb absorption; ///< σa: the fraction of light that is absorbed per meter where the density is 1, 1/m
-    /// The radiance that a layer which is thick beyond measure and scatters nothing emits, W/(m² sr). Over a short
-    /// distance d the medium adds σa·d times that (Kirchhoff's law).
+    Rgb scattering; ///< scattering coefficient σs where the density is 1, 1/m
+    Rgb absorption; ///< absorption coefficient σa where the density is 1, 1/m
+    /// This is the radiance that an infinitely thick layer without scattering emits, W/(m² sr). Over a short distance d
+    /// the medium adds σa·d times that (Kirchhoff's law).
     Rgb radiance;
     float asymmetry = 0; ///< g, the mean cosine of the angle by which light is scattered, in (−1, 1)
-    /// The density in the box, which must have bounds then. If it is null, the density is 1.
+    /// This is the density in the box; a medium with a density must have bounds. If it is null, the density is 1.
     std::shared_ptr<const DensityGrid> density{};
 
     static constexpr Box3 unbounded() {
@@ -39,7 +39,7 @@ struct Medium {
     }
 };
 
-/// Returns the part of [0, t_end] in which a ray is inside of the box (Kay and Kajiya 1986, "Ray Tracing Complex
+/// Returns the interval of [0, t_end] in which a ray is inside of the box (Kay and Kajiya 1986, "Ray Tracing Complex
 /// Scenes"). t_end may be infinite. T is float or a batch of floats.
 template <typename T>
 IntervalT<T> overlap(const Box3& box, const Vec3T<T>& origin, const Vec3T<T>& direction, T t_end) {
@@ -64,10 +64,10 @@ inline Interval overlap(const Box3& box, const Ray& ray, float t_end) {
 /// Returns the density of a medium at a point of its box.
 float density_at(const Medium& medium, Vec3 p);
 
-/// A PassedColumn says how far a ray comes before it has passed a given column of a medium.
+/// A PassedColumn says how far a ray goes before it has passed a given column of a medium.
 struct PassedColumn {
-    float t = 0;      ///< where it has; infinite if the interval ends before
-    float column = 0; ///< what it has passed up to there, or on the whole interval
+    float t = 0;      ///< where the column is passed; infinite if the interval ends before
+    float column = 0; ///< the column up to t, or on the whole interval
 };
 /// Follows a ray through a part of its overlap with a medium until it has passed a column, > 0 or infinite. A column is
 /// the integral of the density over the distance, in meters.
@@ -98,7 +98,7 @@ T column_of(const Medium& medium, const Vec3T<T>& origin, const Vec3T<T>& direct
 
 /// Returns the optical depth of columns of a medium: the integral of σs + σa. T is float or a batch of floats.
 template <typename T> RgbT<T> optical_depth(const Medium& medium, const T& column) {
-    // The column may be infinite and the coefficient 0.
+    // The column may be infinite where the coefficient is 0, and their product would then be NaN.
     const auto channel = [&](float coefficient) { return coefficient > 0 ? T(coefficient) * column : T(0); };
     const Rgb extinction = medium.scattering + medium.absorption;
     return {channel(extinction.r), channel(extinction.g), channel(extinction.b)};

@@ -69,11 +69,11 @@ public:
     /// Adds an option without a value, which sets `value` to true. "--shadows,!--no-shadows" has a negation, which sets
     /// it to false.
     Option add_flag(const std::string& names, bool& value, const std::string& help);
-    /// As above, where the program distinguishes a flag that was not given.
+    /// Adds a flag for a program that must distinguish whether it was given; if not, `value` stays empty.
     Option add_flag(const std::string& names, std::optional<bool>& value, const std::string& help);
-    /// Adds a subcommand, one of which is then required. This command line keeps it.
+    /// Adds a subcommand, one of which is then required. This command line owns it.
     CommandLine& add_subcommand(const std::string& name, const std::string& description);
-    /// Sets what run_subcommand() calls if this subcommand was given. It returns the exit code.
+    /// Sets the function that run_subcommand() calls if this subcommand was given. The function returns the exit code.
     void set_action(const std::function<int()>& action) { action_ = action; }
     /// Sets the text below the options in --help.
     void set_footer(const std::string& text);

@@ -21,7 +21,7 @@ namespace {
 /// each page anew: a quarter of the time of a rasterized frame, whose images are allocated for each frame.
 void keep_freed_memory() {
 #if defined(__GLIBC__)
-    constexpr int kNever = 1 << 30; // bytes, from which on a block is returned
+    constexpr int kNever = 1 << 30; // block size in bytes above which memory is returned
     mallopt(M_MMAP_THRESHOLD, kNever);
     mallopt(M_TRIM_THRESHOLD, kNever);
 #endif

@@ -39,7 +39,7 @@ struct RenderProgram {
     /// Adds the pipeline's own options.
     std::function<void(CommandLine&)> add_options;
     /// Where wants_text_output returns true, the program prints text_output() of the view instead of rendering it. Both
-    /// may be empty.
+    /// functions may be empty.
     std::function<bool()> wants_text_output;
     std::function<std::string(const Scene&, const View&, const RenderSettings&, std::optional<int> spp)> text_output;
     /// Throws Error for unusable options of the pipeline, before anything is loaded. It may be empty.

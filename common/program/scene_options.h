@@ -1,4 +1,4 @@
-// The options by which all programs load a scene.
+// This file defines the options with which all programs load a scene.
 #pragma once
 
 #include "common/image/stored_image.h"

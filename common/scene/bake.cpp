@@ -30,7 +30,7 @@ bool is_uniform_scale(const Mat4& m) {
 }
 
 struct TextureUse {
-    /// `any`: the object's materials use a texture. `solid`: one of them is evaluated in object space.
+    /// `any` is true if the object's materials use a texture, and `solid` if one of these is evaluated in object space.
     bool any = false, solid = false;
 };
 

@@ -91,7 +91,7 @@ Scene default_scene_for_mesh(const std::filesystem::path& path, UpAxis up) {
     const Box3d box = bounds_of(points);
     // A gap below the mesh avoids z-fighting between a flat underside and the ground.
     const double ground = box.low.y - 1e-3 * radius, half_side = kGroundExtent * radius;
-    for (std::size_t i = 0, count = points.size(); i < count; ++i) // and the shadow on the ground
+    for (std::size_t i = 0, count = points.size(); i < count; ++i) // the shadow on the ground must be visible, too
         points.push_back(points[i] + kSunDirection * ((points[i].y - ground) / -kSunDirection.y));
     scene.camera = frame(points, scene.width, scene.height);
 
@@ -101,7 +101,7 @@ Scene default_scene_for_mesh(const std::filesystem::path& path, UpAxis up) {
     floor.shape = 1;
     floor.materials = {add_material(scene, "ground", Diffuse{{Rgb(0.3f)}})}; // darker than the sky at the horizon
     scene.shapes.push_back(std::move(obj.mesh));
-    // Two sides of the ground are parallel to the image, so that the horizon is level.
+    // Two sides of the ground are parallel to the image's horizontal axis, so that its far edge is level.
     const Vec3d forward = scene.camera.look_at - scene.camera.eye;
     const Vec3d away = half_side * normalize(Vec3d(forward.x, 0, forward.z)), right = cross(away, Vec3d(0, 1, 0));
     const Vec3d middle(center.x, ground, center.z);

@@ -5,8 +5,8 @@
 
 namespace duet {
 
-/// The axis of a mesh file that points up in the scene. kGuessed is z if the mesh stands on a flat side there and not
-/// in y, as models of scanners and CAD programs do; otherwise it is y.
+/// UpAxis is the axis of a mesh file that points up in the scene. kGuessed is z if the mesh stands on a flat side there
+/// and not in y, as models of scanners and CAD programs do; otherwise it is y.
 enum class UpAxis { kGuessed, kX, kY, kZ };
 
 /// Returns a scene with the mesh, a ground just below it, a sky and a sun. Faces without an MTL material are clay,

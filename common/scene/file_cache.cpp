@@ -26,7 +26,7 @@ std::shared_ptr<const void> FileCache::find(const std::string& key,
     const auto [value, files] = read();
     Entry entry{value, {}};
     for (const fs::path& file : files) entry.files.emplace_back(file, write_time(file));
-    // What was written meanwhile may have been read in part, and is not kept.
+    // A file that was written meanwhile may have been read in part. The value is not cached then.
     if (std::all_of(entry.files.begin(), entry.files.end(),
                     [&](const auto& file) { return file.second + kFileClockTick < start; }))
         entries_[key] = std::move(entry);

@@ -1,4 +1,4 @@
-// This file keeps what a scene is made of while it is read again and again, as an editor does after each change.
+// This file caches the meshes and images of a scene that is read repeatedly, as an editor does after each change.
 #pragma once
 
 #include "common/scene/scene.h"
@@ -12,11 +12,11 @@
 
 namespace duet {
 
-/// A FileCache returns values that it has read before, unless one of their files has changed since. It keeps all of
-/// these. Only one thread may use it at a time.
+/// A FileCache returns values that it has read before, unless one of their files has changed since. It stores every
+/// value until a newer one replaces it. Only one thread may use it at a time.
 class FileCache {
 public:
-    /// A value and the files that it was made of.
+    /// A Read is a value and the files that it was made from.
     template <typename Value> struct Read {
         Value value;
         std::vector<std::filesystem::path> files;
@@ -45,7 +45,7 @@ public:
 private:
     struct Entry {
         std::shared_ptr<const void> value;
-        /// The files, and when each was written.
+        /// These are the files, and when each was written.
         std::vector<std::pair<std::filesystem::path, std::filesystem::file_time_type>> files;
     };
     std::shared_ptr<const void> find(const std::string& key,

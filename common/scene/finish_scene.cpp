@@ -39,7 +39,7 @@ void find_bounds(Scene& scene) {
     if (scene.objects.empty()) scene.bounds = Box3{Vec3(scene.camera.look_at), Vec3(scene.camera.look_at)};
 }
 
-/// Returns the value of a texture's red channel if it is the same everywhere.
+/// Returns the value of a texture's red channel if it is the same everywhere, and nothing otherwise.
 std::optional<float> constant_red(const TextureSet& set, const Texture& texture) {
     const auto if_equal = [](Rgb a, Rgb b) { return a.r == b.r ? std::optional(a.r) : std::nullopt; };
     if (const auto* checker = std::get_if<CheckerTexture>(&texture)) return if_equal(checker->even, checker->odd);
@@ -53,7 +53,7 @@ std::optional<float> constant_red(const TextureSet& set, const Texture& texture)
 /// Raises the mean free paths of solids to the least that positions in float can resolve. A path below it in all
 /// channels becomes 0, which is a diffuse surface.
 void limit_mean_free_paths(Scene& scene) {
-    constexpr float kLeast = 1.0f / 65536; // of the largest coordinate; rays start up to a hundredth of that off it
+    constexpr float kLeast = 1.0f / 65536; // of the largest coordinate; origins of rays are offset by up to 1 % of it
     std::vector<float> extents(scene.materials.size());
     for (const Object& object : scene.objects) {
         const Box3 box = motion_bounds(object, scene.shapes[object.shape]);

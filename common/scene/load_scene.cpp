@@ -57,8 +57,8 @@ Scene read_scene(const std::filesystem::path& path, std::string_view text, FileC
     return scene;
 }
 
-/// The rasterizer computes where polygons are in double precision, relative to the eye. The point that the camera looks
-/// at is then certain to 1e-3 of its distance if no corner is farther away than this many times that distance.
+/// The rasterizer computes the positions of polygons in double precision, relative to the eye. The point that the
+/// camera looks at is accurate to 1e-3 of its distance if no corner is farther away than this many times that distance.
 constexpr double kMaxReach = 1e13;
 
 /// Throws Error if an object of polygons is too large to be seen from where the camera is.

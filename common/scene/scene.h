@@ -34,7 +34,7 @@ struct Object {
     Mat4 to_world{}, to_object{}; ///< transform at the start of the motion (time 0), and its inverse
     Mat4 to_world_end{};          ///< transform at the end (time 1); entries are interpolated in between
 
-    /// Sets the transform at the start and at the end of the motion, and what follows from it.
+    /// Sets the transform at the start and at the end of the motion, and the members that are derived from it.
     void place(const Mat4& start, const Mat4& end);
     /// Sets the transform of an object at rest.
     void place(const Mat4& at) { place(at, at); }

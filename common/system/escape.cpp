@@ -67,7 +67,8 @@ std::string markup_escaped(std::string_view text) {
 std::string shortened(std::string_view text, std::size_t most) {
     const auto starts = [](char c) { return !continues(c); };
     if (static_cast<std::size_t>(std::count_if(text.begin(), text.end(), starts)) <= most) return std::string(text);
-    // An end of the text is taken up to and without the character that would be one too many.
+    // The head ends before the first byte of character head + 1. The tail begins at the first byte of its first
+    // character.
     const std::size_t head = (most - 1) / 2, tail = most - 1 - head;
     std::size_t begin = 0, end = text.size();
     for (std::size_t left = head + 1; left > 0; ++begin) left -= starts(text[begin]) ? 1 : 0;

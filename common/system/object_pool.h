@@ -21,8 +21,8 @@ public:
         }
     };
 
-    /// Returns an object that nobody else has, and that goes back to the pool in the end. If all objects are lent, it
-    /// is a new one, constructed from `arguments`.
+    /// Returns an object that no other thread uses. It goes back to the pool when the pointer is destroyed. If all
+    /// objects are lent, it is a new one, constructed from `arguments`.
     template <typename... Arguments> std::unique_ptr<T, Return> take(const Arguments&... arguments) {
         const std::lock_guard lock(mutex_);
         if (free_.empty()) return {std::make_unique<T>(arguments...).release(), {this}};

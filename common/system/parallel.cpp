@@ -76,7 +76,7 @@ struct Arena {
 };
 
 tbb::task_arena& arena_of(int workers) {
-    thread_local std::map<int, Arena> arenas; // by number of threads
+    thread_local std::map<int, Arena> arenas; // key: number of threads
     return arenas.try_emplace(workers, workers).first->second.arena;
 }
 
@@ -105,7 +105,7 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
             body(i);
         });
     };
-    // A thread that waits for the end of an inner loop must not begin another turn of the outer one meanwhile.
+    // A thread that waits for the end of an inner loop must not begin another iteration of the outer loop meanwhile.
     if (in_loop) return tbb::this_task_arena::isolate(loop);
     arena_of(workers).execute(loop);
 }

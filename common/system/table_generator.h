@@ -30,8 +30,8 @@ void write_table(std::ostream& out, const std::array<Table, count>& tables) {
     out << "}},\n";
 }
 
-/// What a table generator writes: the definition of a variable, such as "Table kTable" in the namespace "duet". The
-/// header defines the variable's type.
+/// Describes what a table generator writes: the definition of a variable, such as "Table kTable" in the namespace
+/// "duet". The header defines the variable's type.
 struct TableSource {
     const char *program, *header, *name_space, *variable;
 };

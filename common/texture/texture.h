@@ -75,7 +75,7 @@ inline float evaluate(const TextureSet& set, const ScalarSlot& slot, const Surfa
     return slot.value * evaluate_texture(set, set.textures[static_cast<std::size_t>(slot.texture)], point).r;
 }
 
-// The kinds of textures, each in a file of its own.
+// Each kind of texture is implemented in a file of its own.
 
 /// Returns the texture's color at a point. `mip_levels` holds the image's mip levels. Where it is empty, the image is
 /// sampled bilinearly, or at the nearest texel if the filter says so.

@@ -98,7 +98,8 @@ template <typename T> constexpr Vec3T<T> lerp(Vec3T<T> a, Vec3T<T> b, T t) { ret
 /// Returns the sum of the products of the components: |a| |b| times the cosine between a and b.
 template <typename T> constexpr T dot(Vec2T<T> a, Vec2T<T> b) { return a.x * b.x + a.y * b.y; }
 template <typename T> constexpr T dot(Vec3T<T> a, Vec3T<T> b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-/// Returns the vector that is perpendicular to both, as long as the parallelogram's area, by the right-hand rule.
+/// Returns the vector that is perpendicular to a and b by the right-hand rule. Its length is the area of their
+/// parallelogram.
 template <typename T> constexpr Vec3T<T> cross(Vec3T<T> a, Vec3T<T> b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }

@@ -63,7 +63,7 @@ float read_ior(const JsonValue& owner, float fallback) {
     return static_cast<float>(owner.number_or("ior", fallback, kIor));
 }
 
-/// Fails because none of the known names is `name`.
+/// Throws Error because `name` is none of the known names.
 [[noreturn]] void fail_unknown(const JsonValue& name, std::string_view what,
                                const std::vector<std::string_view>& known) {
     name.fail(message("unknown ", what, " ", quoted_text(name.string()), suggestion_or_list(name.string(), known)));

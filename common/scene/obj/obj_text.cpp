@@ -43,8 +43,8 @@ ObjText::int_type ObjText::underflow() {
     return traits_type::to_int_type(*gptr());
 }
 
-/// Sets text_ to the text of the file's next bytes. At the end of the file, where `count` is 0, it is the backslash
-/// that continues no line.
+/// Sets text_ to the text of the file's next bytes. At the end of the file, where `count` is 0, text_ is the file's
+/// last byte: a backslash that no line follows.
 void ObjText::join_lines(const char* bytes, std::size_t count) {
     text_.clear();
     if (count == 0) {

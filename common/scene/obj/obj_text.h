@@ -15,8 +15,8 @@ namespace duet {
 /// blank, and an empty line after the joined line preserves the line numbers. A byte order mark becomes blanks, because
 /// it would hide the first line's key.
 ///
-/// Reading throws Error where the file cannot be read, or holds a NUL byte, which is not text. A std::istream passes it
-/// on if exceptions(std::ios::badbit) has been called.
+/// Reading throws Error where the file cannot be read, or holds a NUL byte, which is not text. A std::istream rethrows
+/// this Error only if exceptions(std::ios::badbit) has been called.
 class ObjText : public std::streambuf {
 public:
     /// Opens a file of at most 4 GiB. Throws Error.
