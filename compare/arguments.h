@@ -1,4 +1,5 @@
-// Subcommands of the program `compare`. Each one's command-line arguments are defined next to the code they configure.
+// This file declares the subcommands of the program `compare`. The command-line arguments of each are defined next to
+// the code that they configure.
 #pragma once
 
 #include "common/program/command_line.h"
@@ -28,7 +29,7 @@ struct ComparisonSettings; // compare/renderer.h
 /// Adds --depth and --threads.
 void add_depth_and_threads(CommandLine& subcommand, ComparisonSettings& settings);
 
-/// Sets what a subcommand runs. Returns the options that it runs with, for the arguments to be written to.
+/// Sets the function that a subcommand runs. Returns its options, which the parser fills in.
 template <typename Options> Options& set_action(CommandLine& subcommand, int (*action)(const Options&)) {
     const auto options = std::make_shared<Options>();
     subcommand.set_action([options, action] { return action(*options); });

@@ -1,4 +1,4 @@
-// The main program of `compare`.
+// This file is the main program of `compare`.
 
 #include "common/program/program.h"
 #include "compare/arguments.h"

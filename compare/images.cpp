@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// The values stored in a file, and their variances if the file has them.
+/// Holds the values stored in a file, and their variances if the file has them.
 struct ComparedImage {
     ImageRgb values, variance;
     Encoding encoding = Encoding::kLinear;

@@ -1,4 +1,4 @@
-// `compare images`: error metrics of two image files.
+// This file declares `compare images`, which computes error metrics of two image files.
 #pragma once
 
 #include <filesystem>

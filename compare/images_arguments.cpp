@@ -1,4 +1,4 @@
-// Command-line arguments of `compare images`.
+// This file declares the command-line arguments of `compare images`.
 #include "compare/arguments.h"
 #include "compare/images.h"
 #include "compare/metrics/limits.h"

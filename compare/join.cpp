@@ -49,7 +49,7 @@ ImageRgb image_bands(const std::vector<ImageRgb>& images, double gap, double sla
         for (int y = 0; y < result.height(); ++y) {
             const double line = middle + (height / 2 - (y + 0.5)) * std::tan(slant);
             for (int x = 0; x < result.width(); ++x) {
-                // Antialiased: the fraction of a pixel beyond the line grows linearly over one pixel.
+                // The edge is antialiased: the fraction of a pixel beyond the line grows linearly over one pixel.
                 const double beyond = (x + 0.5 - line) * std::cos(slant);
                 const auto fraction = static_cast<float>(std::clamp(beyond + 0.5, 0.0, 1.0));
                 const auto white = static_cast<float>(std::clamp(gap / 2 - std::abs(beyond) + 0.5, 0.0, 1.0));

@@ -1,4 +1,4 @@
-// `compare join`: several images in one image.
+// This file declares `compare join`, which joins several images in one image.
 #pragma once
 
 #include "common/program/view_transform_options.h"
@@ -21,7 +21,7 @@ struct JoinOptions {
 
 /// Returns a grid of images of one size, row by row. Cells that remain in the last row are white.
 ImageRgb image_grid(const std::vector<ImageRgb>& images, int columns, int gap);
-/// Returns one image that is made of equally wide bands, from left to right one of each image. They have one size.
+/// Returns one image of equally wide bands, from left to right one of each image. The images must have the same size.
 ImageRgb image_bands(const std::vector<ImageRgb>& images, double gap, double slant_degrees);
 
 /// Reads the images and writes the result. Throws Error if a file cannot be used, or the images differ in size.

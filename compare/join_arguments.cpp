@@ -1,4 +1,4 @@
-// Command-line arguments of `compare join`.
+// This file declares the command-line arguments of `compare join`.
 #include "compare/arguments.h"
 #include "compare/join.h"
 

@@ -1,14 +1,14 @@
-// Progress of work that consists of several steps.
+// This file reports the progress of work that consists of several steps.
 #pragma once
 
 #include "common/system/control.h"
 
 namespace duet::compare {
 
-/// Divides the progress of a whole among its steps by their costs.
+/// Divides the progress of a task among its steps by their costs.
 class ProgressSteps {
 public:
-    /// `cost` is the sum over all steps. `whole` must outlive the steps.
+    /// The argument `cost` is the sum over all steps. `whole` must outlive the steps.
     ProgressSteps(const Control& whole, double cost) : whole_(whole), cost_(cost) {}
     /// Returns the control of the next step.
     Control next(double cost = 1) {

@@ -1,4 +1,4 @@
-// The two pipelines behind one type, so that comparison code calls both the same way.
+// This file provides the two pipelines behind one type, so that comparison code calls both in the same way.
 #pragma once
 
 #include "common/program/render_program.h"
@@ -12,7 +12,7 @@
 
 namespace duet::compare {
 
-/// Settings that both renderings of a comparison share, and the sample count of each.
+/// Holds settings that both renderings of a comparison share, and the sample count of each.
 struct ComparisonSettings {
     int raster_spp = 16, raytrace_spp = 64;
     int max_depth = 64; ///< maximum number of scattering events of a path (path tracer)
@@ -20,7 +20,7 @@ struct ComparisonSettings {
     std::uint64_t seed = 0;
 };
 
-/// A renderer prepared for one scene, which must outlive it.
+/// A Renderer is prepared for one scene, which must outlive it.
 struct Renderer {
     std::string name;            ///< "raster" or "raytrace"
     RenderFunction render_image; ///< renders the full image

@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// These are the results of one renderer.
+/// Holds the results of one renderer.
 struct RendererResult {
     Rendering rendering;
     Image<Hit> hits;

@@ -1,4 +1,4 @@
-// Command-line arguments of `compare run`.
+// This file declares the command-line arguments of `compare run`.
 #include "common/program/command_line.h"
 #include "compare/arguments.h"
 #include "compare/run.h"

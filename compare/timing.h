@@ -1,4 +1,4 @@
-// Clocks and medians of repeated measurements.
+// This file defines clocks and medians of repeated measurements.
 #pragma once
 
 #include "common/system/stopwatch.h"

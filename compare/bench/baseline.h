@@ -1,4 +1,4 @@
-// Comparison of two runs of the bench: which rows became slower or less accurate.
+// This file compares two runs of the bench: it finds the rows that became slower or less accurate.
 #pragma once
 
 #include "compare/bench/estimate.h"
@@ -11,7 +11,7 @@
 
 namespace duet::compare {
 
-/// One row of this run compared with the same row of the baseline.
+/// Holds one row of this run, compared with the same row of the baseline.
 struct BaselineRow {
     std::string scene, technique, sampler;
     int spp = 0;
@@ -26,12 +26,13 @@ struct BaselineComparison {
     std::vector<std::string> unmatched; ///< rows of this run that are not in the baseline
     double drift = 0;
 
-    /// Probability of any false finding among all rows if errors are equal and times differ by at most the drift.
+    /// This is the probability of any false finding among all rows if errors are equal and times differ by at most the
+    /// drift.
     static constexpr double kSignificance = 0.01;
     bool flagged() const;
 };
 
-/// Settings that must be equal for rows to be comparable, besides scene, files, size, technique, sampler and
+/// Holds the settings that must be equal for rows to be comparable, besides scene, files, size, technique, sampler and
 /// sample count.
 struct BenchConditions {
     int depth = 0, threads = 0;
@@ -42,11 +43,11 @@ struct BenchConditions {
 /// Throws Error if `earlier` is not a report of the bench or was made with other settings. Call it before a long run.
 void check_baseline(const nlohmann::json& earlier, const BenchConditions& now);
 
-/// Compares by Student's t-test on logarithms (p_value_above_one), with the significance divided among all
-/// tests. A time difference is a finding only if it significantly exceeds a factor of 1 + drift, because a
-/// CPU's speed changes between runs. It must also exceed what a busy CPU explains: "slower" is tested on this
-/// run's time × processor_share (the CPU time that the threads received), "faster" likewise on the earlier
-/// run's. Throws Error if `earlier` is not a report of the bench or has no row in common.
+/// Compares by Student's t-test on logarithms (p_value_above_one), with the significance divided among all tests. A
+/// time difference is a finding only if it significantly exceeds a factor of 1 + drift, because a CPU's speed changes
+/// between runs. It must also exceed what other programs on the CPU explain: "slower" is tested on this run's time ×
+/// processor_share (the CPU time that the threads received), and "faster" on the earlier run's. Throws Error if
+/// `earlier` is not a report of the bench or has no row in common.
 BaselineComparison compare_with_baseline(const std::vector<SceneResult>& results, const nlohmann::json& earlier,
                                          double drift);
 

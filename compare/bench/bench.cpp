@@ -100,7 +100,7 @@ private:
 
     void find_references() {
         result_.reference = reference(options_.reference_by, options_.reference_spp);
-        if (options_.reference_by != "path") { // whose pixels are not independent, as the check requires
+        if (options_.reference_by != "path") { // only the path tracer's pixels are independent
             result_.no_naive = "the reference is by " + options_.reference_by;
             return;
         }

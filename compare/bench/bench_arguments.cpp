@@ -1,4 +1,4 @@
-// Command-line arguments of `compare bench`.
+// This file declares the command-line arguments of `compare bench`.
 #include "common/program/command_line.h"
 #include "compare/arguments.h"
 #include "compare/bench/bench.h"

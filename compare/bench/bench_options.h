@@ -1,4 +1,4 @@
-// Defines the options of `compare bench`.
+// This file defines the options of `compare bench`.
 #pragma once
 
 #include "common/program/command_line.h"

@@ -22,7 +22,7 @@ constexpr std::string_view kDenoised = "denoised";
 /// This is the path tracer without Russian roulette.
 constexpr std::string_view kNoRoulette = "no-roulette";
 
-/// Returns what keeps a technique from converging to the reference, as a sentence.
+/// Returns one sentence on what keeps a technique from converging to the reference.
 std::string note_of(raytrace::Integrator integrator, const Scene& scene) {
     using raytrace::Integrator;
     const bool delta_lights = scene.needs.delta_lights;
@@ -75,7 +75,7 @@ BenchRenderer path_tracer_bench_renderer(const raytrace::PathTracerScene& prepar
     return {technique, sampler, note_of(settings.integrator, scene), std::move(spps),
             [prepared, view, settings, least_spp](int spp, std::uint64_t seed, Control& control) {
                 raytrace::PathTracerSettings s = settings;
-                s.samples_per_pixel = std::max(spp, least_spp); // the bench's first, unmeasured render has one
+                s.samples_per_pixel = std::max(spp, least_spp); // the bench's warm-up render requests one sample
                 s.seed = seed;
                 const auto render = [&] {
                     Rendering rendering = raytrace::render(prepared, view, s, control);
@@ -85,11 +85,11 @@ BenchRenderer path_tracer_bench_renderer(const raytrace::PathTracerScene& prepar
             }};
 }
 
-/// The techniques that estimate light, in the order of --help.
+/// These techniques estimate the radiance of a scene. They are in the order of --help.
 constexpr std::string_view kTechniques[] = {"raster",    "path",       kAdaptive,       kDenoised,
                                             kNoRoulette, "naive",      "bidirectional", "vcm",
                                             "photons",   "metropolis", "direct",        "unshadowed"};
-/// The integrators that may render references: they find all light, some of them by blurring it less and less.
+/// These integrators may render references: their expected image has all light, or approaches that with more samples.
 constexpr std::string_view kReferenceIntegrators[] = {"path", "bidirectional", "vcm", "photons"};
 constexpr std::string_view kSamplers[] = {"sobol", "stratified", "independent"};
 

@@ -15,7 +15,7 @@
 
 namespace duet::compare {
 
-/// This is one rendered image and its cost.
+/// A TimedImage is a rendered image and its cost.
 struct TimedImage {
     ImageRgb image;
     double seconds = 0;     ///< wall-clock time of the render alone, without loading, building or writing
@@ -23,7 +23,7 @@ struct TimedImage {
                             ///< unknown (for a peer)
 };
 
-/// This is a renderer with settings, prepared for one scene and view.
+/// A BenchRenderer is a renderer with settings, prepared for one scene and view.
 struct BenchRenderer {
     std::string technique; ///< "raster", an integrator, "adaptive", "denoised" or "no-roulette" (path), or a
                            ///< peer's name
@@ -53,7 +53,7 @@ void check_reference_integrator(const std::string& name);
 /// renderer. The scene must outlive them.
 std::vector<BenchRenderer> duet_renderers(const Scene& scene, const View& view, const RendererChoice& choice);
 
-/// Minimum duration of a timing in seconds. Clocks and schedulers disturb shorter ones.
+/// This is the least duration of a timing in seconds, because clocks and schedulers disturb shorter ones.
 inline constexpr double kMinTimingSeconds = 0.05;
 /// Calls `render` repeatedly, with the same result, until kMinTimingSeconds seconds have passed or `control` is
 /// stopped. Returns the image and the average times per call.

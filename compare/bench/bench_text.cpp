@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Returns "0.0123 ± 4 %", with the upper half-width of the 95 % confidence band.
+/// Returns text such as "0.0123 ± 4 %", with the upper half-width of the 95 % confidence band.
 std::string with_band(const Estimate& e) {
     const double percent = 100 * (e.high() / e.value - 1);
     return formatted("%9.3g", e.value) + (std::isfinite(percent) ? formatted(" ±%3.0f %%", percent) : "   ?   ");
@@ -28,7 +28,7 @@ std::string csv_field(const json& value) {
     return quoted;
 }
 
-/// Returns "12.3", "< 12.3" for an upper bound, or "-".
+/// Returns text such as "12.3", "< 12.3" for an upper bound, or "-" for none.
 std::string dominance_text(const std::optional<Dominance>& d) {
     if (!d) return "-";
     return (d->at_most ? "< " : "") + formatted("%.3g", d->ratio.value);

@@ -10,7 +10,7 @@ namespace duet::compare {
 
 namespace {
 
-/// This is the mean of one channel over a rectangle, with its variance.
+/// Holds the mean of one channel over a rectangle, with its variance.
 struct BlockMean {
     double mean = 0, variance = 0;
     double squares = 0; ///< sum of squared pixel contributions to `variance`; variance² / squares are the degrees of

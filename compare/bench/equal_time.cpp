@@ -80,7 +80,8 @@ namespace {
 /// Returns the time in which `path` with one sampler reaches an error. `rows` are sorted by decreasing error.
 Dominance time_to_reach(double relmse, const std::vector<const Measurement*>& rows) {
     const auto estimate = [](double seconds, const Measurement& m) {
-        // The error of an unbiased estimate falls as 1 / time, so the relative errors of both count alike.
+        // The error of an unbiased estimate falls as 1 / time. The relative errors of error and time therefore have the
+        // same weight.
         return Estimate{seconds, std::hypot(m.relmse.relative_error, m.seconds.relative_error),
                         std::min(m.relmse.dof, m.seconds.dof)};
     };

@@ -1,4 +1,4 @@
-// Estimates with their uncertainty, from a few repeated measurements.
+// This file defines estimates with their uncertainty, from a few repeated measurements.
 #pragma once
 
 #include <vector>
@@ -15,11 +15,12 @@ inline double shared_significance(double alpha, std::size_t tests) {
     return alpha / static_cast<double>(tests > 0 ? tests : 1);
 }
 
-/// This is a positive quantity with a confidence band. The uncertainty is relative, and the band is symmetric on a
-/// logarithmic scale: value · exp(± t · relative_error), with Student's t. To first order in the relative error this is
-/// the usual band (the delta method). It never contains zero, and products and quotients propagate by adding squares.
+/// An Estimate is a positive quantity with a confidence band. The uncertainty is relative, and the band is symmetric on
+/// a logarithmic scale: value · exp(± t · relative_error), with Student's t. To first order in the relative error this
+/// is the usual band (the delta method). It never contains zero, and products and quotients propagate by adding
+/// squares.
 struct Estimate {
-    double value = 0;          ///< NaN: nothing was measured
+    double value = 0;          ///< NaN if nothing was measured
     double relative_error = 0; ///< standard error / value; infinity: a single measurement
     double dof = 1;            ///< degrees of freedom of relative_error
 
@@ -31,11 +32,12 @@ struct Estimate {
 
 /// Returns the arithmetic mean of independent measurements.
 Estimate mean_of(const std::vector<double>& values);
-/// Returns the median, for measurements some of which are disturbed. Its standard error is √(π/2) times that of
-/// the mean of logarithms, as for a normal distribution and many values. For an even number of values, the
-/// median is the mean of the middle two.
+/// Returns the median, which outliers hardly disturb. Its standard error is √(π/2) times that of the mean of
+/// logarithms, as for a normal distribution and many values. For an even number of values, the median is the mean of
+/// the middle two.
 Estimate median_of(std::vector<double> values);
-/// Returns 1 / (mse × seconds) with propagated error; degrees of freedom by Welch (1947) and Satterthwaite (1946).
+/// Returns 1 / (mse × seconds) with propagated error. The degrees of freedom follow by Welch (1947) and Satterthwaite
+/// (1946).
 Estimate efficiency_of(const Estimate& mse, const Estimate& seconds);
 /// Returns a / b with the errors propagated as in efficiency_of.
 Estimate ratio_of(const Estimate& a, const Estimate& b);

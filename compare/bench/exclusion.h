@@ -1,5 +1,5 @@
-// Excluded rectangles of an image. A second error measure omits them, for example a light whose edge dominates
-// the error.
+// This file defines excluded rectangles of an image. A second error measure omits them, for example a light whose edge
+// dominates the error.
 #pragma once
 
 #include "common/image/image.h"
@@ -10,7 +10,7 @@
 
 namespace duet::compare {
 
-/// This is a rectangle [x0, x1) × [y0, y1) from the upper left corner, in pixels or in fractions of the image size.
+/// An ExcludedRectangle is [x0, x1) × [y0, y1) from the upper left corner, in pixels or in fractions of the image size.
 struct ExcludedRectangle {
     double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
     bool fractions = false;
@@ -19,8 +19,9 @@ struct ExcludedRectangle {
 /// Throws Error for other text, negative numbers, and rectangles without area.
 ExcludedRectangle parse_excluded_rectangle(std::string_view text);
 
-/// Returns 1 for each pixel that counts and 0 for those in a rectangle (given in fractions: whose center is in
-/// it). Throws Error if a rectangle in pixels extends beyond the image, and if no pixel is left.
+/// Returns 1 for each pixel that counts, and 0 for each pixel in a rectangle. A rectangle in fractions contains the
+/// pixels whose centers it contains. Throws Error if a rectangle in pixels extends beyond the image, and if no pixel is
+/// left.
 Image<std::uint8_t> counted_pixels(const std::vector<ExcludedRectangle>& rectangles, int width, int height);
 
 } // namespace duet::compare

@@ -12,7 +12,7 @@ namespace duet::compare {
 
 namespace {
 
-/// This is a measurement in progress.
+/// A RunningMeasurement is a measurement in progress.
 struct RunningMeasurement {
     const BenchRenderer* renderer = nullptr;
     Measurement measurement;
@@ -94,7 +94,7 @@ void mark_best_settings(std::vector<Measurement>& rows, const std::string& techn
 
 void widen_efficiency(std::vector<Measurement>& rows, double drift, double share) {
     const double log_lost_share = share > 0 && share < 1 ? -std::log(share) : 0;
-    constexpr double kManyDegrees = 1e6; // the drift is assumed, not estimated
+    constexpr double kManyDegrees = 1e6; // degrees of freedom of a value that is assumed, not estimated
     const Estimate clock_speed{1, std::hypot(std::log1p(drift), log_lost_share) / 2, kManyDegrees};
     for (Measurement& m : rows)
         for (Estimate* const efficiency :

@@ -1,4 +1,4 @@
-// Repeated measurements of short renders, interleaved, with the spread of error and time.
+// This file declares repeated, interleaved measurements of short renders, with the spread of error and time.
 #pragma once
 
 #include "common/system/control.h"
@@ -14,26 +14,27 @@
 
 namespace duet::compare {
 
-/// Mean squared error of an image over all channels and counted pixels.
+/// Holds the mean squared error of an image over all channels and counted pixels.
 struct ImageError {
     double mse = 0;
     double relmse = 0; ///< mean of (x − r)² / (r² + 0.01), as in error_metrics
 };
 
-/// Errors of a trial for the whole image and without the excluded rectangles. They are equal if there are none.
+/// Holds the errors of a trial, for the whole image and without the excluded rectangles. They are equal if there are
+/// none.
 struct TrialResult {
     std::uint64_t seed = 0;
     double seconds = 0, cpu_seconds = 0;
     ImageError whole, rest;
 };
 
-/// One renderer at one sample count.
+/// Holds the measurements of one renderer at one sample count.
 struct Measurement {
     std::string technique, sampler, note;
     int spp = 0;
     std::vector<TrialResult> trials;
     double variance = 0; ///< mean over pixels and channels, from differences of successive seeds; NaN: one trial
-    /// Metrics of the whole image, the median time, and the efficiencies derived from them.
+    /// These are metrics of the whole image, the median time, and the efficiencies derived from them.
     Estimate mse, relmse, seconds, efficiency, relmse_efficiency;
     Estimate rest_mse, rest_relmse, rest_efficiency, rest_relmse_efficiency;
     double reference_share = 0; ///< estimated error of the reference as a fraction of `mse`
@@ -55,19 +56,18 @@ struct BenchMeasureSettings {
     std::uint64_t seed = 0;  ///< trial i of each measurement uses seed + 1 + i
 };
 
-/// Keeps only a peer's best settings counted: among rows of one technique with the same sample count, the most
-/// efficient.
+/// Clears `counted` for all but the most efficient of a peer's settings, among rows of one technique with the same
+/// sample count.
 void mark_best_settings(std::vector<Measurement>& rows, const std::string& technique);
 
-/// Widens the confidence bands of the efficiencies by what one run cannot know about time. `drift` is the
-/// relative change of the CPU's speed between runs. `share` is the processor_share: on an idle CPU, a render
-/// takes between its time × share and its time. Both are treated as two standard errors. Mean squared errors
-/// and times keep their bands, because they serve to compare rows of one run, which are measured in turns.
+/// Widens the confidence bands of the efficiencies by the uncertainty of time that a single run cannot measure. `drift`
+/// is the relative change of the CPU's speed between runs. `share` is the processor_share: on an idle CPU, a render
+/// takes between its time × share and its time. Both are treated as two standard errors. Mean squared errors and times
+/// keep their bands, because they serve to compare rows of one run, which are measured in turns.
 void widen_efficiency(std::vector<Measurement>& rows, double drift, double share);
 
-/// Returns CPU time over wall-clock time × threads, over all trials of Duet's own renderers of at least 10 ms.
-/// If it is well below 1, other processes used the CPU, and times are unreliable. Returns 1 if there is no such
-/// trial.
+/// Returns CPU time / (wall-clock time × threads), over all trials of Duet's own renderers of at least 10 ms. If it is
+/// well below 1, other processes used the CPU, and times are unreliable. Returns 1 if there is no such trial.
 double processor_share(const std::vector<Measurement>& rows, int threads);
 
 /// Returns the errors of `image` against `reference` over the pixels where `counted` is not 0. Both must have

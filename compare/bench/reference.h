@@ -1,4 +1,5 @@
-// Reference images: rendered once with many samples and a separate seed, then cached outside of the repository.
+// This file defines reference images: rendered once with many samples and a separate seed, then cached outside of the
+// repository.
 #pragma once
 
 #include "common/image/image.h"
@@ -9,7 +10,7 @@
 
 namespace duet::compare {
 
-/// This is a reference image and its estimated uncertainty.
+/// A Reference is a reference image and its estimated uncertainty.
 struct Reference {
     ImageRgb mean;
     ImageRgb variance; ///< of `mean`, estimated per pixel with at least one degree of freedom
@@ -19,7 +20,7 @@ struct Reference {
     double mse() const;
 };
 
-/// Everything that determines a reference's content and accuracy. Equal keys imply equal images.
+/// A ReferenceKey holds everything that determines a reference's content and accuracy. Equal keys imply equal images.
 struct ReferenceKey {
     std::string scene_hash; ///< hash_scene_files
     std::string estimator;  ///< "path", "naive", "cycles"
@@ -37,7 +38,8 @@ struct ReferenceKey {
 /// below the system's temporary folder.
 std::filesystem::path default_reference_folder();
 
-/// This is a folder of references, one EXR file each (R, G, B and variance.R, .G, .B), named SCENE-ESTIMATOR-HASH.exr.
+/// A ReferenceCache is a folder of references, one EXR file each (R, G, B and variance.R, .G, .B), named
+/// SCENE-ESTIMATOR-HASH.exr.
 class ReferenceCache {
 public:
     explicit ReferenceCache(std::filesystem::path folder) : folder_(std::move(folder)) {}

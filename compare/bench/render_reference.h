@@ -1,5 +1,5 @@
-// This file declares the references of one scene, by the path tracer and by independent estimators, from the cache or
-// newly rendered.
+// This file declares the reference images of one scene, by the path tracer and by independent estimators, from the
+// cache or newly rendered.
 #pragma once
 
 #include "common/camera/camera.h"
@@ -22,7 +22,7 @@ struct ReferenceSettings {
     int threads = 0;
 };
 
-/// This is a reference and its origin.
+/// A CachedReference is a reference and its origin.
 struct CachedReference {
     Reference reference;
     std::string estimator;
@@ -38,10 +38,10 @@ struct CachedReference {
 CachedReference reference_by(const std::string& estimator, const Scene& scene, const View& view,
                              const ReferenceSettings& settings, Control& control);
 
-/// Number of seeds for a reference by another renderer. Each seed gets an equal fraction of the samples. The
-/// spread of the images yields the variance, with kReferenceSeeds − 1 degrees of freedom per pixel.
+/// This is the number of seeds for a reference by another renderer. Each seed gets an equal fraction of the samples.
+/// The spread of the images yields the variance, with kReferenceSeeds − 1 degrees of freedom per pixel.
 inline constexpr int kReferenceSeeds = 8;
-/// Says by what a reference is rendered.
+/// Identifies the estimator that renders a reference.
 struct EstimatorId {
     std::string name;    ///< name, version and program are as in ReferenceKey
     int version = 0;
@@ -54,7 +54,7 @@ CachedReference reference_by_seeds(const EstimatorId& estimator, const Scene& sc
                                    const std::function<ImageRgb(int spp, std::uint64_t seed)>& render,
                                    Control& control);
 
-/// Returns why `naive` cannot check a scene; empty if it can.
+/// Returns the reason why the estimator `naive` cannot check a scene, or an empty text if it can.
 std::string naive_limitation(const Scene& scene);
 
 } // namespace duet::compare

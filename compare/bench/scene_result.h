@@ -11,12 +11,11 @@
 
 namespace duet::compare {
 
-/// This is the comparison of the reference with another estimator's.
+/// Holds the comparison of the reference with another estimator's.
 struct IndependentCheck {
     CachedReference other;
     BiasCheck check;
-    std::vector<std::string> approximations; ///< of the other; with any, a disagreement is reported but is not a
-                                             ///< failure
+    std::vector<std::string> approximations; ///< of the other estimator; with any, a disagreement is no failure
 
     bool failed() const { return !check.consistent() && approximations.empty(); }
 };
@@ -28,7 +27,7 @@ struct SceneResult {
     int width = 0, height = 0;
     CachedReference reference;
     std::vector<IndependentCheck> checks; ///< one per independent estimator
-    std::string no_naive;                 ///< why naive is not among the checks; empty: it is
+    std::string no_naive;                 ///< why `naive` is not among the checks; empty: it is
     std::vector<Measurement> rows;
     std::vector<EqualTimeRow> equal_times;
     double processor_share = 1; ///< see measure.h

@@ -25,7 +25,7 @@ void limit_memory(int mebibytes) {
         throw Error(message("--memory ", mebibytes, ": the limit cannot be set: ", std::strerror(errno)), 1);
 }
 
-/// A scene that was loaded can be rendered, so an error is a failure.
+/// Checks a scene that has been loaded. Such a scene must be renderable, so an Error counts as a failure.
 CheckResult check_loaded(const Scene& scene, const ComparisonSettings& settings) {
     try {
         return check_scene(scene, settings);

@@ -1,4 +1,4 @@
-// This header declares what must hold for the renderings of any valid scene.
+// This file declares the properties that the renderings of any valid scene must have.
 #pragma once
 
 #include "compare/renderer.h"

@@ -16,13 +16,13 @@ BLOCK = re.compile(r"<!-- figure: (?P<name>\S+)(?: (?P<digest>[0-9a-f]+))? -->\n
 MARKER = re.compile(r"<!-- (?:figure: (\S+)|end of figure)")
 IMAGE = re.compile(r"(!\[[^\]]*\]\()([^)]+)\)")
 NUMBER = r"\d[\d,]*(?:\.\d+)?(?:e-?\d+)?"
-# A number with a unit of time or speed, or a ratio of two of them.
+# This matches a number with a unit of time or speed, or a ratio of two of them.
 TIMED = re.compile(rf"\b{NUMBER} ?(?:ms|µs|ns|s|seconds?|minutes?|hours?|Mrays/s|frames/s|fps)(?![\w-])"
                    rf"|\b{NUMBER} times (?:as (?:fast|long|large|much)|faster|slower|less|more|the)"
                    rf"|\b{NUMBER} % (?:faster|slower|less time|more time)")
-# The same in prose, where "10 seconds" is more often a limit than a measurement.
+# The same in prose omits seconds and longer units, because "10 seconds" is more often a limit than a measurement.
 TIMED_PROSE = re.compile(TIMED.pattern.replace("|s|seconds?|minutes?|hours?", "") + rf"|MSE (?:of |is )?{NUMBER}")
-# Headings of columns and rows whose numbers are measured.
+# This matches headings of columns and rows whose numbers are measured.
 MEASURED = re.compile(r"\b(?:ms|milliseconds|seconds|minutes|hours|Mrays/s|frames/s|(?:rel|R)?MSE|rmse|FLIP|flip|ratio|"
                       r"speed|speedup|faster|slower|times as|scaling|error|rate|memory|time|before|after|since|MB|GB)"
                       r"(?![\w`])")
@@ -30,7 +30,8 @@ NUMERIC = re.compile(rf"(?:[−-]?{NUMBER}(?:[ ,/–%×()-]|to)*)+")
 
 
 def digest(body, folder):
-    """Of the lines of a block and the files of its images, which are relative to the folder of the page."""
+    """Returns a digest of the lines of a block and the files of its images, which are relative to the folder of the
+    page."""
     sha = hashlib.sha256(body.encode())
     for _, target in IMAGE.findall(body):
         path = folder / target
@@ -39,7 +40,8 @@ def digest(body, folder):
 
 
 def fill(page, text, name, body, source):
-    """The page's text with this body in all blocks of that name. Its images are given relative to `source`."""
+    """Returns the page's text with this body in all blocks of that name. The body gives its images relative to
+    `source`."""
     body = IMAGE.sub(lambda image: f"{image[1]}{os.path.relpath(source / image[2], page.parent)})", body.strip()) + "\n"
     filled = f"<!-- figure: {name} {digest(body, page.parent)} -->\n{body}<!-- end of figure -->"
     return BLOCK.sub(lambda block: filled if block["name"] == name else block[0], text)
@@ -50,10 +52,10 @@ def cells(line):
 
 
 def loose_faults(text, measurements):
-    """(line, what) of measured figures outside of blocks. On a page of `measurements` every number of a table is one.
-    Elsewhere a cell is one if it has a number with a unit of time or speed, a ratio of such, or if it is a number below
-    or beside a heading that names a measured quantity. In prose a time in milliseconds or less is one, a ratio of
-    times, and an MSE."""
+    """Returns (line, what) of measured figures outside of blocks. On a page of `measurements` every number of a table
+    counts. Elsewhere a cell counts if it has a number with a unit of time or speed, a ratio of such, or if it is a
+    number below or beside a heading that names a measured quantity. In prose a time in milliseconds or less counts, a
+    ratio of times, and an MSE."""
     lines = BLOCK.sub(lambda block: re.sub(r"[^\n]", "", block[0]), text).split("\n")
     faults, heads, code = [], None, False
     for number, line in enumerate(lines, 1):
@@ -75,7 +77,8 @@ def loose_faults(text, measurements):
 
 
 def page_faults(page, text, known):
-    """(line, what) of a page: every figure stands in a whole block of a known name that nobody changed by hand."""
+    """Returns (line, what) of the faults of a page. Every figure must be in a whole block of a known name that nobody
+    changed by hand."""
     faults = loose_faults(text, page.name == "measurements.md")
     whole = list(BLOCK.finditer(text))
     for block in whole:
@@ -92,7 +95,8 @@ def page_faults(page, text, known):
 
 
 def faults(pages, known, source):
-    """(path, line, what) of all pages {path: text}, of figures that no page shows, and of plots that no block shows."""
+    """Returns (path, line, what) of the faults of all pages {path: text}, of figures that no page shows, and of plots
+    that no block shows."""
     found = [(page, *fault) for page, text in pages.items() for fault in page_faults(page, text, known)]
     blocks = [(page, block) for page, text in pages.items() for block in BLOCK.finditer(text)]
     shown = {block["name"] for _, block in blocks}

@@ -1,4 +1,4 @@
-"""What all figures are made of: their list, numbers, tables, names of scenes."""
+"""Defines what all figures use: their list, numbers, tables, names of scenes."""
 import math
 import pathlib
 
@@ -16,7 +16,7 @@ def figure(name, minutes):
 
 
 def number(value, digits=2):
-    """With so many significant digits: 1,234 is 1,234, 0.00012345 is 1.2e-4."""
+    """Returns the value with so many significant digits: 1,234 is 1,234, 0.00012345 is 1.2e-4."""
     if value is None or not math.isfinite(value):
         return "–"
     if value == 0:

@@ -1,4 +1,4 @@
-"""The figures of compare/README.md and of the first page."""
+"""Defines the figures of compare/README.md and of the first page."""
 from catalog import FIGURES, figure, number, scene, stem, table
 from raster_figures import equal_error, llvmpipe, phong_frames, raster_bench
 from raytrace_figures import BOOK_SECONDS, cornell, cornell_bench, cover_seconds, to_peer

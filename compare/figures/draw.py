@@ -17,8 +17,8 @@ def dot(x, y, color):
 
 
 def pairs(title, names, unit, rows):
-    """An SVG with a row for each (label, (a, b)): two dots on a logarithmic axis, so that their distance is the ratio.
-    `names` say what the first and the second dots are. Values are written as `unit(value)`."""
+    """Returns an SVG with a row for each (label, (a, b)): two dots on a logarithmic axis, so that their distance is the
+    ratio. `names` say what the first and the second dots are. Values are written as `unit(value)`."""
     values = [value for _, pair in rows for value in pair]
     low, high = math.log10(min(values)), math.log10(max(values))
 

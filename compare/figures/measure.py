@@ -1,4 +1,5 @@
-"""Runs the programs and keeps what they measured, with the day, the code, the processor and what others did on it."""
+"""Runs the programs and stores their measurements, with the day, the commit, the processor and its load by other
+programs."""
 import dataclasses
 import datetime
 import hashlib
@@ -11,23 +12,23 @@ import time
 
 
 class Failed(Exception):
-    """A command that did not measure."""
+    """Says that a command did not yield a measurement."""
 
 
 @dataclasses.dataclass
 class Measurement:
     command: list[str]
     date: str
-    commit: str      # of the last change of the programs; with + if there were changes since
+    commit: str      # of the last change of the programs; with a + if there are uncommitted changes
     processor: str
-    others: float    # part of the processors' time that other programs took meanwhile
+    others: float    # fraction of the processors' time that other programs took meanwhile
     seconds: float
-    data: dict       # what the program wrote with --stats
+    data: dict       # the JSON that the program wrote with --stats
     output: str      # the file or folder of its -o, relative to the repository
 
 
 def busy_seconds():
-    """Seconds that all processors have worked so far, of all programs together."""
+    """Returns the seconds that all processors have worked so far, for all programs together."""
     with open("/proc/stat", encoding="ascii") as file:
         user, nice, system, _idle, _wait, *interrupts = map(int, file.readline().split()[1:9])
     return (user + nice + system + sum(interrupts)) / os.sysconf("SC_CLK_TCK")
@@ -45,7 +46,7 @@ def processor():
 
 
 def last_commit(source):
-    """The last commit that changed the programs or the models, with a + if there are changes since."""
+    """Returns the last commit that changed the programs or the models, with a + if there are uncommitted changes."""
     paths = ["--", "*.cpp", "*.h", "models"]
     git = lambda *words: subprocess.run(["git", *words, *paths], cwd=source, capture_output=True, text=True,
                                         check=True).stdout.strip()
@@ -53,7 +54,8 @@ def last_commit(source):
 
 
 class Runner:
-    """Measures each command once and keeps the result below out/figures. With `kept`, what is there already is used."""
+    """Measures each command once and stores the result below out/figures. With `kept`, results that exist there are
+    used."""
 
     def __init__(self, programs, source, kept, commit):
         self.programs, self.source, self.kept = programs, source, kept
@@ -63,8 +65,8 @@ class Runner:
         self.commit = commit or last_commit(source)
 
     def __call__(self, *command, output=None):
-        """The measurement of a command such as ("compare", "frames", "a.obj"). Where `output` is given, such as ".exr"
-        or "" for a folder, the program gets an -o with that ending."""
+        """Returns the measurement of a command such as ("compare", "frames", "a.obj"). If `output` is given, such as
+        ".exr" or "" for a folder, the program gets an -o with that ending."""
         command = [str(word) for word in command]
         key = hashlib.sha256("\0".join(command).encode()).hexdigest()[:12]
         file, target = self.folder / f"{key}.json", f"out/figures/{key}{output}"
@@ -78,7 +80,7 @@ class Runner:
         return measurement
 
     def generate(self, mesh):
-        """Makes models/generated/MESH.obj where it is missing: the build makes only those that scenes name."""
+        """Makes models/generated/MESH.obj if it is missing: the build makes only those that scenes name."""
         if not (self.source / "models" / "generated" / f"{mesh}.obj").exists():
             subprocess.run([self.programs / "generate", "models", mesh], cwd=self.source, stdout=subprocess.DEVNULL,
                            check=True)
@@ -90,7 +92,8 @@ class Runner:
         result = subprocess.run([self.programs / command[0], *command[1:], *output, "--stats", stats], cwd=self.source,
                                 capture_output=True, text=True, check=False)
         seconds = time.time() - begin
-        # /proc/stat counts each processor's time in ticks, so as many ticks say nothing.
+        # /proc/stat counts each processor's time in ticks. A difference of at most one tick per processor therefore
+        # counts as 0.
         others = busy_seconds() - busy - (own_seconds() - own) - os.cpu_count() / os.sysconf("SC_CLK_TCK")
         if result.returncode != 0 or not stats.exists():
             raise Failed(f"{' '.join(command)}: exit code {result.returncode}\n{result.stderr.strip()[-1000:]}")

@@ -1,4 +1,4 @@
-"""The figures of raster/measurements.md."""
+"""Defines the figures of raster/measurements.md."""
 from statistics import median
 
 import draw
@@ -122,7 +122,7 @@ def raster_error(run):
 
 
 def dominates(row):
-    """The path tracer's time to the error of a row over the row's time, as words."""
+    """Returns the path tracer's time to the error of a row over the row's time, as words."""
     found = row["dominates"]
     return f"{'at most ' if found['at_most'] else ''}{number(found['ratio']['value'])}" if found else "–"
 

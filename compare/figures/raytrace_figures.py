@@ -1,9 +1,9 @@
-"""The figures of raytrace/measurements.md."""
+"""Defines the figures of raytrace/measurements.md."""
 from catalog import figure, ms, number, scene, stem, table
 
 
 def cover_seconds(run, threads):
-    """Render seconds and million rays per second of the cover scene."""
+    """Returns the render seconds and the million rays per second of the cover scene."""
     data = run("raytrace", scene("spheres"), "--size", "1920x1080", "--spp", 100, "--depth", 50, "--threads", threads,
                "--quiet", output=".png").data
     rays, seconds = data["rays"], data["seconds"]["render"]
@@ -35,7 +35,7 @@ TECHNIQUES = (("light samples (`--integrator naive`)", PATH, ("naive", "sobol"))
 
 
 def efficiency_ratio(rows, ours, other, key):
-    """The efficiency of a technique and sampler over that of another; None where one was not measured."""
+    """Returns the efficiency of a technique and sampler over that of another, or None if one was not measured."""
     found = {(row["technique"], row["sampler"]): row[key]["value"] for row in rows if row["counted"]}
     return found[ours] / found[other] if found.get(ours) and found.get(other) else None
 
@@ -63,7 +63,7 @@ def cornell_bench(run):
 
 
 def to_peer(result, technique, at):
-    """Our squared error over Cycles' after so many seconds."""
+    """Returns our squared error over Cycles' after so many seconds."""
     return next((row["to_peer"]["value"] for row in result["equal_times"]
                  if row["name"].startswith(technique) and row["seconds"] == at and row["to_peer"]), None)
 

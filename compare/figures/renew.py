@@ -15,18 +15,18 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 sys.path.append(str(SOURCE / "compare" / "lessons"))
 import course  # noqa: E402
 
-MOST_COMMANDS = 3  # that a block shows
-MOST_OTHERS = 0.1  # part of the processors' time that other programs may take
+MOST_COMMANDS = 3  # at most so many commands are shown with a block
+MOST_OTHERS = 0.1  # fraction of the processors' time that other programs may take
 
 
 def read_pages(source):
-    """{path: text} of all pages except those of the course, whose figures lesson:figures checks."""
+    """Returns {path: text} of all pages except those of the course, whose figures lesson:figures checks."""
     return {page: page.read_text(encoding="utf-8") for page in course.other_pages(source)
             if source / "compare" / "lessons" not in page.parents}
 
 
 def provenance(used):
-    """How a block was measured: a line, and its commands."""
+    """Returns a line that says how a block was measured, and the commands."""
     dates, commits, processors = ({getattr(each, key) for each in used} for key in ("date", "commit", "processor"))
     line = f"*Measured {'/'.join(sorted(dates))}, code of {'/'.join(sorted(commits))}, " \
            f"{'/'.join(sorted(processors))}.*"
@@ -54,7 +54,7 @@ def commands(used):
 
 
 def renew(name, run, busy):
-    """Measures a figure and writes it into every page that shows it; beside other programs only where `busy`."""
+    """Measures a figure and writes it into every page that shows it. With `busy`, other programs may run meanwhile."""
     run.used = []
     result = catalog.FIGURES[name][0](run)
     if not busy and others_of(run.used) > MOST_OTHERS:

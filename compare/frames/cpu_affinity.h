@@ -1,4 +1,4 @@
-// CPU affinity of this process's threads.
+// This file controls the CPU affinity of this process's threads.
 #pragma once
 
 #include <sched.h>

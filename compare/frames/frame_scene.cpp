@@ -34,20 +34,20 @@ Scene frame_scene(const std::filesystem::path& mesh, const std::filesystem::path
 }
 
 View frame_view(const Scene& scene, FrameView view, ImageSize size) {
-    const Vec3d back = normalize(Vec3d(0.4, 0.3, 1)); // from the mesh to the eye
+    const Vec3d back = normalize(Vec3d(0.4, 0.3, 1)); // direction from the mesh to the eye
     const Vec3d right = normalize(cross(Vec3d(0, 1, 0), back)), up = cross(back, right);
     Camera camera;
     camera.fov_degrees = 30;
     camera.look_at = Vec3d(scene.bounds.center());
     const double tan_y = std::tan(radians(camera.fov_degrees / 2)), tan_x = tan_y * size.width / size.height;
-    double distance = 0; // smallest that fits the whole mesh: |x| ≤ (distance − z)·tan for each vertex
+    double distance = 0; // smallest distance that fits the whole mesh: |x| ≤ (distance − z)·tan for each vertex
     for (const Vec3 p : std::get<Mesh>(scene.shapes[0]).positions) {
         const Vec3d d = Vec3d(p) - camera.look_at;
         distance = max(distance, dot(d, back) + max(abs(dot(d, right)) / tan_x, abs(dot(d, up)) / tan_y));
     }
     camera.eye = camera.look_at + back * (1.02 * distance);
     camera.near = 1e-2 * distance;
-    constexpr double kCloser = 2.4; // by a smaller field of view, so that the eye stays outside
+    constexpr double kCloser = 2.4; // magnification by a smaller field of view, so that the eye stays outside
     if (view == FrameView::kClose) camera.fov_degrees = degrees(2 * std::atan(tan_y / kCloser));
     return {camera, size.width, size.height};
 }

@@ -1,4 +1,4 @@
-// The scene that `compare frames` draws: a mesh under one light, seen whole or close up.
+// This file builds the scene that `compare frames` draws: a mesh under one light, seen whole or close up.
 #pragma once
 
 #include "common/program/command_line.h"

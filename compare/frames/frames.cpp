@@ -22,7 +22,7 @@ namespace {
 
 using nlohmann::json;
 
-/// These are the rows of one mesh.
+/// Holds the rows of one mesh.
 struct MeshRows {
     std::string mesh;
     std::size_t triangles = 0;
@@ -136,7 +136,7 @@ int frames(const FramesOptions& options) {
     const InterruptFlag interrupt;
     FrameSettings settings = options.settings;
     settings.stop = &interrupt.flag();
-    settings.no_peer |= !options.texture.empty(); // it has no textures
+    settings.no_peer |= !options.texture.empty(); // the peer has no textures
     const std::vector<int> threads = thread_counts(options);
     if (!options.folder.empty()) std::filesystem::create_directories(options.folder);
     std::vector<MeshRows> meshes;

@@ -1,4 +1,4 @@
-// Command-line arguments of `compare frames`.
+// This file declares the command-line arguments of `compare frames`.
 #include "common/program/command_line.h"
 #include "common/system/suggestion.h"
 #include "compare/arguments.h"

@@ -1,5 +1,5 @@
-// OpenGL 4.5 without a window: a surfaceless EGL context on Mesa's software rasterizer, and the OpenGL
-// functions in use, which EGL loads by name.
+// This file provides OpenGL 4.5 without a window: a surfaceless EGL context on Mesa's software rasterizer, and the
+// OpenGL functions in use, which EGL loads by name.
 #pragma once
 
 #if defined(DUET_LLVMPIPE)
@@ -11,7 +11,7 @@
 
 namespace duet::compare {
 
-/// An OpenGL context that is current to the thread that created it during its lifetime.
+/// A GlContext is an OpenGL context. During its lifetime it is current to the thread that created it.
 class GlContext {
 public:
     /// `threads` is the number of llvmpipe's rasterizer threads. Throws Error if no such context is available.

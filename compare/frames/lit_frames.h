@@ -1,4 +1,4 @@
-// Rows of `compare frames` for scene files: whole lit frames and their stages, without a peer.
+// This file measures the rows of `compare frames` for scene files: whole lit frames and their stages, without a peer.
 #pragma once
 
 #include "compare/frames/measure_frames.h"
@@ -13,11 +13,11 @@
 
 namespace duet::compare {
 
-/// Medians over the repeats, in seconds.
+/// Holds medians over the repeats, in seconds.
 struct LitRow {
     int threads = 1;
     double frame = 0; ///< by the clock of FrameSettings
-    /// Wall-clock time of the stages, in the order of the frame. "other" is the rest of the frame.
+    /// These are the wall-clock times of the stages, in the order of the frame. "other" is the rest of the frame.
     std::vector<std::pair<std::string, double>> stages;
 };
 /// Holds the frames of one scene, one row per thread count.
@@ -36,7 +36,8 @@ LitScene measure_lit_frames(const std::filesystem::path& scene, const std::vecto
 
 /// Prints a table of frames, and one of the stages of the last row of each scene.
 void print_lit_frames(std::ostream& out, const std::vector<LitScene>& scenes, const FrameSettings& settings);
-/// Returns scene, prepare_seconds and rows: threads, frame_seconds, and the seconds of each stage.
+/// Returns a JSON object with `scene`, `prepare_seconds` and `rows`, whose members are `threads`, `frame_seconds` and
+/// the seconds of each stage.
 nlohmann::json lit_json(const LitScene& scene);
 
 } // namespace duet::compare

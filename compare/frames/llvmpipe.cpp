@@ -26,7 +26,7 @@ void main() {
 }
 )";
 
-/// This is raster/shading/phong_model.h in GLSL.
+/// This shader is raster/shading/phong_model.h in GLSL.
 constexpr const char* kFragmentShader = R"(#version 450 core
 in vec3 p, n;
 uniform vec3 eye, to_sun, diffuse, sun, ambient;

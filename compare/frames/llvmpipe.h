@@ -1,4 +1,4 @@
-// The peer of `compare frames`: Mesa's software rasterizer llvmpipe, used through OpenGL.
+// This file declares the peer of `compare frames`: Mesa's software rasterizer llvmpipe, used through OpenGL.
 #pragma once
 
 #include "common/image/image.h"
@@ -10,7 +10,7 @@
 
 namespace duet::compare {
 
-/// The work of a frame.
+/// Selects the work of a frame.
 enum class FrameWork {
     kPhong, ///< clears, transforms, shades each pixel by Phong's model, encodes to 8-bit sRGB in memory
     kDepth, ///< clears, transforms, writes depth

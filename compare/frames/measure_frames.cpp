@@ -100,10 +100,10 @@ void compare_images_of_frame(FrameRow& row, const Rendering& ours, const ImageFl
 
 } // namespace
 
-// Coverage may differ where an edge passes close to a sample. Both snap vertices to a grid of 1/256 pixel, but
-// the peer transforms them in float first. Elsewhere both shade the same point. The peer's sRGB curve is an
-// approximation that is often one code too low, which causes a FLIP error of up to 0.006 over an image's
-// covered pixels.
+// Coverage may differ where an edge passes close to a sample: both renderers snap vertices to a grid of 1/256 pixel,
+// but the peer transforms them in float first. Elsewhere both shade the same point. The peer's sRGB curve is an
+// approximation that is often one code too low, which causes a FLIP error of up to 0.006 over an image's covered
+// pixels.
 bool FrameDifference::same() const { return coverage < 2e-3 && mean < 2e-3 && flip < 1e-2; }
 
 std::vector<FrameRow> measure_frames(const Scene& scene, const raster::RasterScene& prepared, FrameView frame_kind,

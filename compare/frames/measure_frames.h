@@ -1,4 +1,5 @@
-// One row of `compare frames`: frames of Duet and of the peer, timed in turns, and a check that they show the same.
+// This file measures one row of `compare frames`: it times frames of Duet and of the peer in turns, and checks that
+// they show the same.
 #pragma once
 
 #include "compare/frames/frame_scene.h"
@@ -11,15 +12,15 @@
 
 namespace duet::compare {
 
-/// This is the difference between the rasterizer's image and the peer's.
+/// Holds the difference between the rasterizer's image and the peer's.
 struct FrameDifference {
-    double coverage = 0; ///< fraction of the pixels that exactly one of the two leaves empty
+    double coverage = 0; ///< fraction of the pixels that exactly one of the two images leaves empty
     double mean = 0;     ///< Phong: mean |difference| of encoded values, in [0, 1]; depth: mean |ours/theirs − 1|
     double flip = 0;     ///< Phong: mean FLIP; depth: 0
     bool same() const;   ///< whether both images count as the same
 };
 
-/// Holds one row of the table: a work in a view, with a number of threads.
+/// Holds one row of the table: one kind of work in one view, with a number of threads.
 struct FrameRow {
     FrameWork work = FrameWork::kPhong;
     FrameView view = FrameView::kWhole;
@@ -43,7 +44,7 @@ struct FrameSettings {
     const std::atomic<bool>* stop = nullptr;
 };
 
-/// Measures the rows of one mesh, view and thread count, one per work in `works`. `prepared` must be prepared
+/// Measures the rows of one mesh, view and thread count, one for each element of `works`. `prepared` must be prepared
 /// from `scene`. Makes fewer repeats if `stop` is set.
 std::vector<FrameRow> measure_frames(const Scene& scene, const raster::RasterScene& prepared, FrameView view,
                                      int threads, const std::vector<FrameWork>& works, const FrameSettings& settings);

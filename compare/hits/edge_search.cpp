@@ -12,7 +12,7 @@ struct EdgeSearcher {
     const ReferenceTracer& tracer;
     const Pinhole& pinhole;
     Vec2d pixel;
-    double radius; ///< pixels
+    double radius; ///< in pixels
     const Hit &a, &b;
     EdgeSearch result;
     double farthest = 0; ///< hit of all rays so far; infinite if one misses
@@ -32,7 +32,7 @@ struct EdgeSearcher {
         result.tied_b = result.tied_b || ties_with(ray, nearest, b);
         return nearest;
     }
-    /// Returns whether the ray hits a pipeline's primitive at the same distance as its closest hit.
+    /// Returns whether the ray hits the primitive of a pipeline's hit at the same distance as its closest hit.
     bool ties_with(const Rayd& ray, const ReferenceHit& nearest, const Hit& hit) const {
         if (!nearest.valid() || !hit.valid()) return false;
         const ReferenceHit other = tracer.intersect(ray, hit.object, hit.primitive);
@@ -40,7 +40,8 @@ struct EdgeSearcher {
     }
 };
 
-/// Tries circles whose radii halve towards the center. This resolves most disagreements, which are ordinary edges.
+/// Tries displacements on circles whose radii halve towards the center. This resolves most disagreements, which are
+/// ordinary edges.
 bool try_circles(EdgeSearcher& search) {
     constexpr int kAngles = 16;
     for (double radius = search.radius * (1 - 1e-9); radius > search.radius / 100; radius /= 2)
@@ -97,8 +98,8 @@ std::vector<Vec2d> clip_to_octagon(const Pinhole& pinhole, Vec2d pixel, const st
     return points;
 }
 
-/// Tries points just inside the border of a polygon from clip_to_octagon(). If a hidden face is nearly edge-on,
-/// its border is where it meets the face in front of it.
+/// Tries points just inside the border of a polygon from clip_to_octagon(). The border of a hidden face that is nearly
+/// edge-on is where it meets the face in front of it.
 bool try_border(EdgeSearcher& search, const std::vector<Vec2d>& polygon) {
     Vec2d middle;
     for (const Vec2d p : polygon) middle = middle + p * (1.0 / static_cast<double>(polygon.size()));
@@ -131,8 +132,9 @@ bool try_primitive(EdgeSearcher& search, const Hit& hit) {
     return try_border(search, polygon);
 }
 
-/// Returns whether the rasterizer may show a primitive that no ray hits, because the ray through the pixel is parallel
-/// to its plane and within reach: snapping may give the line that it projects to some area. Some ray must reach as far.
+/// Returns whether the rasterizer may show a primitive that no ray hits, because the pixel's ray is parallel to its
+/// plane and within reach. The primitive then projects to a line, to which snapping may give some area. Some displaced
+/// ray must reach as far as the hit.
 bool edge_on(const EdgeSearcher& search, const Hit& hit) {
     constexpr double kRounding = 1e-12; // in double
     if (!hit.valid() || hit.t > search.farthest) return false;

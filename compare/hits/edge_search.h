@@ -1,4 +1,4 @@
-// Tests whether a minimal displacement of a pixel's ray makes it hit a different primitive.
+// This file tests whether a minimal displacement of a pixel's ray makes it hit a different primitive.
 #pragma once
 
 #include "common/camera/camera.h"
@@ -6,9 +6,9 @@
 
 namespace duet::compare {
 
-/// Displacement of a ray, in pixels, that the rasterizer's edges need. It snaps vertices to 1/256 pixel, which moves
-/// them by at most 1/512 per axis, or 0.0028 pixel in all. Every point that the snapped triangle covers therefore lies
-/// within this distance of the unsnapped triangle.
+/// This is the displacement of a ray, in pixels, that accounts for the rasterizer's edges. The rasterizer snaps
+/// vertices to 1/256 pixel, which moves them by at most 1/512 per axis, or 0.0028 pixel in all. Every point that the
+/// snapped triangle covers therefore lies within this distance of the unsnapped triangle.
 inline constexpr double kEdgeRadius = 1.0 / 128;
 
 /// Where a hidden face meets the face in front of it at an edge, both are at the same distance. Rounding then
@@ -16,10 +16,10 @@ inline constexpr double kEdgeRadius = 1.0 / 128;
 /// visible if |Δt|·|cos θ| / t is at most this tolerance, which is about ten float roundings.
 inline constexpr double kTieTolerance = 1e-6;
 
-/// Which of two pipelines' hits the double-precision rays within kEdgeRadius of the pixel center find.
+/// Says which of two pipelines' hits are found by double-precision rays within kEdgeRadius of the pixel center.
 struct EdgeSearch {
-    bool found_a = false, found_b = false; ///< a ray returns it as its closest hit
-    bool tied_a = false, tied_b = false;   ///< a ray hits it within kTieTolerance of the closest hit
+    bool found_a = false, found_b = false; ///< whether a ray returns it as its closest hit
+    bool tied_a = false, tied_b = false;   ///< whether a ray hits it within kTieTolerance of the closest hit
     ReferenceHit center;                   ///< closest hit of the undisplaced ray
 
     bool both() const { return found_a && found_b; }
@@ -32,7 +32,7 @@ double pixel_width(const Pinhole& pinhole, Vec2d pixel, double t);
 /// Displaces the ray through `pixel` by up to `radius` pixels: first on circles, then into the parts of the two
 /// primitives that lie within reach (however thin they are), then over a dense disk. It stops when both hits are found
 /// or all of about 5,000 rays are tried. Each ray is traced through the whole scene: being close to an edge is not
-/// enough, a ray must hit the primitive. Only a primitive in the plane of the ray counts as found without.
+/// enough, a ray must hit the primitive. The one exception is a primitive whose plane contains the ray.
 EdgeSearch search_edge(const ReferenceTracer& tracer, const Pinhole& pinhole, Vec2d pixel, double radius, const Hit& a,
                        const Hit& b);
 

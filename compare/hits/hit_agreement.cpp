@@ -10,10 +10,10 @@ namespace duet::compare {
 
 namespace {
 
-/// Returns how much rounding the corners relative to the eye can move a triangle's or quad's plane, as a multiple of
-/// one corner's relative rounding error: the distance of the farthest corner times the primitive's aspect ratio. A
-/// float ray-triangle test has this error; it is not proportional to the distance of the hit (Pharr, Jakob and
-/// Humphreys 2023, §6.8.7). Returns 0 for a sphere, which has no corners.
+/// Returns the factor between the relative rounding error of a triangle's or quad's corners and the displacement of its
+/// plane, in meters: the distance of the farthest corner from the eye times the primitive's aspect ratio. A float
+/// ray-triangle test has this error; it is not proportional to the distance of the hit (Pharr, Jakob and Humphreys
+/// 2023, §6.8.7). Returns 0 for a sphere, which has no corners.
 double plane_reach(const std::vector<Vec3d>& corners, Vec3d eye) {
     if (corners.empty()) return 0;
     double reach = 0, longest_squared = 0;
@@ -32,14 +32,15 @@ struct HitClassifier {
     Rayd ray(int x, int y) const { return pinhole.ray(center(x, y)); }
     static Vec2d center(int x, int y) { return {x + 0.5, y + 0.5}; }
 
-    /// Returns how far rounding may move a hit: the path tracer's, of the ray in float, and the rasterizer's, of the
-    /// primitive's plane in double. The latter counts for primitives of 1e10 times the distance, and for needles.
+    /// Returns a bound on the error of a hit's position due to rounding, in meters. The path tracer rounds the ray to
+    /// float, and the rasterizer computes the primitive's plane in double. The second error matters for primitives that
+    /// are 1e10 times as large as their distance, and for needles.
     double rounding(const Rayd& r, const Hit& hit) const {
         const double reach = plane_reach(tracer.corners(hit.object, hit.primitive), r.origin);
         return tracer.ray_rounding(r, hit.object, hit.t) + gamma_bound<double>(16) * reach;
     }
 
-    /// Returns by how many pixels rays may be displaced to find both hits.
+    /// Returns the largest displacement of rays, in pixels, that is tried to find both hits.
     double radius(int x, int y, const Hit& a, const Hit& b) const {
         constexpr double kLargest = 1e4; // across any image; the plane of a triangle without area may be anywhere
         double result = kEdgeRadius;
@@ -91,7 +92,7 @@ struct HitClassifier {
     }
 };
 
-/// The results of one row, so that rows can be judged in parallel and merged in order.
+/// Holds the results of one row, so that rows can be judged in parallel and merged in order.
 struct RowResult {
     HitAgreement counts;
     std::vector<UnexplainedPixel> listed;

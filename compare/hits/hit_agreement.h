@@ -1,4 +1,5 @@
-// Checks whether both pipelines hit the same primitive at the same distance in every pixel, and explains differences.
+// This file checks whether both pipelines hit the same primitive at the same distance in every pixel, and explains
+// differences.
 #pragma once
 
 #include "common/camera/camera.h"
@@ -14,7 +15,7 @@ namespace duet::compare {
 
 enum class HitVerdict : std::uint8_t {
     kSame,       ///< same object and primitive, or both miss
-    kEdge,       ///< double-precision rays within 1/128 pixel of the center, and what rounding amounts to, find both
+    kEdge,       ///< double-precision rays within 1/128 pixel of the center, plus the rounding error, find both hits
     kDepthTie,   ///< the double-precision ray hits both at the same distance, within kDepthTolerance; or displaced rays
                  ///< find one, and hit the other within kTieTolerance of its occluder; or one is at the eye, within
                  ///< rounding
@@ -26,7 +27,7 @@ enum class HitVerdict : std::uint8_t {
 /// plane in proportion to it. The rounding is that of a ray traced in float (ReferenceTracer::ray_rounding).
 inline constexpr double kDepthTolerance = 1e-5;
 
-/// A pixel whose hits differ without an explanation.
+/// Describes a pixel whose hits differ without an explanation.
 struct UnexplainedPixel {
     int x = 0, y = 0;
     Hit raster, raytrace;

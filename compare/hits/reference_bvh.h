@@ -11,9 +11,9 @@
 
 namespace duet::compare {
 
-/// A BVH that splits the boxes at the median of their centers along the longest axis. The double-precision
-/// reference tracer uses it to judge the two pipelines. It is therefore kept simple, shares no code with the
-/// path tracer's BVH, and never skips a box that the ray touches.
+/// A ReferenceBvh splits boxes at the median of their centers along the longest axis. The double-precision reference
+/// tracer uses it to judge the two pipelines. It is therefore simple, shares no code with the path tracer's BVH, and
+/// never skips a box that the ray touches.
 class ReferenceBvh {
 public:
     explicit ReferenceBvh(const std::vector<Box3d>& boxes);

@@ -47,8 +47,8 @@ std::optional<double> intersect(const Rayd& ray, Vec3d a, Vec3d b, Vec3d c) {
     return t;
 }
 
-/// Intersects as common/geometry/sphere.h does, in double precision. The discriminant is computed from the
-/// distance of the center to the line, and the roots without subtracting nearly equal numbers.
+/// Intersects a ray and a sphere as common/geometry/sphere.h does, in double precision. The discriminant is computed
+/// from the distance of the center to the line, and the roots without subtracting nearly equal numbers.
 std::optional<double> intersect(const Rayd& ray, const Sphere& sphere) {
     const Vec3d f = ray.origin - Vec3d(sphere.center);
     const double radius = sphere.radius, a = length_squared(ray.direction), b = -dot(f, ray.direction);
@@ -142,7 +142,7 @@ Rayd ReferenceTracer::to_object_space(const Rayd& ray, const PlacedShape& placed
     return local;
 }
 
-// `local` is the ray in the object's space.
+// Here `local` is the ray in the object's space.
 bool ReferenceTracer::passes_alpha_test(const Rayd& ray, const Rayd& local, const ReferenceHit& hit) const {
     Hit rounded{hit.object, hit.primitive, 0, 0, static_cast<float>(hit.t)};
     const Shape& shape = *objects_[hit.object].shape;
@@ -207,7 +207,7 @@ double ReferenceTracer::ray_rounding(const Rayd& ray, std::uint32_t object, doub
     const double of_ray =
         length(Vec3d(Vec3(ray.origin)) - ray.origin) + gamma_bound<float>(3) * t * length(ray.direction);
     if (scene_.objects[object].identity && !scene_.objects[object].moving) return of_ray;
-    // A difference, a product with a matrix of rounded entries, and two sums.
+    // The bound covers a difference, a product with a matrix of rounded entries, and two sums.
     const double bound = gamma_bound<float>(5);
     const auto absolute = [](const Mat4d& m, Vec3d v) {
         const auto row = [&](std::size_t r) {

@@ -1,4 +1,4 @@
-// A double-precision ray tracer that serves as the reference for both pipelines' hits.
+// This file declares a double-precision ray tracer that serves as the reference for both pipelines' hits.
 #pragma once
 
 #include "common/geometry/hit.h"
@@ -9,7 +9,7 @@
 
 namespace duet::compare {
 
-/// This is a ray's hit in double precision. On a miss, object is kNoObject and t is infinite.
+/// A ReferenceHit is a ray's hit in double precision. On a miss, object is kNoObject and t is infinite.
 struct ReferenceHit {
     std::uint32_t object = kNoObject, primitive = 0;
     double t = std::numeric_limits<double>::infinity();
@@ -21,9 +21,9 @@ struct ReferenceHit {
     }
 };
 
-/// Traces the scene at one moment in time. Vertices and transforms are the pipelines' own floats, but all
-/// arithmetic is in double precision, which is 2^29 times finer than the results that it judges. It shares no
-/// code with either pipeline. Holds a reference to the scene.
+/// Traces the scene at one moment in time. Vertices and transforms are the floats that the pipelines use, but all
+/// arithmetic is in double precision, whose roundoff is 2^29 times smaller than that of the hits to judge. The tracer
+/// shares no code with either pipeline. It holds a reference to the scene.
 class ReferenceTracer {
 public:
     /// `time` in [0, 1] is the time of the objects' motion.
@@ -37,10 +37,10 @@ public:
     /// Returns |cos θ| between the ray and the geometric normal of a primitive; for a sphere, the normal at
     /// distance t. Returns 0 for a triangle without area.
     double cosine(const Rayd& ray, std::uint32_t object, std::uint32_t primitive, double t) const;
-    /// Returns how far rounding may move the point at distance t of a ray that is traced in float: that of the ray's
-    /// origin and direction, and that of the transform to the object's space and of its result (Higham 2002, "Accuracy
-    /// and Stability of Numerical Algorithms", §3.1). It is large for an instance whose own coordinates are large
-    /// beside t.
+    /// Returns a bound on the displacement, by rounding, of the point at distance t of a ray that is traced in float.
+    /// It covers the rounding of the ray's origin and direction, of the transform to the object's space, and of the
+    /// result (Higham 2002, "Accuracy and Stability of Numerical Algorithms", §3.1). It is large for an instance whose
+    /// own coordinates are large compared with t.
     double ray_rounding(const Rayd& ray, std::uint32_t object, double t) const;
     /// Returns the corners of a triangle (3) or quad (4) in world space; none for a sphere.
     std::vector<Vec3d> corners(std::uint32_t object, std::uint32_t primitive) const;

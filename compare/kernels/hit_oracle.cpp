@@ -14,7 +14,7 @@ namespace {
 constexpr double kGrazing = 1e-3; ///< cosine below which a ray is nearly parallel to a surface
 constexpr int kDirections = 16;   ///< number of directions in which a ray is displaced to find what it just misses
 constexpr int kSurroundingRays =
-    32; ///< number of directions in which a ray is displaced to find a way past what it hits
+    32; ///< number of directions in which a ray is displaced to get past the surface that it hits
 
 Rayd in_double(const Ray& ray) {
     return {Vec3d(ray.origin), Vec3d(ray.direction), static_cast<double>(ray.t_min), static_cast<double>(ray.t_max),
@@ -99,10 +99,10 @@ bool HitOracle::is_near_edge(const Rayd& ray, const ReferenceHit& hit) const {
            distance_tolerance(ray, hit.t);
 }
 
-// Returns whether rays displaced by rounding errors to all sides are also blocked before `end`. If so, the edge
-// that the ray hits is not a silhouette, and a watertight kernel does not let the ray through. Several
-// displacement lengths are tried, because a long one may run into another surface. A single ray that passes
-// disproves it.
+// Returns whether rays that are displaced to all sides by the rounding error are also blocked before `end`. If so, the
+// edge that the ray hits is not a silhouette, and a watertight kernel does not let the ray through. Several
+// displacement lengths are tried, because a long one may run into another surface. A single displaced ray that is not
+// blocked makes the result false.
 bool HitOracle::surface_continues_around(const Rayd& ray, const ReferenceHit& hit, double end) const {
     const double tolerance = distance_tolerance(ray, hit.t);
     const FrameT<double> frame = frame_from_normal(normalize(ray.direction));
@@ -249,7 +249,7 @@ Mismatches compare_results(const HitOracle& oracle, const RayQueries& ray_querie
         const std::size_t i = different[k];
         findings[k].first = verdict_of(oracle, ray_queries, i, ours[i]);
         findings[k].second = ray_queries.closest() ? oracle.closest(rays[i], peers[i])
-                                                   : oracle.occluded(rays[i], peers[i].hit()); // as queried
+                                                   : oracle.occluded(rays[i], peers[i].hit()); // the peer's query
     });
     Mismatches result;
     result.rays = std::ssize(rays);

@@ -1,4 +1,4 @@
-// Decides by a double-precision ray which of two kernels is right, or that single precision cannot decide it.
+// This file decides by a double-precision ray which of two kernels is right, or that single precision cannot decide it.
 #pragma once
 
 #include "common/scene/scene.h"
@@ -10,7 +10,7 @@
 
 namespace duet::compare {
 
-/// This is the judgment of one result.
+/// Selects the verdict on one result.
 enum class AnswerVerdict : std::uint8_t {
     kCorrect,  ///< confirmed by the double-precision ray
     kTie,      ///< another triangle is hit at the same distance
@@ -55,7 +55,7 @@ private:
     mutable std::unique_ptr<const ReferenceTracer> exact_;
 };
 
-/// Number of a kernel's results that were judged, and of those that count against it.
+/// Counts the results of a kernel that were judged, and those that count against it.
 struct KernelErrors {
     std::int64_t rays = 0;
     std::int64_t edge = 0;  ///< AnswerVerdict::kEdgeLeak; a watertight kernel has none
@@ -75,7 +75,7 @@ struct KernelErrors {
     bool any() const { return edge > 0 || wrong > 0; }
 };
 
-/// The rays on which two kernels differ, by explanation. Hits of the same triangle at distances within
+/// Counts the rays on which two kernels differ, by explanation. Hits of the same triangle at distances within
 /// HitOracle::kTolerance count as equal.
 struct Mismatches {
     std::int64_t rays = 0;                                      ///< rays that both traced
@@ -85,7 +85,7 @@ struct Mismatches {
     std::int64_t differ() const { return tie + edge + fault + unexplained; }
 };
 
-/// A set of rays and the query for each: the closest hit or, if there are ends, whether anything occludes the
+/// Holds a set of rays and the query for each: the closest hit or, if there are ends, whether anything occludes the
 /// ray. The peer's shadow rays simply end at their t_max.
 struct RayQueries {
     std::span<const Ray> rays;

@@ -1,4 +1,5 @@
-// Timing of two ways to do the same work in turns, so that changes of the CPU's speed do not affect their ratio.
+// This file times several implementations of the same work in turns, so that changes of the CPU's speed do not affect
+// their ratio.
 #pragma once
 
 #include "common/system/control.h"
@@ -42,8 +43,8 @@ inline constexpr int kMinRepeatsForVerdict = 5;
 InterleavedTimings interleave(const TimedWork& ours, const std::vector<TimedWork>& peers, int repeats,
                               double time_limit, const Control& control);
 
-/// The subset of a ray set that one measurement traces: whole groups of blocks, spread evenly over the set, so
-/// that tracing takes about the requested time.
+/// A RaySubset is the part of a ray set that one measurement traces: whole groups of blocks, spread evenly over the
+/// set, so that tracing takes about the requested time.
 struct RaySubset {
     std::size_t rays = 0;            ///< number of rays traced, over all passes
     std::vector<std::size_t> groups; ///< groups of kGroup blocks each
@@ -51,7 +52,7 @@ struct RaySubset {
 
     static constexpr std::size_t kGroup = 4;
 };
-/// Returns the subset of a set of `rays` rays for a tracer that traces `rate` rays per second, to last `seconds`.
+/// Returns a subset of a set of `rays` rays that takes about `seconds` with a tracer of `rate` rays per second.
 RaySubset choose_ray_subset(std::size_t rays, double rate, double seconds);
 
 /// Returns the seconds (work_stopwatch) to trace the subset on `threads` threads. `ray_results` has one element per

@@ -15,7 +15,8 @@ using nlohmann::json;
 
 bool is_rate(const KernelRow& row) { return row.work != "build" && row.work != "memory"; }
 
-/// Returns whether the path tracer traces such rays in this form. It traces camera rays only in bulk.
+/// Returns whether the path tracer traces such rays in this form. It traces camera rays only in batches
+/// ("camera-bulk").
 bool as_rendered(const KernelRow& row) { return row.work != "camera"; }
 
 std::string figure(const KernelRow& row, double value) {
@@ -28,7 +29,7 @@ std::string ratio_text(const MedianRange& ratio) {
     return fixed(ratio.min, 2) + " - " + fixed(ratio.median, 2) + " - " + fixed(ratio.max, 2);
 }
 
-/// Formats 1234567 as "1,234,567".
+/// Formats a number with separators of thousands, such as "1,234,567".
 std::string with_separators(std::int64_t number) {
     const std::string digits = std::to_string(number);
     std::string text;
@@ -80,7 +81,7 @@ json row_json(const KernelResults& table, const KernelRow& row) {
     return result;
 }
 
-/// Returns a sort key for the amount of differences and leaks. Unexplained ones come first.
+/// Returns a sort key for the number of mismatches and leaks. Unexplained mismatches come first.
 std::array<std::int64_t, 4> severity(const KernelRow& row) {
     std::array<std::int64_t, 4> result{};
     if (row.mismatches) result = {row.mismatches->unexplained, row.mismatches->fault, 0, row.mismatches->differ()};
@@ -88,8 +89,8 @@ std::array<std::int64_t, 4> severity(const KernelRow& row) {
     return result;
 }
 
-/// Returns, for each work, the row with the largest severity(), sorted in descending order. Answers don't depend
-/// on threads.
+/// Returns, for each workload, the row with the largest severity(), sorted in descending order. Results do not depend
+/// on the number of threads.
 std::vector<const KernelRow*> rows_to_explain(const KernelResults& table) {
     std::vector<const KernelRow*> worst;
     for (const KernelRow& row : table.rows) {
@@ -126,7 +127,7 @@ void print_differences(std::ostream& out, const KernelResults& table) {
     }
 }
 
-/// Prints the checks of the results: by the oracle, against the peer's, and for rays aimed at edges.
+/// Prints the checks of the results: by the oracle, against the peer's results, and for rays aimed at edges.
 void print_checks(std::ostream& out, const KernelResults& table) {
     print_differences(out, table);
     KernelErrors judged;
@@ -232,7 +233,7 @@ std::vector<std::string> kernel_failures(const KernelResults& table) {
         add(judged.found.wrong, " of ", judged.found.rays, " of our answers to ", judged.work, " rays are wrong");
         add(judged.found.edge, " of ", judged.found.rays, " of our ", judged.work, " rays slipped through edges");
     }
-    std::vector<std::string> leaked; // works already reported
+    std::vector<std::string> leaked; // workloads already reported
     for (const KernelRow& row : table.rows) {
         if (row.leaks && row.leaks->ours > 0 && std::ranges::count(leaked, row.work) == 0) {
             leaked.push_back(row.work);

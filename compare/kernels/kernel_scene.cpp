@@ -36,7 +36,7 @@ void append(Mesh& all, const std::array<Vec3, 4>& quad) {
     append(all, {quad.begin(), quad.end()}, {{0, 1, 2}, {0, 2, 3}});
 }
 
-/// These are the triangles of a scene in one mesh.
+/// Holds the triangles of a scene in one mesh.
 struct Flattened {
     Mesh mesh;
     std::vector<std::optional<std::uint32_t>> first; ///< index of each object's first triangle; none for a sphere

@@ -1,4 +1,5 @@
-// The scenes that all ray kernels trace: the triangles of a mesh or a scene in an arrangement, a camera, and lights.
+// This file defines the scenes that all ray kernels trace: the triangles of a mesh or a scene in an arrangement, a
+// camera, and lights.
 #pragma once
 
 #include "common/scene/scene.h"
@@ -20,7 +21,7 @@ Arrangement parse_arrangement(std::string_view name);
 /// Returns the name that parse_arrangement reads.
 std::string_view name_of(Arrangement arrangement);
 
-/// This is a scene of triangle meshes only: one mesh in world space as the single object, or instances of one mesh
+/// A KernelScene has triangle meshes only: one mesh in world space as the single object, or instances of one mesh
 /// followed by a mesh in world space.
 struct KernelScene {
     std::string mesh; ///< file name without its extension
@@ -43,10 +44,10 @@ struct KernelScene {
 /// Returns whether the file is a bare mesh, which can be arranged. A scene file is used as it is.
 bool is_bare_mesh(const std::filesystem::path& file);
 
-/// Loads a bare mesh, framed by the loader but without the ground, or a scene file with its own camera and
-/// lights. Instances are transformed to world space at shutter opening, and quads are split into two triangles.
-/// An area light refers to its triangles in the resulting mesh. Throws Error as load_scene does, if no triangle
-/// is left, and if a scene file is to be arranged.
+/// Loads a bare mesh, framed by the loader but without the ground, or a scene file with its own camera and lights. In a
+/// scene file, instances are transformed to world space at shutter opening, and quads are split into two triangles. An
+/// area light refers to its triangles in the resulting mesh. Throws Error as load_scene does, if no triangle is left,
+/// and if a scene file is to be arranged.
 KernelScene load_kernel_scene(const std::filesystem::path& file, Arrangement arrangement);
 
 /// Adds a closed box of half-side `half` around `center` to the mesh: twelve triangles that face inwards.

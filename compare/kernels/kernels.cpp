@@ -39,7 +39,7 @@ std::vector<EmbreeQuality> chosen_peers(const std::vector<std::string>& names) {
     return names.empty() ? all : chosen;
 }
 
-/// A case to measure: a file in one of its possible arrangements.
+/// A Case to measure is a file in one of its possible arrangements.
 struct Case {
     std::filesystem::path file;
     Arrangement arrangement;

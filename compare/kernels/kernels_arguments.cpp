@@ -1,4 +1,4 @@
-// Command-line arguments of `compare kernels`.
+// This file declares the command-line arguments of `compare kernels`.
 #include "common/program/command_line.h"
 #include "compare/arguments.h"
 #include "compare/kernels/kernels.h"

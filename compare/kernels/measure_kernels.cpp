@@ -15,10 +15,10 @@ const std::vector<std::string> kWorks{"build", "camera", "camera-bulk", "bounce"
 
 namespace {
 
-constexpr std::size_t kMaxCheckedRays = 20'000; ///< number of Duet's results to each kind of ray that are judged
+constexpr std::size_t kMaxCheckedRays = 20'000; ///< number of Duet's results per kind of ray that are judged
 constexpr double kBuildLimit = 40; ///< time limit for the builds with one thread count, as a multiple of `seconds`
 
-/// The Embree devices that the settings require.
+/// Owns the Embree devices that the settings require.
 class Devices {
 public:
     Devices(const std::vector<EmbreeQuality>& qualities, const Scene& scene, int threads) {
@@ -31,7 +31,7 @@ private:
     std::optional<EmbreeDevice> widest_, avx2_;
 };
 
-/// Rays, their query, and all tracers that can run it.
+/// Holds rays, their query, and all tracers that can run it.
 struct Work {
     std::string name;
     std::vector<Ray> rays;
@@ -149,7 +149,7 @@ private:
         std::ranges::sort(works_, {}, place);
     }
 
-    /// Traces all rays with every tracer and counts differences and leaks. A work without rays is omitted.
+    /// Traces all rays with every tracer and counts mismatches and leaks. A workload without rays is omitted.
     void add_work(std::string name, std::vector<Ray> rays, std::vector<Hit> ends) {
         if (rays.empty() || control_.stopped()) return;
         works_.push_back({std::move(name), std::move(rays), std::move(ends), {}, {}, {}, {}});
@@ -171,7 +171,7 @@ private:
         if (work.peers.empty()) work.leaks.push_back({our_leaks, 0});
     }
 
-    /// Returns tracers for all ways in which the peer can do a work.
+    /// Returns tracers for all forms in which the peer can process a workload.
     std::vector<Tracer> peer_tracers(const Work& work) const {
         std::vector<Tracer> tracers;
         const auto add = [&](std::size_t i, Tracer tracer, const std::string& name_suffix) {
@@ -205,7 +205,7 @@ private:
         const auto timed = [&](const Tracer& tracer, const RaySubset& subset) -> TimedWork {
             return [&, subset] { return trace_seconds(tracer, subset, threads, ray_results); };
         };
-        // A short measurement determines how many rays take the requested time.
+        // A short measurement determines how many rays can be traced in the requested time.
         const RaySubset pilot = choose_ray_subset(work.rays.size(), 1e6, 0.1 * threads);
         const double rate = static_cast<double>(pilot.rays) / timed(work.ours, pilot)();
         const RaySubset subset = choose_ray_subset(work.rays.size(), rate, settings_.seconds);

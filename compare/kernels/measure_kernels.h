@@ -1,4 +1,5 @@
-// All measurements of one scene: builds, memory, and each kind of ray, with one thread and with many.
+// This file declares all measurements of one scene: builds, memory, and each kind of ray, with one thread and with
+// many.
 #pragma once
 
 #include "common/program/command_line.h"
@@ -12,7 +13,7 @@
 
 namespace duet::compare {
 
-/// Names of the works: build, camera, camera-bulk, bounce, shadow.
+/// These are the names of the workloads: build, camera, camera-bulk, bounce, shadow.
 extern const std::vector<std::string> kWorks;
 
 /// Says what is measured, and for how long.

@@ -31,8 +31,8 @@ std::pair<int, int> pixel_in_tile(int i, PixelOrder order) {
     return {even_bits(i), even_bits(i >> 1)};
 }
 
-/// Returns the results of `make` for each ray and its index, in order and without empty ones, for any number of
-/// threads.
+/// Returns the results of `make` for each ray and its index, in order and without empty ones. They do not depend on the
+/// number of threads.
 template <typename Made>
 std::vector<Made> collect(std::span<const Ray> rays, int threads,
                           const std::function<std::optional<Made>(const Ray&, std::size_t)>& make) {
@@ -133,7 +133,8 @@ ShadowRays shadow_rays(const KernelScene& scene, const raytrace::Accelerator& ac
         const Light& light = scene.lights[index % scene.lights.size()];
         const std::optional<LightSample> s = sample_light(light, point->p, random_samples(~seed, index));
         if (!s) return std::nullopt;
-        const bool lit = dot(point->ng, s->wi) * dot(point->ng, ray.direction) < 0; // the side of the incoming ray
+        // The light must be on the side of the incoming ray.
+        const bool lit = dot(point->ng, s->wi) * dot(point->ng, ray.direction) < 0;
         if (!lit) return std::nullopt;
         AimedRay aimed{{offset_origin(*point, s->wi), s->wi}, {}};
         aimed.end.t = s->distance;

@@ -16,7 +16,7 @@ constexpr std::size_t kOrigins = 4096;
 constexpr std::int64_t kRaysPerTask = 64 * static_cast<std::int64_t>(kBlock); ///< number of rays generated and traced
                                                                               ///< at a time
 
-/// The random samples of a ray.
+/// Generates the random samples of a ray.
 class RandomStream {
 public:
     RandomStream(std::uint64_t seed, std::uint64_t index) : state_(hash_combine(mix_bits(seed + 1), index)) {}
@@ -43,7 +43,7 @@ int winding_number(const ReferenceTracer& exact, Vec3d p) {
     }
 }
 
-/// All objects' triangles under one index, with their corners in world space.
+/// Holds all objects' triangles under one index, with their corners in world space.
 class Targets {
 public:
     Targets(const KernelScene& scene, const HitOracle& oracle) : exact_(oracle.exact()) {
@@ -85,7 +85,7 @@ Ray aimed_ray(const Targets& targets, const std::vector<Vec3>& origins, std::uin
 std::vector<Vec3> choose_origins(const KernelScene& scene, const HitOracle& oracle, std::uint64_t seed) {
     if (!scene.enclosed) return points_inside(scene, oracle, kOrigins, seed);
     std::vector<Vec3> points;
-    const Box3& box = scene.scene->bounds; // the walls
+    const Box3& box = scene.scene->bounds; // in a closed room, the box of the walls
     for (std::uint64_t i = 0; i < kOrigins; ++i) {
         RandomStream random(~seed, i);
         const auto along = [&](std::size_t axis) {

@@ -1,4 +1,4 @@
-// Tests rays aimed at the weakest points of a closed triangle mesh from inside. None may escape or slip through.
+// This file traces rays from inside at the weakest points of a closed triangle mesh. None may escape or slip through.
 #pragma once
 
 #include "common/system/control.h"
@@ -13,15 +13,14 @@ namespace duet::compare {
 /// Returns a kernel's tracer for the given rays.
 using TracerFactory = std::function<Tracer(std::span<const Ray>)>;
 
-/// Results of the rays, per kernel. One third of the rays is aimed at random points of random triangles, one
-/// third at points of their edges, and one third at vertices. They start at points inside a closed mesh or
-/// anywhere in a closed room. The double-precision ray judges every hit, also at silhouettes. Sixteen
-/// consecutive rays share their origin and are aimed at neighbors in the mesh, so that packet kernels trace
-/// coherent packets.
+/// Holds the results of the rays, per kernel. One third of the rays is aimed at random points of random triangles, one
+/// third at points of their edges, and one third at vertices. The rays start at points inside a closed mesh or anywhere
+/// in a closed room. The double-precision ray judges every hit, also at silhouettes. Sixteen consecutive rays share
+/// their origin and are aimed at neighbors in the mesh, so that packet kernels trace coherent packets.
 struct Watertight {
     struct Kernel {
         std::int64_t misses = 0; ///< rays without a hit, which escaped
-        KernelErrors faults;     ///< over all rays: slipped through an edge to what is behind, or otherwise wrong
+        KernelErrors faults;     ///< over all rays: leaks through an edge to the surface behind, other wrong hits
     };
     std::int64_t rays = 0;
     std::vector<Kernel> kernels; ///< in the order given

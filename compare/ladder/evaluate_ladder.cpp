@@ -11,10 +11,10 @@ namespace duet::compare {
 
 namespace {
 
-/// Contributions of one camera sample to I₁ … I₇.
+/// Holds the contributions of one camera sample to I₁ … I₇.
 using StageValues = std::array<Rgbd, kRungCount>;
 
-/// This is the rasterizer's light towards the viewer in one pixel.
+/// Holds the rasterizer's light towards the viewer in one pixel.
 struct RasterLight {
     Rgbd emission, direct, environment, indirect, reflection, shadowed;
 
@@ -43,7 +43,8 @@ StageValues stage_values(const RasterLight& hit, const RasterLight& surface, con
             direct + environment + Rgbd(light.indirect) + reflection};
 }
 
-/// Differences of the path tracer's noisy light and the rasterizer's may be negative, whole images may not.
+/// Returns whether all stages are finite and the path tracer's image, the last one, is not negative. Other stages may
+/// be negative, because they contain differences of noisy light.
 bool is_valid(const StageValues& steps) {
     const Rgbd& last = steps.back();
     return std::all_of(steps.begin(), steps.end(), [](const Rgbd& c) { return is_finite(c); }) && last.r >= 0 &&

@@ -1,4 +1,4 @@
-// `compare ladder`: compares both pipelines rung by rung and attributes the difference of their images to causes.
+// `compare ladder` compares both pipelines rung by rung and attributes the difference of their images to causes.
 #pragma once
 
 #include "compare/renderer.h"

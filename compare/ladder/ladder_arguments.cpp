@@ -1,4 +1,4 @@
-// Command-line arguments of `compare ladder`.
+// This file declares the command-line arguments of `compare ladder`.
 #include "common/program/command_line.h"
 #include "compare/arguments.h"
 #include "compare/ladder/ladder.h"

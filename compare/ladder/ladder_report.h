@@ -1,4 +1,4 @@
-// The results of `compare ladder` as JSON, as a table and as a page.
+// This file writes the results of `compare ladder` as JSON, as a table and as a page.
 #pragma once
 
 #include "common/scene/scene.h"
@@ -12,7 +12,7 @@
 
 namespace duet::compare {
 
-/// All results for one scene.
+/// Holds all results for one scene.
 struct LadderResult {
     const Scene& scene;
     View view;

@@ -9,7 +9,7 @@ namespace duet::compare {
 
 namespace {
 
-/// Approximate cost of a sample relative to a path-traced one, for the progress bar.
+/// These are the approximate costs of a sample relative to a path-traced one, for the progress bar.
 constexpr double kRasterCost = 0.1, kRayCost = 0.4;
 
 struct Rendered {

@@ -1,4 +1,4 @@
-// Renders the rungs of the ladder: each quantity separately in both pipelines, with its time and error.
+// This file renders the rungs of the ladder: each quantity separately in both pipelines, with its time and error.
 #pragma once
 
 #include "compare/hits/hit_agreement.h"
@@ -10,7 +10,7 @@
 
 namespace duet::compare {
 
-/// Holds one pipeline's image of a quantity, and what it cost.
+/// Holds one pipeline's image of a quantity, and its cost.
 struct MeasuredRender {
     ImageRgb image; ///< linear; false colors for hits
     double seconds = 0;
@@ -35,7 +35,8 @@ std::array<MeasuredRung, kRungCount> measure_rungs(const Scene& scene, const Vie
                                                    const std::array<RungPlan, kRungCount>& plan, int threads,
                                                    const NextTask& next_task);
 
-/// Returns the hits in false colors: each object has its own hue, each primitive a shade of it, and misses are dark.
+/// Returns the hits in false colors: each object has its own hue, each primitive its own shade of that hue, and misses
+/// are dark.
 ImageRgb hit_image(const Image<Hit>& hits);
 
 } // namespace duet::compare

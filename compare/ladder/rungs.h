@@ -30,17 +30,19 @@ inline constexpr std::array<RungName, kRungCount> kRungNames{{
     {"everything", "Everything", "indirect light"},
 }};
 
-/// Both pipelines, prepared for the same scene.
+/// Holds both pipelines, prepared for the same scene.
 struct PreparedPair {
     raster::RasterScene raster;
     raster::RasterSettings raster_settings; ///< of the full image
     raytrace::PathTracerScene raytrace;
     raytrace::PathTracerSettings raytrace_settings; ///< of the full image, with an even number of samples
 };
-/// Prepares the scene for both pipelines. It must outlive the result. An odd number of raytrace_spp is rounded up.
+/// Prepares the scene for both pipelines. The scene must outlive the result. An odd number of raytrace_spp is rounded
+/// up.
 PreparedPair prepare_pair(const Scene& scene, const ComparisonSettings& settings);
 
-/// A quantity that both pipelines can render separately: in Rendering::radiance or, for rung 1, in Rendering::hit.
+/// Describes a quantity that both pipelines can render separately: in Rendering::radiance or, for rung 1, in
+/// Rendering::hit.
 struct RungRenderers {
     std::string name;
     raster::RasterSettings raster_settings;

@@ -1,11 +1,11 @@
-// Attribution of the difference between the pipelines to causes: each rung, and noise.
+// This file attributes the difference between the pipelines to causes: each rung, and noise.
 #pragma once
 
 #include "compare/ladder/evaluate_ladder.h"
 
 namespace duet::compare {
 
-/// The causes: one per rung, in the order of the rungs, then the path tracer's noise.
+/// The causes are one per rung, in the order of the rungs, and then the path tracer's noise.
 inline constexpr std::size_t kNoise = kRungCount, kCauseCount = kRungCount + 1;
 using Causes = std::array<double, kCauseCount>;
 
@@ -23,8 +23,8 @@ struct Shares {
     Causes share{};
     double sum = 0; ///< sum of all shares: 1 up to rounding
     double rms = 0; ///< RMS of D over pixels and channels
-    /// Whether D is no more than rounding error, 10⁻⁵ of the image's root mean square. Then there is nothing to
-    /// attribute, and all shares are 0.
+    /// This is true if D, the difference I₀ − I₇, is no more than rounding error: 10⁻⁵ of the image's root mean square.
+    /// Then there is nothing to attribute, and all shares are 0.
     bool negligible = false;
 };
 /// Returns the shares of the causes in the difference of the images.
@@ -33,7 +33,7 @@ Shares shares(const LadderImages& images);
 /// Returns, for one pixel, the numerators of the shares in Shares. They add up to |D|² at that pixel.
 Causes pixel_causes(const LadderImages& images, std::size_t pixel);
 
-/// A map of visible differences and their main causes. The causes of a single pixel are noisy, so the main
+/// A CauseMap shows visible differences and their main causes. The causes of a single pixel are noisy, so the main
 /// cause is the largest sum over the pixel and its eight neighbors.
 struct CauseMap {
     Image<std::uint8_t> cause; ///< index of the main cause

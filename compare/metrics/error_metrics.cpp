@@ -10,7 +10,8 @@ namespace duet::compare {
 
 namespace {
 
-/// Fraction of the pixels that relmse_trimmed excludes. In many images a few fireflies cause most of the relMSE.
+/// This is the fraction of the pixels that relmse_trimmed excludes. In many images a few fireflies cause most of the
+/// relMSE.
 constexpr double kTrimmedShare = 0.001;
 
 struct Sums {
@@ -39,7 +40,7 @@ struct Sums {
 bool has_nan(Rgb c) { return std::isnan(c.r) || std::isnan(c.g) || std::isnan(c.b); }
 bool has_infinity(Rgb c) { return std::isinf(c.r) || std::isinf(c.g) || std::isinf(c.b); }
 
-/// Returns the mean of the relative squared errors, one per pixel, without the largest.
+/// Returns the mean of the relative squared errors, one per pixel, without the largest fraction kTrimmedShare.
 double trimmed_mean(std::vector<double>& errors) {
     const std::size_t kept =
         errors.size() - static_cast<std::size_t>(kTrimmedShare * static_cast<double>(errors.size()));

@@ -1,4 +1,4 @@
-// Error metrics between two images.
+// This file computes error metrics between two images.
 #pragma once
 
 #include "common/image/image.h"
@@ -7,13 +7,14 @@
 
 namespace duet::compare {
 
-/// This term avoids division by zero and keeps dark references from dominating.
+/// The denominator of relative errors contains this term, which avoids division by zero and keeps dark pixels of the
+/// reference from dominating.
 inline constexpr double kRelativeFloor = 0.01;
 /// Returns the relative error of a squared error (Rousselle, Knaus and Zwicker 2011, §5).
 inline double relative_square(double square, double reference) { return square / (sqr(reference) + kRelativeFloor); }
 
-/// Differences of image A from the reference B, computed on the values as given, in double precision. Means are
-/// over all channels of all pixels that are finite in both images; the other pixels are counted. If no pixel is
+/// Holds the differences of image A from the reference B, computed on the values as given, in double precision. Means
+/// are over all channels of all pixels that are finite in both images; the other pixels are counted. If no pixel is
 /// left, every mean is NaN.
 struct ErrorMetrics {
     double mse = 0;                    ///< mean of (a − b)²

@@ -16,14 +16,14 @@ using Filters = std::array<SeparableFilter, kFlipFilters>;
 
 // Color --------------------------------------------------------------------------------------------------------------
 
-/// This is a 3 × 3 matrix for colors, by rows.
+/// A ColorMatrix is a 3 × 3 matrix for colors, by rows.
 struct ColorMatrix {
     Vec3 x, y, z;
     Vec3 operator*(Vec3 c) const { return {dot(x, c), dot(y, c), dot(z, c)}; }
 };
 
-/// Matrices from linear sRGB to CIE XYZ and back. Each row of the first is scaled to the sum 1: XYZ is relative
-/// to the white point, which becomes (1, 1, 1).
+/// These matrices convert linear sRGB to CIE XYZ and back. Each row of the first is scaled to the sum 1: XYZ is
+/// relative to the white point, which becomes (1, 1, 1).
 constexpr ColorMatrix kToXyz{{0.4338953888f, 0.3762423726f, 0.1898622385f},
                              {0.2126368217f, 0.7151829818f, 0.0721801965f},
                              {0.0177524232f, 0.1094656287f, 0.8727819482f}};
@@ -64,7 +64,7 @@ float color_distance(Vec3 a, Vec3 b) {
     return std::pow(std::abs(d.x) + std::sqrt(sqr(d.y) + sqr(d.z)), 0.7f);
 }
 
-/// Maps the distance to [0, 1]. The lower 0.4 of the possible distances get most of the range, 0.95 (§4.1.3).
+/// Maps the distance to [0, 1]. The lower 0.4 of the possible distances get most of the range, up to 0.95 (§4.1.3).
 float color_error(Vec3 a, Vec3 b) {
     static const float largest = color_distance(hunt_lab({0, 1, 0}), hunt_lab({0, 0, 1}));
     constexpr float kPt = 0.95f;
@@ -74,8 +74,8 @@ float color_error(Vec3 a, Vec3 b) {
 
 // Filtering ----------------------------------------------------------------------------------------------------------
 
-/// Number of image rows per band. A band is small enough for the cache, and large enough to amortize the rows
-/// beyond it that the filters reach.
+/// This is the number of image rows per band. A band is small enough for the cache, and large enough to amortize the
+/// additional rows that the filters read.
 constexpr int kBandRows = 64;
 
 struct Rows {
@@ -121,13 +121,13 @@ Rows apply(const SeparableFilter& filter, Rows& channel, int y0, int y1, int hei
 
 // The metric ---------------------------------------------------------------------------------------------------------
 
-/// What an observer perceives of a band of rows: filtered colors and the strength of edges and points.
+/// Holds what an observer perceives of a band of rows: filtered colors and the strength of edges and points.
 struct PerceivedBand {
     std::vector<Vec3> color;
     std::vector<float> edge, point;
 };
 
-/// `linear(pixel)` returns the displayed color as linear RGB in [0, 1].
+/// Computes the perception of a band. `linear(pixel)` returns the displayed color as linear RGB in [0, 1].
 template <typename ToLinear>
 PerceivedBand perceive(const ImageRgb& image, const ToLinear& linear, const Filters& filters, int y0, int y1) {
     int reach = 0;
@@ -155,7 +155,7 @@ PerceivedBand perceive(const ImageRgb& image, const ToLinear& linear, const Filt
     return perceived;
 }
 
-/// Raises the rows of the map from y0 on to the errors between two perceptions of them (§4.3).
+/// Raises the map's rows from y0 on to the errors between the perceptions of two images, where these are larger (§4.3).
 void accumulate_errors(ImageFloat& map, int y0, const PerceivedBand& test, const PerceivedBand& reference) {
     float* errors = &map(0, y0);
     for (std::size_t i = 0; i < test.color.size(); ++i) {
@@ -181,7 +181,7 @@ ImageFloat error_map(const ImageRgb& test, const ImageRgb& reference, int exposu
     return map;
 }
 
-/// Both images, with pixels that are not finite in one of them set to black in both.
+/// Holds both images, with pixels that are not finite in one of them set to black in both.
 struct FinitePair {
     ImageRgb test, reference;
     std::vector<std::size_t> bad;
@@ -224,7 +224,8 @@ void pool_errors(Flip& flip, const std::vector<std::size_t>& bad) {
 
 // Exposures ----------------------------------------------------------------------------------------------------------
 
-/// Narkowicz's fit of the ACES film curve, without its built-in exposure of 0.6: (a x² + b x) / (c x² + d x + e).
+/// The curve is Narkowicz's fit of the ACES film curve, without its built-in exposure of 0.6: (a x² + b x) / (c x² + d
+/// x + e).
 constexpr double kA = 0.36 * 2.51, kB = 0.6 * 0.03, kC = 0.36 * 2.43, kD = 0.6 * 0.59, kE = 0.14;
 
 /// Evaluates the curve, clamped to [0, 1]. Beyond the clamped argument it is 1 in any case.

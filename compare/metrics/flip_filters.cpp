@@ -33,7 +33,7 @@ Kernel balanced(const Taps& t) {
     return kernel;
 }
 
-/// This is a term a √(π/b) exp(−π² z/b) of a contrast sensitivity function, with z in degrees squared (Table 1).
+/// Holds a term a √(π/b) exp(−π² z/b) of a contrast sensitivity function, with z in degrees squared (Table 1).
 struct Sensitivity {
     double a, b;
 };

@@ -1,4 +1,4 @@
-// All metrics of a pair of images.
+// This file computes all metrics of a pair of images.
 #pragma once
 
 #include "common/image/image_file.h"
@@ -33,7 +33,7 @@ ImageRgb encoded_values(const Image<Rgba8>& image);
 /// Decodes sRGB-encoded values to linear ones.
 ImageRgb decoded(const ImageRgb& image);
 
-/// This is one metric as a number with a name.
+/// A MetricValue is one metric as a number with a name.
 struct MetricValue {
     std::string name; ///< name in the JSON and in METRIC=VALUE
     double value = 0;

@@ -1,4 +1,4 @@
-// Limits on metrics, as given by --fail-above.
+// This file defines limits on metrics, as given by --fail-above.
 #pragma once
 
 #include "compare/metrics/image_metrics.h"
@@ -10,7 +10,7 @@ namespace duet::compare {
 
 /// Holds a limit that a metric must not exceed.
 struct Limit {
-    std::string metric; ///< name of one of figures()
+    std::string metric; ///< a name that metric_values() uses
     double value = 0;
 };
 

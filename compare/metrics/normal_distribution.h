@@ -1,10 +1,10 @@
-// Functions of the normal distribution that statistical tests need.
+// This file declares functions of the normal distribution that statistical tests need.
 #pragma once
 
 namespace duet::compare {
 
-/// Returns the probability that a standard normal variable is further from 0 than |z|. Exact up to rounding,
-/// down to 1e-300.
+/// Returns the probability that a standard normal variable is further from 0 than |z|. The result is exact up to
+/// rounding, down to 1e-300.
 double two_sided_p(double z);
 /// Returns the z ≥ 0 that a standard normal variable exceeds with probability p in (0, 0.5].
 double upper_quantile(double p);

@@ -1,4 +1,4 @@
-// A check that two images have the same size, for metrics that compare them pixel by pixel.
+// This file checks that two images have the same size, for metrics that compare them pixel by pixel.
 #pragma once
 
 #include "common/image/image.h"

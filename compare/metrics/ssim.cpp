@@ -21,8 +21,8 @@ Window gaussian_window() {
     return window;
 }
 
-/// Weighted means and central moments over a window or a part of one, merged without cancellation (Chan, Golub
-/// and LeVeque 1979, "Updating Formulae and a Pairwise Algorithm for Computing Sample Variances").
+/// Holds weighted means and central moments over a window or a part of one, which are merged without cancellation
+/// (Chan, Golub and LeVeque 1979, "Updating Formulae and a Pairwise Algorithm for Computing Sample Variances").
 struct Moments {
     double a = 0, b = 0;            ///< means
     double aa = 0, bb = 0, ab = 0;  ///< weighted sums of products of deviations from the means
@@ -49,7 +49,7 @@ struct Sum {
     std::int64_t count = 0;
 };
 
-/// Returns the sum and number of the similarities of all windows of one channel whose top row is y.
+/// Returns the sum and the number of the similarities of all windows of one channel whose top row is y.
 Sum row_of_windows(const ImageRgb& a, const ImageRgb& b, int y, std::size_t channel, const Window& window) {
     std::vector<Moments> columns(static_cast<std::size_t>(a.width()));
     for (int k = 0; k < kWindow; ++k)

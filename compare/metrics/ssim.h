@@ -1,4 +1,4 @@
-// SSIM: the structural similarity of two images.
+// This file computes SSIM, the structural similarity of two images.
 #pragma once
 
 #include "common/image/image.h"

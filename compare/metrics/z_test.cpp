@@ -47,7 +47,7 @@ constexpr int kBlock = 32, kPoolRadius = 2;
 /// This error does not average out over a block as noise does. All differences are therefore reduced by it.
 constexpr double kRounding = 1e-5;
 
-/// Significance level of the decision. The detectable difference is found with one minus this probability.
+/// This is the significance level of the decision. The detectable difference is found with one minus this probability.
 constexpr double kLevel = 0.01;
 
 struct Value {
@@ -81,7 +81,7 @@ Values differences(const NoisyImage& a, const NoisyImage& b) {
     return values;
 }
 
-/// The sums over a group of pixels on which the decision is based.
+/// Holds the sums over a group of pixels on which the decision is based.
 struct Sums {
     double difference = 0, variance = 0;
     std::int64_t count = 0;

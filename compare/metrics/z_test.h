@@ -1,4 +1,4 @@
-// A statistical test of whether two noisy images differ by more than their noise.
+// This file declares a statistical test of whether two noisy images differ by more than their noise.
 #pragma once
 
 #include "common/image/image.h"
@@ -7,14 +7,14 @@
 
 namespace duet::compare {
 
-/// This is a linear image and the estimated variance of each of its values.
+/// A NoisyImage is a linear image and the estimated variance of each of its values.
 struct NoisyImage {
     const ImageRgb& values;
     const ImageRgb& variance; ///< empty: the values are taken as exact
 };
 
-/// Differences of two images in units of their noise. The noise of the images must be independent (two seeds).
-/// With the same seed the noise cancels, and the test finds nothing.
+/// Holds the differences of two images in units of their noise. The noise of the images must be independent (two
+/// seeds). With the same seed the noise cancels, and the test finds nothing.
 struct ZTest {
     std::int64_t pixels = 0; ///< pixels tested: finite, with a finite variance, and not both equal and noise-free
 

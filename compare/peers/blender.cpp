@@ -12,7 +12,7 @@
 
 namespace duet::compare {
 
-/// The scripts in compare/peers/blender/, embedded by CMakeLists.txt.
+/// These are the scripts in compare/peers/blender/, embedded by CMakeLists.txt.
 extern const std::span<const std::pair<std::string_view, std::string_view>> kBlenderScripts; // names and texts
 
 namespace {

@@ -1,5 +1,5 @@
-// Blender as a renderer of the bench: Cycles, its path tracer, or EEVEE, its rasterizer, renders the same scene in a
-// subprocess.
+// This file uses Blender as a renderer of the bench: Cycles, its path tracer, or EEVEE, its rasterizer, renders the
+// same scene in a subprocess.
 #pragma once
 
 #include "compare/bench/bench_renderer.h"
@@ -11,15 +11,17 @@ namespace duet::compare {
 
 enum class BlenderEngine { kCycles, kEevee };
 
-/// Throws Error unless the programs are in PATH: blender, and xvfb-run for EEVEE, which draws by OpenGL and so needs a
-/// display, a virtual one.
+/// Throws Error unless the required programs are in PATH. These are blender and, for EEVEE, xvfb-run: EEVEE draws by
+/// OpenGL and so needs a display, a virtual one.
 void check_blender(BlenderEngine engine);
 
-/// This is one Blender process with one scene. Its renders run one at a time, and never at the same time as Duet's.
+/// A BlenderPeer is one Blender process with one scene. Its renders run one at a time, and never at the same time as
+/// Duet's.
 class BlenderPeer {
 public:
     /// Exports the scene to a temporary folder and starts Blender with it (see check_blender). EEVEE draws with Mesa's
-    /// llvmpipe, on the CPU. Throws Error if the scene cannot be exported (see export_scene), to EEVEE if it has media.
+    /// llvmpipe, on the CPU. Throws Error if the scene cannot be exported (see export_scene), which for EEVEE includes
+    /// scenes with media.
     BlenderPeer(BlenderEngine engine, const Scene& scene, const View& view, const ExportSettings& settings);
     ~BlenderPeer();
     BlenderPeer(const BlenderPeer&) = delete;
@@ -57,11 +59,11 @@ private:
     bool ready_ = false; ///< whether Blender has built the scene
 };
 
-/// Version of the export and settings that determine what Cycles converges to, like raytrace::kEstimatorVersion
-/// for Duet. Reference images are cached under it.
+/// This is the version of the export and of the settings that determine what Cycles converges to, like
+/// raytrace::kEstimatorVersion for Duet. The cache key of reference images contains it.
 inline constexpr int kCyclesExportVersion = 5;
 
-/// Returns the peer's renderers, which share it: Cycles with and without adaptive sampling, or EEVEE.
+/// Returns the renderers of the peer, which they share: Cycles with and without adaptive sampling, or EEVEE.
 std::vector<BenchRenderer> blender_renderers(const std::shared_ptr<BlenderPeer>& peer, const std::vector<int>& spps);
 
 } // namespace duet::compare

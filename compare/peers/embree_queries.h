@@ -1,5 +1,5 @@
-// Rays in Embree's forms (single, packets, streams), and one interface to the calls of Embree 3 and 4. Included
-// by embree.cpp only; empty if Embree is not installed.
+// This file converts rays to Embree's forms (single, packets, streams), and provides one interface to the calls of
+// Embree 3 and 4. Only embree.cpp includes it. It is empty if Embree is not installed.
 #pragma once
 
 #include "compare/kernels/tracer.h"
@@ -41,7 +41,7 @@ private:
 #endif
 };
 
-/// Parameters of a query besides its rays: the context in Embree 3, the arguments in Embree 4.
+/// Holds the parameters of a query besides its rays: the context in Embree 3, the arguments in Embree 4.
 #if DUET_EMBREE >= 4
 struct Query {
     RTCIntersectArguments closest;
@@ -81,13 +81,14 @@ inline void intersect_stream(RTCScene scene, Query& query, std::span<RTCRayHit> 
 }
 #endif
 
-/// Embree returns the geometry and, if there is one, the instance. Both have the object's index as their ID.
+/// Converts a result. Embree returns the ID of the geometry and, if there is one, of the instance. Both IDs are the
+/// object's index.
 inline RayResult to_ray_result(float t, unsigned geometry, unsigned instance, unsigned triangle) {
     if (geometry == RTC_INVALID_GEOMETRY_ID) return {};
     return {t, triangle, instance == RTC_INVALID_GEOMETRY_ID ? geometry : instance};
 }
 
-/// Returns the ray's start for Embree, whose interval includes t = tnear; Duet's excludes t_min. The difference
+/// Returns the ray's start for Embree, whose interval includes t = tnear, while Duet's excludes t_min. The difference
 /// matters for rays that start at t = 0 on a surface.
 inline float embree_t_near(const Ray& ray) { return std::max(ray.t_min, std::numeric_limits<float>::min()); }
 
@@ -106,7 +107,7 @@ inline RTCRay to_embree_ray(const Ray& ray) {
             0};
 }
 
-/// The rays of a packet as a structure of arrays, ready to be copied.
+/// Holds the rays of a packet as a structure of arrays, ready to be copied.
 template <int kWidth> struct alignas(64) PacketRays {
     using Lanes = float[kWidth];
     Lanes org_x, org_y, org_z, tnear, dir_x, dir_y, dir_z, tfar;
@@ -196,7 +197,7 @@ inline std::function<void(std::size_t, RayResult*)> stream_of_structures(RTCScen
     };
 }
 
-/// The rays and hits of a block as a structure of arrays.
+/// Holds the rays and hits of a block as a structure of arrays.
 struct alignas(64) StreamArrays {
     using Floats = std::array<float, kBlock>;
     using Numbers = std::array<unsigned, kBlock>;

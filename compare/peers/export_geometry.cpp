@@ -35,8 +35,9 @@ public:
         }
         soup_.slots.push_back(slot);
     }
-    /// Adds a closed surface of rings × sectors cells. corner_at(i, j) makes corner i of ring j, of sectors + 1 and
-    /// rings + 1; those of the first and last ring, the poles, coincide, and those of the first and last sector.
+    /// Adds a closed surface of rings × sectors cells. corner_at(i, j) returns corner i of ring j, for i from 0 to
+    /// `sectors` and j from 0 to `rings`. All corners of the first ring must coincide (a pole), and so must those of
+    /// the last ring. In every ring, the first and the last corner must coincide.
     template <typename CornerAt> void add_rings(int rings, int sectors, const CornerAt& corner_at) {
         std::vector<Corner> grid;
         for (int j = 0; j <= rings; ++j)
@@ -111,7 +112,7 @@ TriangleSoup sphere_triangles(int rings) {
 
 TriangleSoup sphere_triangles_near(Vec3d pole, double height) {
     constexpr double kStep = 0.028; // √(8e-4): a chord of that many radians is 1e-4 of the radius below its arc
-    constexpr int kSectors = 224; // 2π / kStep
+    constexpr int kSectors = 224; // rounded 2π / kStep
     constexpr double kLeastHeight = 1e-6; // smaller facets would be lost in the rounding of their corners
     std::vector<double> angles{0}; // of the rings, from the pole
     while (angles.back() < kPiDouble) {

@@ -108,8 +108,9 @@ private:
                               "microfacets");
     }
 
-    /// Exports subsurface scattering with the color that is seen through the layers. Cycles scales walks by radii: the
-    /// mean free path is the radius times a factor of the color.
+    /// Exports subsurface scattering with the color that is seen through the layers. Cycles expects radii for its
+    /// random walk, and computes the mean free path as the radius times a function of the color. The exported radius is
+    /// the mean free path divided by that function.
     void export_subsurface(const SubsurfaceBsdf& surface, Rgb color, json& result) {
         const auto radius = [&](std::size_t c) {
             const float factor = 1.9f - color[c] + 3.5f * sqr(color[c] - 0.8f); // Chiang, Kutz and Burley 2016
@@ -249,7 +250,8 @@ private:
             list.push_back(std::move(m));
         }
         const auto other = [&](const Medium& m) { return m.asymmetry != scene_.media.front().asymmetry; };
-        if (std::ranges::any_of(scene_.media, other)) // a single scattering, integrated numerically, agrees with ours
+        // A numerical integration of single scattering agrees with Duet and not with Cycles.
+        if (std::ranges::any_of(scene_.media, other))
             notes_.insert("where media of different asymmetry overlap, Cycles is off by some percent");
         if (!scene_.media.empty() && scene_.needs.transmission) notes_.insert("media are inside of glass, too");
         return list;
@@ -307,14 +309,16 @@ private:
         });
     }
 
-    /// Meshes of spheres: one that all share, and one for each that is so near or so large that its facets would show.
+    /// Adds the meshes of spheres. Most spheres share one mesh. A sphere that is so near or so large that the facets of
+    /// that mesh would show has a mesh of its own.
     json add_sphere(const Object& o, const Sphere& sphere, json& meshes) {
         const Mat4d place = Mat4d(world_transform(o)) * translation(Vec3d(sphere.center));
         const auto radius = static_cast<double>(sphere.radius);
         const Vec3d eye = transform_point(inverse_affine(place), view_.camera.eye);
-        const double height = std::abs(length(eye) / radius - 1); // above the surface, in radii
-        constexpr double kLargestError = 2e-3; // of facets, over their distance
-        const bool emits = emitter(scene_.materials[o.materials.front()]) != nullptr; // with a sphere's area, below
+        const double height = std::abs(length(eye) / radius - 1); // distance above the surface, in radii
+        constexpr double kLargestError = 2e-3; // of facets, relative to their distance
+        // Emitters always use the shared mesh, which has a sphere's area.
+        const bool emits = emitter(scene_.materials[o.materials.front()]) != nullptr;
         if (!emits && 1 - std::cos(kPiDouble / (2 * rings_)) > kLargestError * height && length(eye) > 0) {
             notes_.insert("near spheres are meshes, off by at most 2e-4 of their distance; their textures have a seam");
             meshes.push_back(mesh_json(o.name, sphere_triangles_near(normalize(eye), height)));

@@ -1,4 +1,4 @@
-// How Mesa is told to draw on the CPU.
+// This file makes Mesa draw on the CPU.
 #pragma once
 
 #include <array>
@@ -7,8 +7,8 @@
 
 namespace duet::compare {
 
-/// Returns environment variables by which Mesa's OpenGL draws with llvmpipe and so many threads. With one thread, the
-/// calling thread does the work itself, which avoids handing over to a thread on the same processor.
+/// Returns the environment variables that make Mesa's OpenGL draw with llvmpipe on so many threads. With one thread,
+/// the calling thread does the work itself, which avoids handing over to a thread on the same processor.
 inline std::array<std::pair<std::string, std::string>, 3> llvmpipe_environment(int threads) {
     return {{{"GALLIUM_DRIVER", "llvmpipe"},
              {"LIBGL_ALWAYS_SOFTWARE", "1"},

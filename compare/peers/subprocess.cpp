@@ -23,7 +23,7 @@ namespace duet::compare {
 
 namespace {
 
-/// Actions of the new process before it runs the program: the ends of the pipes become its standard streams.
+/// Holds the actions of the new process before it runs the program: the ends of the pipes become its standard streams.
 class FileActions {
 public:
     FileActions(int in, int out) {
@@ -82,7 +82,7 @@ Subprocess::~Subprocess() {
         ::kill(-pid_, SIGTERM);
         if (!ends()) ::kill(-pid_, SIGKILL), ::waitpid(pid_, nullptr, 0);
     }
-    ::kill(-pid_, SIGTERM); // what it left behind
+    ::kill(-pid_, SIGTERM); // ends processes that the program left behind
 }
 
 bool is_installed(const std::string& program) {

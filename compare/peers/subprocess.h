@@ -12,12 +12,12 @@ namespace duet::compare {
 /// Returns whether a program is in PATH.
 bool is_installed(const std::string& program);
 
-/// A process that runs during the object's lifetime, with those that it starts. The destructor closes its input, ends
-/// it after two seconds with SIGTERM, and after two more with SIGKILL.
+/// A Subprocess is a process that runs during the object's lifetime, with those that it starts. The destructor closes
+/// its input, ends it after two seconds with SIGTERM, and after two more with SIGKILL.
 class Subprocess {
 public:
-    /// Starts the program, which must be in PATH. Its standard error is merged into its standard output. Throws
-    /// Error if it cannot be started.
+    /// Starts the program, which must be in PATH. Its standard error is merged into its standard output. Throws Error
+    /// if the program cannot be started.
     explicit Subprocess(const std::vector<std::string>& command);
     ~Subprocess();
     Subprocess(const Subprocess&) = delete;

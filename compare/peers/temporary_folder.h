@@ -1,4 +1,4 @@
-// This header defines a temporary folder.
+// This file defines a temporary folder.
 #pragma once
 
 #include "common/system/error.h"
@@ -9,7 +9,7 @@
 
 namespace duet::compare {
 
-/// A temporary folder that is deleted with its owner, unless it is kept.
+/// A TemporaryFolder is a folder that is deleted with the object, unless keep() is called.
 class TemporaryFolder {
 public:
     /// Makes a folder whose name begins with `prefix`. Throws Error if that is impossible.

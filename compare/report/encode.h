@@ -1,4 +1,4 @@
-// Lossless compression of images to text for a web page.
+// This file compresses images without loss to text for a web page.
 #pragma once
 
 #include "common/image/image.h"

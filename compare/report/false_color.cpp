@@ -10,7 +10,7 @@ namespace duet::compare {
 
 namespace {
 
-// Nine anchors from dark blue over near white to dark orange, as sRGB bytes. They must match those in the
+// These are nine anchors from dark blue over near white to dark orange, as sRGB bytes. They must match those in the
 // page's paint.js.
 constexpr std::array<Rgb, 9> kAnchors = {Rgb(8, 48, 107),    Rgb(33, 102, 172),  Rgb(82, 148, 206),
                                          Rgb(167, 205, 230), Rgb(246, 246, 244), Rgb(250, 203, 150),

@@ -1,13 +1,13 @@
-// False colors for signed differences.
+// This file computes false colors for signed differences.
 #pragma once
 
 #include "common/image/image.h"
 
 namespace duet::compare {
 
-/// Returns the color (sRGB-encoded components in [0, 1]) of a signed value, clamped to [−1, 1]: blue for
-/// negative values, near white for 0, orange for positive values. Blue and orange can be distinguished with
-/// every common kind of color vision. Lightness decreases evenly towards both ends.
+/// Returns the color (sRGB-encoded components in [0, 1]) of a signed value, clamped to [−1, 1]: blue for negative
+/// values, near white for 0, and orange for positive values. Blue and orange can be distinguished with every common
+/// kind of color vision. Lightness decreases evenly towards both ends.
 Rgb diverging_color(double value);
 
 /// Returns A − B in luminance, mapped by diverging_color over [−range, range], as linear values for

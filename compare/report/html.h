@@ -1,4 +1,4 @@
-// Generation of the compare tool's HTML pages from templates, styles and scripts that are embedded in the
+// This file generates the compare tool's HTML pages from templates, styles and scripts that are embedded in the
 // program, and from data that is escaped for embedding.
 #pragma once
 

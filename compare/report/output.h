@@ -1,4 +1,4 @@
-// Preparation of output folders, so that errors show before a long render and not after it.
+// This file prepares output folders, so that errors show before a long render and not after it.
 #pragma once
 
 #include <filesystem>

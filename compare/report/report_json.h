@@ -1,4 +1,4 @@
-// The results of a comparison as JSON, for report.json and the tables of the page.
+// This file writes the results of a comparison as JSON, for report.json and the tables of the page.
 #pragma once
 
 #include "common/scene/scene.h"

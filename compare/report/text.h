@@ -1,4 +1,4 @@
-// Numbers, lists and tables as text.
+// This file formats numbers, lists and tables as text.
 #pragma once
 
 #include <cstdio>
@@ -15,11 +15,11 @@ template <typename... Values> std::string formatted(const char* format, Values..
     return text;
 }
 
-/// Prints this number of digits after the point.
+/// Returns the number with this number of digits after the point.
 inline std::string fixed(double value, int digits) { return formatted("%.*f", digits, value); }
-/// Prints at most this number of significant digits.
+/// Returns the number with at most this number of significant digits.
 inline std::string significant(double value, int digits) { return formatted("%.*g", digits, value); }
-/// Prints milliseconds without their unit: two digits after the point below 10 ms, else one.
+/// Returns a time in milliseconds, without the unit: with two digits after the point below 10 ms, else with one.
 inline std::string milliseconds(double seconds) { return fixed(1000 * seconds, seconds < 0.01 ? 2 : 1); }
 
 /// Returns the strings with the separator between them.

@@ -33,14 +33,14 @@ constexpr double kChannels = 3;
 
 double threshold() { return upper_quantile(sidak_level(kFalseAlarmProbability, kChannels) / 2); } // 2.93
 
-/// Returns S as a function of T.
+/// Returns S of the formula above as a function of Student's T: without skewness, and nearly normal.
 double without_skewness(double t, double skewness, double count) {
     const double a = skewness / std::sqrt(count);
     const double g = t + a * t * t / 3 + a * a * t * t * t / 27 + a / 6;
     return g / std::sqrt(1 + g * g / count);
 }
 
-/// Returns T₀, or infinity if no T suffices.
+/// Returns T₀, the least |T| at which a bias of either sign is found, or infinity if there is none.
 double smallest_detected_t(double skewness, double count) {
     double low = 0, high = 1e3;
     for (int i = 0; i < 60; ++i) {

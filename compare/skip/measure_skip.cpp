@@ -36,7 +36,8 @@ std::string reason_of(const SkipCase& skip, const Rendering& rendering) {
     return skip.statistic.empty() ? "" : "this scene has none to leave out";
 }
 
-/// Renders the repeats. The order alternates from pair to pair, so that neither way always benefits from warm caches.
+/// Renders the repeats, each with and without the skip. The order alternates, so that neither of the two always
+/// benefits from warm caches.
 void render_repeats(SkipMeasurement& result, const SkipCase& skip, const View& view, const SkipMeasureSettings& options,
                     Control& control) {
     std::vector<double> seconds[2];

@@ -1,4 +1,4 @@
-// Measures what one skip saves, and whether it preserves the image.
+// This file measures what one skip saves, and whether it preserves the image.
 #pragma once
 
 #include "compare/skip/bias_test.h"
@@ -8,7 +8,7 @@
 
 namespace duet::compare {
 
-/// Says what one skip saves, and whether it changes the image.
+/// Says what one skip saves, and whether the skip changes the image.
 struct SkipMeasurement {
     struct Seconds {
         double median = 0, min = 0;

@@ -1,4 +1,4 @@
-// Command-line arguments of `compare skip`.
+// This file declares the command-line arguments of `compare skip`.
 #include "common/program/command_line.h"
 #include "compare/arguments.h"
 #include "compare/skip/skip.h"

@@ -7,11 +7,11 @@ namespace duet::compare {
 
 namespace {
 
-// All AOVs except the variance, for which the path tracer would draw its samples differently.
+// These are all AOVs except the variance, for which the path tracer would draw its samples differently.
 constexpr AovSet kAllAovs{
     .depth = true, .normal = true, .albedo = true, .hit = true, .variance = false, .samples = true};
 
-/// A skip that is controlled by a member of SkipFlags.
+/// A SkipSwitch is a skip that a member of SkipFlags controls.
 struct SkipSwitch {
     const char* name;
     bool SkipFlags::*member;
@@ -20,10 +20,9 @@ struct SkipSwitch {
     SkipProof proof = SkipProof::kSameBits;
 };
 
-// At a silhouette, a sample that only the snapped triangles cover belongs to a front face and a back face, and
-// rounding decides which is nearer. Without culling, about one pixel in 100,000 of a dense mesh may therefore
-// show the back face, at the same position and distance. The bits are mostly the same; if not, the bias is
-// tested.
+// At a silhouette, a sample that only the snapped triangles cover belongs to a front face and a back face, and rounding
+// decides which is nearer. Without culling, about one pixel in 100,000 of a dense mesh may therefore show the back
+// face, at the same position and distance. The bits are mostly the same; if not, the image is tested for bias.
 constexpr SkipSwitch kRaster[] = {
     {"frustum", &SkipFlags::frustum, "objects and triangles that no pixel can see", "outside the frustum"},
     {"back_faces", &SkipFlags::back_faces, "back faces of closed, opaque meshes", "backfaces", SkipProof::kNoBias},

@@ -1,4 +1,4 @@
-// The skips of both pipelines, each as a case that can be rendered with and without the skip.
+// This file lists the skips of both pipelines, each as a case that can be rendered with and without the skip.
 #pragma once
 
 #include "compare/renderer.h"
@@ -9,13 +9,13 @@
 
 namespace duet::compare {
 
-/// How a skip is proved to preserve the image.
+/// Selects how a skip is proved to preserve the image.
 enum class SkipProof {
     kSameBits, ///< every image is the same to the last bit
     kNoBias,   ///< the expected image is the same, by a test that finds a bias of 0.1 % with 99 % power
 };
 
-/// A skip to be measured.
+/// A SkipCase is a skip to be measured.
 struct SkipCase {
     std::string pipeline, name; ///< "raster" or "raytrace"; name on the command line and in JSON
     std::string omitted;        ///< what it omits, in words

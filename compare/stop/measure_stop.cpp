@@ -14,7 +14,7 @@ namespace duet::compare {
 
 namespace {
 
-// First seed of the trials, far from the references' seeds.
+// This is the first seed of the trials, far from the references' seeds.
 constexpr std::uint64_t kFirstSeed = 1;
 
 double own_relmse(const Reference& reference) {
@@ -103,7 +103,7 @@ double mean(const std::vector<StopTrial>& trials, double StopTrial::*figure) {
     return trials.empty() ? 0 : sum / static_cast<double>(trials.size());
 }
 
-/// Returns adaptive over uniform sampling in a squared error × seconds.
+/// Returns the ratio of adaptive to uniform sampling in squared error × seconds.
 double cost_ratio(const std::vector<StopTrial>& trials, double StopTrial::*adaptive, double StopTrial::*uniform) {
     return mean(trials, adaptive) * mean(trials, &StopTrial::seconds) /
            (mean(trials, uniform) * mean(trials, &StopTrial::uniform_seconds));

@@ -1,5 +1,5 @@
-// Measures whether a render stops where it should: the achieved error against the requested error, and the time
-// taken against the time limit. It also compares adaptive sampling with uniform sampling at the same sample
+// This file measures whether a render stops where it should: it compares the achieved error with the requested error,
+// and the time taken with the time limit. It also compares adaptive sampling with uniform sampling at the same sample
 // count.
 #pragma once
 
@@ -21,7 +21,8 @@ struct StopSettings {
     int threads = 0;     ///< 0: all hardware threads
 };
 
-/// One seed: a render with an error limit, and a uniformly sampled one with the same mean sample count.
+/// Holds the trial of one seed: a render with an error limit, and a uniformly sampled one with the same mean sample
+/// count.
 struct StopTrial {
     std::uint64_t seed = 0;
     double samples = 0;           ///< mean samples per pixel at the end
@@ -30,13 +31,13 @@ struct StopTrial {
     double relmse = 0, mse = 0;   ///< against the reference, minus the reference's own error
     double uniform_relmse = 0, uniform_mse = 0;
 };
-/// One render with a time limit.
+/// Holds the trial of one render with a time limit.
 struct TimeTrial {
     double seconds = 0;  ///< time of the render
     double one_pass = 0; ///< time of the smallest final pass: two samples per pixel
 };
 
-/// Trials and results of a scene. Ratios of squared errors are ratios of their means over the seeds.
+/// Holds the trials and results of a scene. Ratios of squared errors are ratios of their means over the seeds.
 struct StopResult {
     std::vector<StopTrial> trials;
     std::vector<TimeTrial> times;

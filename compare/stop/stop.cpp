@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The time that deviates most from the requested one, as their ratio, and whether any time is out of tolerance.
+/// Holds the time that deviates most from the requested one, as their ratio, and whether any time is out of tolerance.
 struct WorstTime {
     double ratio = 1;
     bool missed = false;
@@ -77,7 +77,7 @@ json as_json(const Row& row, const StopOptions& options) {
             {"seconds_to_time", times}};
 }
 
-/// Returns "0.95", or "-" if the ratio is not finite.
+/// Returns the ratio with two decimals, or "-" if it is not finite.
 std::string ratio_text(double ratio) { return std::isfinite(ratio) ? fixed(ratio, 2) : "-"; }
 
 void print_head(bool times) {

@@ -21,7 +21,8 @@ struct StopOptions {
     bool quiet = false;
 };
 
-/// Relative tolerances of the median error, and of the time (or one pass, if that is longer).
+/// These are the relative tolerances of the median error and of the time. The time may differ by one pass, if that is
+/// longer.
 inline constexpr double kErrorTolerance = 0.2, kTimeTolerance = 0.05;
 
 /// Prints one row per scene. Returns 0; 1 if a scene without caustics misses the error by more than

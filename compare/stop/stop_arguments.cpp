@@ -1,4 +1,4 @@
-// Command-line arguments of `compare stop`.
+// This file declares the command-line arguments of `compare stop`.
 #include "compare/arguments.h"
 #include "compare/stop/stop.h"
 

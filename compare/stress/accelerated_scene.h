@@ -1,4 +1,4 @@
-// This header declares the shapes and scenes of the intersection tests, and the reference hit from testing every
+// This file declares the shapes and scenes of the intersection tests, and the reference hit from testing every
 // primitive.
 #pragma once
 
@@ -13,7 +13,7 @@ namespace duet::compare {
 Scene make_scene(std::vector<Shape> shapes);
 Scene make_scene(Shape shape, const std::vector<Mat4>& placements);
 
-/// Returns an object of a shape and a material, at rest.
+/// Returns a static object of a shape and a material.
 Object object_of(std::uint32_t shape, const Mat4& to_world);
 
 /// Owns a scene at a stable address, with the path tracer's accelerator.

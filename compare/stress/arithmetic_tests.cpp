@@ -103,8 +103,8 @@ Vec3 normal_near_pole(Trial& trial) {
     }
 }
 
-/// Returns the deviation of s, t and n from right angles, unit length and right-handedness. It measures s and t; n is
-/// taken as given.
+/// Returns the deviation of s, t and n from right angles, unit length and right-handedness. The deviation is that of s
+/// and t; n is assumed to be exact.
 double frame_error(const Frame& frame) {
     const Vec3d s(frame.s), t(frame.t), n(frame.n);
     double worst = length(cross(s, t) - n);
@@ -113,7 +113,7 @@ double frame_error(const Frame& frame) {
     return in_roundoffs(worst);
 }
 
-/// This is the frame as first published: except at the exact pole, 1/(1 + n.z) cancels near −z (Frisvad 2012; Duff et
+/// Returns the frame as first published: 1/(1 + n.z) cancels near −z, except exactly at the pole (Frisvad 2012; Duff et
 /// al. 2017, listing 1).
 Frame frisvad_frame(Vec3 n) {
     if (n.z < -0.9999999f) return {{0, -1, 0}, {-1, 0, 0}, n};

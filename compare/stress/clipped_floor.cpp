@@ -54,7 +54,7 @@ private:
     std::array<ProjectedTriangle, 2> halves_;
 };
 
-/// Counts how many of the triangles cover each sample.
+/// Returns how many of the triangles cover each sample.
 Image<int> count_library(const Mesh& floor, const TrialView& v) {
     Image<int> count(kSide, kSide, 0);
     CoverageProbe probe(v.window);

@@ -19,7 +19,7 @@ std::int32_t within_guard(std::int64_t x) {
 }
 FixedPoint guarded(std::int64_t x, std::int64_t y) { return {within_guard(x), within_guard(y)}; }
 
-/// Returns a uniform value in [−reach, reach].
+/// Returns a uniform integer in [−reach, reach].
 std::int64_t about(TrialRandom& random, std::int64_t reach) {
     return static_cast<std::int64_t>(random.below(static_cast<std::uint32_t>(2 * reach + 1))) - reach;
 }
@@ -42,7 +42,7 @@ FixedPoint beyond(TrialRandom& random, FixedPoint from, FixedPoint through) {
                    through.y + (std::int64_t{through.y} - from.y) * times);
 }
 
-/// This rectangle surrounds all samples of the window at a random distance.
+/// A Border is a rectangle that surrounds all samples of the window at a random distance.
 struct Border {
     std::int32_t left, top, right, bottom;
 

@@ -21,9 +21,9 @@ inline constexpr std::uint32_t kTriangleKinds = 8;
 /// Returns a triangle of a kind in [0, kTriangleKinds), of either orientation.
 GridTriangle random_triangle(TrialRandom& random, const Window& window, std::uint32_t kind);
 
-/// These meshes are topological disks whose border surrounds the window once. Whatever their inner vertices are, each
-/// sample is covered by one more clockwise than counter-clockwise triangle.
-/// 4 to 64 triangles around one vertex.
+/// Returns a mesh of 4 to 64 triangles around one vertex. As for the next two meshes, it is a topological disk whose
+/// border surrounds the window once. Whatever its inner vertices are, each sample is covered by one more clockwise than
+/// counter-clockwise triangle.
 std::vector<GridTriangle> random_fan(TrialRandom& random, const Window& window);
 std::vector<GridTriangle> random_strip(TrialRandom& random, const Window& window); ///< adjacent slivers
 std::vector<GridTriangle> random_grid(TrialRandom& random, const Window& window); ///< jittered or heavily folded

@@ -132,7 +132,7 @@ void into_spheres(Trial& trial) {
     trial.record_naive(error(naive::intersect_sphere({ray.at(hit.t), w, kTextbookTMin}, sphere)));
 }
 
-/// Two parallel quads are 4e-5 apart. A ray leaving one outward must escape, and a ray leaving it inward must hit the
+/// Tests two parallel quads 4e-5 apart. A ray leaving one outward must escape, and a ray leaving it inward must hit the
 /// other quad.
 void parallel_surfaces(Trial& trial) {
     TrialRandom& random = trial.random;
@@ -161,7 +161,7 @@ void parallel_surfaces(Trial& trial) {
     trial.record_naive_failure_if(wrong(hit.object, accelerated.accelerator.closest(textbook_ray).object));
 }
 
-/// A point just above a surface 20 km wide must be distinguished from the surface.
+/// Tests that a point just above a surface 20 km wide is distinguished from the surface.
 StressResult huge_ground(const StressTest& test, const StressSetting& setting) {
     constexpr float kHalf = 1e4f;
     const AcceleratedScene accelerated(
@@ -179,14 +179,14 @@ StressResult huge_ground(const StressTest& test, const StressSetting& setting) {
         if (!hit.valid()) return trial.record_failure_if(true);
         const SurfacePoint point = surface_point(*accelerated.scene, {above, down}, hit);
         const double truth = -static_cast<double>(above.y) / static_cast<double>(down.y);
-        // Far from the surface's center a distance has the rounding error of its corners' distances.
+        // Far from the surface's center, t has a rounding error in proportion to the corners' distances.
         trial.record_failure_if(!(std::abs(static_cast<double>(hit.t) - truth) <= 4e-3) ||
                                 accelerated.accelerator.closest({above, up}).valid() ||
                                 accelerated.accelerator.closest({offset_origin(point, up), up}).valid());
     });
 }
 
-/// Inside a convex body every face is visible from every other.
+/// Tests that inside a convex body every face is visible from every other.
 StressResult convex_shadows(const StressTest& test, const StressSetting& setting) {
     std::vector<AcceleratedScene> accelerated_scenes;
     std::vector<float> scales;
@@ -255,8 +255,7 @@ void error_bounds(Trial& trial) {
     const float u = random.uniform();
     const Hit hit{0, random.below(20), u, random.uniform(0, 1 - u), 1};
     const SurfacePoint point = surface_point(scene, {{}, {0, 0, 1}}, hit);
-    // This also transforms the point to object space, as a spawned ray's origin is, in float, and back to the
-    // world.
+    // The point is also transformed to object space in float, as the origin of a spawned ray is, and back to the world.
     const Object& object = scene.objects[0];
     const Vec3 back = transform_point_inverse(object.to_world, object.to_object, point.p);
     const Vec3d there = transform_point(Mat4d(to_world), Vec3d(back));
@@ -280,7 +279,7 @@ void instances_as_baked(Trial& trial) {
         const Vec3 origin = target + random.direction() * (scale * random.uniform(2, 5));
         const Ray ray{origin, normalize_scaled(target - origin)};
         const Hit a = instance.accelerator.closest(ray), b = baked.accelerator.closest(ray);
-        // Rounding chose different sides of an edge.
+        // The hits differ because rounding chose different sides of an edge.
         if (a.valid() && b.valid() && a.primitive != b.primitive) continue;
         if (!a.valid() || !b.valid()) {
             trial.record(a.valid() == b.valid() ? 0 : std::numeric_limits<double>::infinity());

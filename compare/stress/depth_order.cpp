@@ -80,14 +80,15 @@ template <typename T> void shuffle(std::vector<T>& items, TrialRandom& random) {
         std::swap(items[i - 1], items[random.below(static_cast<std::uint32_t>(i))]);
 }
 
-/// Stores the visible primitive of a sample by two rules for equal depth. `reversed_depth` is reversed depth.
+/// Stores the visible primitive of a sample by two rules for equal depth. `reversed_depth` is 0 where nothing is
+/// visible.
 struct VisiblePrimitive {
     float reversed_depth = 0;
     std::uint32_t lowest = kNoObject; ///< Duet's rule: the lowest ID wins
     std::uint32_t first = kNoObject;  ///< the textbook rule: the first drawn wins
 };
 
-/// Renders each triangle alone and then selects the nearest.
+/// Renders each triangle alone and then selects the nearest one at each sample.
 Image<VisiblePrimitive> resolve_by_hand(const SetupTriangles& setup, const TrialView& v) {
     Image<VisiblePrimitive> seen(kSide, kSide);
     for (const raster::DrawTriangle& setup_triangle : setup.triangles) {

@@ -82,7 +82,7 @@ double triangle_error(const Ray& ray, const std::array<Vec3, 3>& p, std::optiona
     const Vec3d o(ray.origin), d(ray.direction), a(p[0]), b(p[1]), c(p[2]), n = cross(b - a, c - a);
     const double slope = dot(n, d), plane = dot(n, a - o) / slope;
     const double reach = std::max({length(a - o), length(b - o), length(c - o)});
-    // This is the distance by which the ray passes inside all edges, perpendicular to its direction; negative
+    // This is the distance by which the ray passes inside all edges, perpendicular to its direction. It is negative
     // outside.
     double inside = std::numeric_limits<double>::infinity();
     const double side = slope > 0 ? 1 : -1;

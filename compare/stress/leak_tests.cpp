@@ -8,7 +8,7 @@ namespace duet::compare {
 
 namespace {
 
-/// This is a closed mesh with its size and center.
+/// A ClosedMesh is a closed mesh with its size and center.
 struct ClosedMesh {
     AcceleratedScene accelerated;
     float scale;
@@ -114,7 +114,7 @@ StressResult leak_from_outside(const StressTest& test, const StressSetting& sett
     });
 }
 
-/// A box is six quads that do not share corners.
+/// Tests a box, whose six quads do not share corners.
 void leak_boxes(Trial& trial) {
     TrialRandom& random = trial.random;
     const float scale = random.log_uniform(1e-6f, 1e6f);

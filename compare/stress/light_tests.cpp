@@ -42,7 +42,7 @@ long double exact_solid_angle(Vec3d p, Vec3d a, Vec3d b, Vec3d c) {
     return 2 * std::atan2(volume, nx * ny * nz + dot(x, y) * nz + dot(y, z) * nx + dot(z, x) * ny);
 }
 
-/// Returns the distance of a point from the shape, its plane and its edges, relative to its distance from p.
+/// Returns the distance of a point q from the shape, its plane and its edges, relative to the distance of q from p.
 double off_shape(const Flat& flat, Vec3d p, Vec3d q) {
     using Wide = Vec3T<long double>; // the normal of a sliver is a difference that cancels
     const auto c = corners_of(flat);
@@ -116,7 +116,7 @@ void far_spheres(Trial& trial) {
     if (d2 <= r2 * 1.001L) return;
     const long double sin2 = r2 / d2, gap = sin2 / (1 + std::sqrt(1 - sin2));
     const auto truth = static_cast<double>(1 / (2 * static_cast<long double>(kPiDouble) * gap));
-    // A rounding error of sin² has the same relative size in the density; at the limb that of √(1 − sin²) is
+    // A rounding error of sin² changes the density by the same relative error; at the limb that of √(1 − sin²) is
     // larger.
     const auto terms = static_cast<double>(1 + sin2 / std::sqrt(1 - sin2));
     const auto density_error = [&](double pdf) { return in_double_roundoffs(relative_error(pdf, truth)) / terms; };

@@ -84,7 +84,7 @@ double fresnel_error(float reflectance, float cosine, float eta) {
     return in_roundoffs(std::max({0.0, low - r, r - high}));
 }
 
-/// This is the textbook form: sines from cosines, Snell's law, cosines from sines.
+/// Returns Fresnel's reflectance by the textbook form: sines from cosines, Snell's law, cosines from sines.
 float textbook_fresnel(float cos_i, float eta) {
     const float sin_t = std::sqrt(std::max(0.0f, 1 - cos_i * cos_i)) / eta;
     if (sin_t >= 1) return 1;
@@ -116,7 +116,7 @@ double refraction_error(const Crossing& c, Vec3 wi) {
     return in_roundoffs(larger_error(larger_error(std::abs(x), std::abs(y)), std::abs(z * z - cos2)) / terms);
 }
 
-/// This is refract() of Ray Tracing in One Weekend, §11.2, with n on the side of wo.
+/// Implements refract() of Ray Tracing in One Weekend, §11.2, with n on the side of wo.
 Vec3 textbook_refract(Vec3 wo, float relative) {
     const Vec3 n(0, 0, wo.z > 0 ? 1.0f : -1.0f), uv = -wo;
     const float cos_theta = std::fmin(dot(-uv, n), 1.0f);
@@ -130,7 +130,7 @@ void refraction(Trial& trial) {
     const auto s = glass.sample(c.wo, kOneMinusEpsilon, {}, TransportMode::kRadiance);
     trial.note("wo = ", exact(c.wo), ", η = ", exact(c.eta));
     if (!s) return trial.record(kWrong);
-    // Total internal reflection, possibly early by one rounding; or all but 2^-24 is reflected.
+    // This is total internal reflection, possibly early by one rounding, or all but 2^-24 is reflected.
     if (!s->transmitted) {
         const double eta = static_cast<double>(c.relative), z = static_cast<double>(abs_cos_theta(c.wo));
         const double cos2 = std::max(0.0, ((eta - 1) * (eta + 1) + z * z) / (eta * eta));

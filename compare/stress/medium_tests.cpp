@@ -1,4 +1,4 @@
-// These tests check rays in fog, clouds and solids: columns against double, and the weights of paths.
+// These tests check rays in fog, clouds and solids: their columns against double precision, and the weights of paths.
 #include "common/medium/density_grid.h"
 #include "common/medium/medium.h"
 #include "compare/stress/accelerated_scene.h"
@@ -137,8 +137,8 @@ void columns(Trial& trial) {
     const double begin = static_cast<double>(inside.begin), end = static_cast<double>(inside.end);
     const DoubleColumn exact_column(*grid, medium.box, ray);
     const double truth = exact_column(begin, end);
-    // A rounding of a coordinate moves it by 2^-24 of the number of cells, and the density by as much of the largest.
-    // Distances are rounded, too: the ends of the interval, and what is found.
+    // Rounding a coordinate moves it by 2^-24 of the number of cells, and changes the density by the same fraction of
+    // its maximum. The ends of the interval and the distance that follow() finds are rounded, too.
     const int cells = *std::ranges::max_element(grid->size()) - 1;
     const double terms = static_cast<double>(largest) * ((end - begin) * cells + end);
     const auto error = [&](double found, double expected) { return in_roundoffs((found - expected) / terms); };
@@ -155,7 +155,7 @@ void columns(Trial& trial) {
     trial.record(error(exact_column(begin, static_cast<double>(reached.t)), static_cast<double>(part)));
 }
 
-/// Returns a medium of optical depths from 1e-6 to 1e6 that absorbs nothing, everything or a part, gray or colored.
+/// Returns a medium of optical depths from 1e-6 to 1e6 that absorbs nothing, everything or a fraction, gray or colored.
 Medium random_medium(TrialRandom& random, const Box3& box) {
     Medium medium;
     medium.box = box;
@@ -170,8 +170,8 @@ Medium random_medium(TrialRandom& random, const Box3& box) {
     return medium;
 }
 
-/// Chosen by the throughput, a channel's density is at least as large on average as what arrives. So the sum over the
-/// channels never grows, and stays the same where nothing is absorbed.
+/// Tests that a collision never raises the sum of the throughput's channels, and preserves it where nothing is
+/// absorbed. This holds because the channel that determines the distance is chosen in proportion to the throughput.
 void collisions(Trial& trial) {
     TrialRandom& random = trial.random;
     const float scale = random.log_uniform(1e-6f, 1e6f);
@@ -198,7 +198,7 @@ void collisions(Trial& trial) {
     trial.record(absorbs ? in_roundoffs(std::max(ratio - 1, 0.0)) : in_roundoffs(ratio - 1));
 }
 
-/// Returns a closed shape of about this size, and a point on it with the normal there.
+/// A ClosedShape is a closed shape, and a point on it with the normal there.
 struct ClosedShape {
     Shape shape;
     Vec3 point, normal;
@@ -218,7 +218,7 @@ ClosedShape random_closed_shape(TrialRandom& random, float size, Vec3 center) {
     return {std::move(mesh), (a + b + c) * (1.0f / 3), normal};
 }
 
-/// No path is lost in a solid that absorbs nothing, and its throughput stays.
+/// Tests that no path is lost in a solid that absorbs nothing, and that its throughput does not change.
 void walks(Trial& trial) {
     TrialRandom& random = trial.random;
     const float size = random.log_uniform(1e-6f, 1e6f);

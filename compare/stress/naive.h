@@ -22,7 +22,7 @@ inline std::optional<float> intersect_sphere(const Ray& ray, const Sphere& spher
     return std::nullopt;
 }
 
-/// This is Möller and Trumbore 1997, figure 1, with its epsilon.
+/// Returns the ray's hit of a triangle by Möller and Trumbore 1997, figure 1, with their epsilon.
 inline std::optional<float> intersect_triangle(const Ray& ray, Vec3 a, Vec3 b, Vec3 c, float epsilon = 1e-6f) {
     const Vec3 ab = b - a, ac = c - a, p = cross(ray.direction, ac);
     const float det = dot(ab, p);

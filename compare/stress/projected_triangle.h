@@ -16,10 +16,11 @@ struct ProjectedPoint {
     double u, v, depth;
 };
 
-/// The ray through a pixel is o + depth·d, with d linear in the pixel. So for each pair of corners relative to o the
-/// volume d·(Pⱼ × Pₖ) is linear, too. These three volumes, and 1/depth, which is also linear, bound the visible
-/// part by straight lines in the image. This holds for corners in front of the near plane, in the plane of the eye, or
-/// behind the eye. (Möller and Trumbore 1997 solve for the same volumes.) Only perspective views are supported.
+/// Represents a triangle by linear functions of the pixel. The ray through a pixel is o + depth·d, with d linear in the
+/// pixel. So for each pair of corners relative to o the volume d·(Pⱼ × Pₖ) is linear, too. These three volumes, and
+/// 1/depth, which is also linear, bound the visible part by straight lines in the image. This holds for corners in
+/// front of the near plane, in the plane of the eye, or behind the eye. (Möller and Trumbore 1997 solve for the same
+/// volumes.) Only perspective views are supported.
 class ProjectedTriangle {
 public:
     ProjectedTriangle(const Pinhole& pinhole, const std::array<Vec3, 3>& corners);

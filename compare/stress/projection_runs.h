@@ -1,4 +1,4 @@
-// This header declares tests of the group "projection" with their own files; projection_tests.cpp has their rows.
+// This file declares the tests of the group "projection" that have their own files; projection_tests.cpp lists them.
 #pragma once
 
 #include "compare/stress/trials.h"
@@ -9,7 +9,7 @@ namespace duet::compare {
 void clipped_floor(Trial& trial);
 /// Runs a trial of projection/depth-order, on two parallel surfaces a few floats apart.
 void depth_order(Trial& trial);
-/// Runs a trial of projection/draw-order, on triangles at the same place and depth.
+/// Runs a trial of projection/draw-order, on overlapping triangles of equal depth.
 void draw_order(Trial& trial);
 
 } // namespace duet::compare

@@ -19,7 +19,7 @@ struct TrialView {
 /// the views are from the origin along −z, where a corner's depth is a coordinate and may be exactly zero. The others
 /// are from a random position within 10 meters.
 TrialView random_view(TrialRandom& random, int window_side);
-/// Returns such a view with the near plane at `near`.
+/// Returns a view as random_view(random, window_side) does, but with the near plane at `near`.
 TrialView random_view(TrialRandom& random, int window_side, double near);
 
 /// Returns the point at a depth on the ray through a pixel, rounded to float.

@@ -59,7 +59,7 @@ template <MakeTriangle make> void displaced(Trial& trial) {
 // Attributes ---------------------------------------------------------------------------------------------------------
 
 /// Calls judge(x, y, pixel, truth) for the window's samples well inside the triangle. There, vertex snapping has no
-/// effect, and double precision loses less than a hundredth of a float's roundoff.
+/// effect, and the error of double precision is less than a hundredth of a float's roundoff.
 template <typename Judge>
 void for_each_inside(const TrialView& v, const ProjectedTriangle& triangle, const raster::HitTile& tile,
                      const Judge& judge) {

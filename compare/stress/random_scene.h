@@ -16,8 +16,8 @@ struct SceneContents {
     bool instances = false; ///< of each shape so far: rotated, stretched, mirrored
 };
 
-/// Places the scene: the sphere's center and scale. The view moves with it, and is perspective if the center is not
-/// the world's origin.
+/// Holds the placement of a scene: the sphere's center and scale. The view moves with the scene, and is perspective if
+/// the center is not the world's origin.
 struct Placement {
     Vec3 offset;
     float scale = 1;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kProbeNear = 1e-6; ///< first depth; each later one is nearer than the last
 
-/// This is a render pass over the window alone.
+/// A WindowPass is a render pass over the window alone.
 struct WindowPass {
     std::vector<raster::SampleOffset> samples;
     raster::PassView view;
@@ -25,7 +25,7 @@ private:
           grid{window.rect} {}
 };
 
-/// This is a scene of one mesh, with the rasterizer's prepared data.
+/// A MeshScene is a scene of one mesh, with the rasterizer's prepared data.
 struct MeshScene {
     Scene scene;
     raster::RasterSceneData data;
@@ -74,8 +74,8 @@ CoverageProbe::CoverageProbe(const Window& window) {
     tile_.reset(window.rect, window.offset, plan_.viewport);
 }
 
-// The triangle is parallel to the image plane, so its depth is constant. Its depth 1/count is nearer than that of the
-// previous triangle.
+// Draws a triangle parallel to the image plane, so that its depth is constant. That depth, 1/count, is nearer than that
+// of the previous triangle.
 void CoverageProbe::draw(GridTriangle t) {
     ++count_;
     if (winding(t) == 0) return;

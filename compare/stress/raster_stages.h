@@ -10,7 +10,7 @@
 
 namespace duet::compare {
 
-/// A window is a small tile of an image with one sample per pixel; a small one keeps a trial cheap.
+/// A Window is a small tile of an image with one sample per pixel. Its small size keeps a trial cheap.
 struct Window {
     raster::PixelRect rect;
     raster::SampleOffset offset;
@@ -48,7 +48,7 @@ private:
     std::uint32_t count_ = 0;
 };
 
-/// Holds setup triangles and the whole triangles that they were made from, numbered from 0.
+/// Holds setup triangles and the unclipped triangles that they were made from, numbered from 0.
 struct SetupTriangles : raster::UnclippedTriangles {
     std::vector<raster::UnclippedTriangle> source_triangles;
     std::vector<raster::DrawTriangle> triangles;
@@ -62,7 +62,7 @@ struct SetupTriangles : raster::UnclippedTriangles {
 /// up, including back faces.
 SetupTriangles set_up_triangles(const Mesh& mesh, const View& view, raster::SampleOffset offset);
 
-/// Renders setup triangles of a setup into the window, in the given order.
+/// Renders the listed triangles of a setup into the window, in the given order.
 std::unique_ptr<raster::DepthTile> draw(const SetupTriangles& setup, const std::vector<raster::DrawTriangle>& triangles,
                                         const View& view, const Window& window);
 inline std::unique_ptr<raster::DepthTile> draw(const SetupTriangles& setup, const View& view, const Window& window) {

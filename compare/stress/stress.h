@@ -63,7 +63,7 @@ struct StressTest {
     double required_fraction = 0.99;
 };
 
-// Each group has its own file (*_tests.cpp).
+// Each group of tests has its own file (*_tests.cpp).
 std::span<const StressTest> arithmetic_tests();   ///< robust arithmetic, frames, film sums
 std::span<const StressTest> leak_tests(); ///< closed surfaces are watertight
 std::span<const StressTest> intersection_tests(); ///< spheres, slivers, degenerate triangles and rays, ties

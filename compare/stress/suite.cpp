@@ -56,7 +56,7 @@ private:
     int name_ = 4, bound_ = 5; ///< widths
 };
 
-/// Prints what is needed to reproduce a failure.
+/// Prints the information that is needed to reproduce a failure.
 void explain(const StressTest& test, const StressResult& result, const StressOptions& options) {
     std::cerr << "compare: " << test.name << ": ";
     if (result.trials < result.least_trials)

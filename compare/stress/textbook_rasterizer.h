@@ -8,7 +8,7 @@
 
 namespace duet::compare {
 
-/// A vertex after the perspective division, in pixels, also if it is behind the eye.
+/// A TextbookVertex is a vertex after the perspective division, in pixels, even if it is behind the eye.
 struct TextbookVertex {
     Vec2 pixel;
     float depth; ///< camera-space −z before the division

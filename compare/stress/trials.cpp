@@ -44,7 +44,7 @@ void add(StressResult& result, const StressTest& test, const Trial& trial) {
     if (result.naive && trial.naive_error()) result.naive->add(trial.number(), *trial.naive_error(), test.bound);
 }
 
-/// Reports the completed fraction of a test: one call at a time, and never decreasing.
+/// Reports the completed fraction of a test. Calls do not overlap, and the fraction never decreases.
 class SharedProgress {
 public:
     SharedProgress(const Control& control, std::size_t parts) : control_(control), parts_(parts) {}
@@ -59,7 +59,8 @@ private:
     std::mutex mutex_;
 };
 
-/// Returns the required number of judging trials, less five standard deviations for random variation.
+/// Returns the number of trials that must judge something: the required fraction, less five standard deviations for
+/// random variation.
 std::int64_t least_trials(std::int64_t count, double required_fraction) {
     const double n = static_cast<double>(count), spread = std::sqrt(n * required_fraction * (1 - required_fraction));
     return std::max<std::int64_t>(1, std::llround(std::floor(n * required_fraction - 5 * spread)));

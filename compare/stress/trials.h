@@ -11,7 +11,7 @@
 
 namespace duet::compare {
 
-/// This is a trial's own random number stream.
+/// A TrialRandom is a trial's own random number stream.
 class TrialRandom {
 public:
     explicit TrialRandom(std::uint64_t state) : state_(state) {}
@@ -80,7 +80,7 @@ private:
 /// Runs `body` for each trial of the test on setting.threads threads and accumulates the results. The body may read
 /// shared data, but must only write to its trial.
 StressResult run_trials(const StressTest& test, const StressSetting& setting, const std::function<void(Trial&)>& body);
-/// The same for a function, as StressTest::run.
+/// Calls run_trials() with `body`, which makes and judges one trial. StressTest::run may point to this function.
 template <void (*body)(Trial&)> StressResult trials_of(const StressTest& test, const StressSetting& setting) {
     return run_trials(test, setting, body);
 }

@@ -9,13 +9,13 @@ namespace duet::compare {
 
 namespace {
 
-/// The eye stays at least this far from what it looks at, as a fraction of that point's distance from the origin:
+/// The eye stays at least this far from the look-at point, as a fraction of that point's distance from the origin:
 /// positions are rounded to float, and nearer eyes would jump.
 constexpr double kLeastDistance = 1e-5;
 
 double distance(const Camera& camera) { return length(camera.look_at - camera.eye); }
 
-/// Returns the axes of the camera: to the right, upward and along its view.
+/// Holds the axes of the camera: to the right, upward and along its view.
 struct Axes {
     explicit Axes(const Camera& camera)
         : forward(normalize(camera.look_at - camera.eye)), right(normalize(cross(forward, camera.up))),
@@ -23,7 +23,7 @@ struct Axes {
     Vec3d forward, right, up;
 };
 
-/// Rounds to a number of decimals; −2 stands for hundreds.
+/// Rounds to a number of decimals; −2 rounds to hundreds.
 double rounded(double x, int decimals) {
     const double scale = std::pow(10, std::abs(decimals));
     return decimals >= 0 ? std::round(x * scale) / scale : std::round(x / scale) * scale;
@@ -48,7 +48,7 @@ Camera moved(Camera camera, Vec3d by) {
     return rounded(camera);
 }
 
-/// Returns the view vector turned around the up vector and then toward it, but not closer than a degree.
+/// Returns the view vector turned around the up vector and then toward it, but no closer to it than one degree.
 Vec3d turned(const Camera& camera, Vec3d view, double right, double up) {
     const Vec3d axis = normalize(camera.up);
     const double angle = std::acos(std::clamp(dot(normalize(view), axis), -1.0, 1.0)); // from the up vector
@@ -98,7 +98,7 @@ Camera fly(const Camera& camera, double forward, double right, double up) {
 Camera look_at_point(Camera camera, Vec3d point) {
     if (!(length(point - camera.eye) > 0)) return camera;
     camera.look_at = point;
-    camera.focus_distance = 0; // the look-at point
+    camera.focus_distance = 0; // 0 focuses on the look-at point
     return rounded(camera);
 }
 

@@ -19,10 +19,10 @@ SceneDocument::SceneDocument(std::filesystem::path path, const SceneOptions& opt
 
 void SceneDocument::reload() {
     const bool editable_file = lower_case_extension(path_) == ".json" && options_.up == UpAxis::kGuessed;
-    const auto cache = std::make_shared<FileCache>(); // a reader may still use the one before, on another thread
+    const auto cache = std::make_shared<FileCache>(); // a reader on another thread may still use the previous cache
     std::string file = editable_file ? read_file(path_, kMaxSceneBytes) : "";
     const auto scene = std::make_shared<Scene>(editable_file ? parse_scene(path_, file, *cache)
-                                                             : load_scene(path_, options_)); // refuses other files
+                                                             : load_scene(path_, options_)); // throws for other files
     cache_ = cache;
     states_.assign(1, State{std::make_shared<const std::string>(std::move(file)), scene->camera});
     image_size_ = {scene->width, scene->height};
@@ -38,7 +38,7 @@ void SceneDocument::parse() { json_ = editable() ? ordered_json::parse(text()) :
 
 SceneDocument::State& SceneDocument::change() {
     if (!open_) {
-        states_.resize(current_ + 1); // what was undone is lost
+        states_.resize(current_ + 1); // drops the steps that were undone
         states_.push_back(states_.back());
         ++current_;
         open_ = true;
@@ -49,7 +49,7 @@ SceneDocument::State& SceneDocument::change() {
 void SceneDocument::set_camera(const Camera& camera) { change().camera = camera; }
 
 void SceneDocument::set_text(std::string changed) {
-    ordered_json json = ordered_json::parse(changed); // may throw: then nothing has changed
+    ordered_json json = ordered_json::parse(changed); // may throw; nothing has changed before
     change().text = std::make_shared<const std::string>(std::move(changed));
     json_ = std::move(json);
 }

@@ -1,4 +1,4 @@
-// A SceneDocument is a scene file that is being edited: its text, the camera, and every step that led there.
+// A SceneDocument is a scene file that is being edited: its text, the camera, and the history of both.
 #pragma once
 
 #include "common/program/scene_options.h"
@@ -13,8 +13,8 @@
 
 namespace duet::compare {
 
-/// Holds a scene file while it is edited. Edits go to the text, so that what they leave alone is saved as it was
-/// typed. A bare mesh has no text: its camera can be moved, and nothing can be saved.
+/// Holds a scene file while it is edited. Edits change the text, so that the rest of it is saved as it was typed. A
+/// bare mesh has no text: its camera can be moved, and nothing can be saved.
 class SceneDocument {
 public:
     /// Reads the file. Throws Error if it cannot be read, or is no valid scene.
@@ -23,32 +23,32 @@ public:
     const std::filesystem::path& path() const { return path_; }
     bool editable() const { return !text().empty(); }
     const std::string& text() const { return *now().text; }
-    /// The text, parsed; null for a bare mesh.
+    /// Returns the parsed text; null for a bare mesh.
     const nlohmann::ordered_json& json() const { return json_; }
     const Camera& camera() const { return now().camera; }
-    /// The image size and the view transform of the file.
+    /// Returns the image size of the file. The next function returns its view transform.
     ImageSize image_size() const { return image_size_; }
     const ViewTransform& view_transform() const { return view_transform_; }
 
-    /// Changes the camera. Changes of camera and text until commit() are one step for undo().
+    /// Changes the camera. undo() reverts all changes of camera and text between two calls of commit() in one step.
     void set_camera(const Camera& camera);
     /// Replaces the text, which must be valid JSON.
     void set_text(std::string changed);
     /// Ends a step, if one has begun.
     void commit();
-    /// Goes one step back. Returns false if there is none.
+    /// Undoes one step. Returns false if there is none.
     bool undo();
-    /// Goes one step forth. Returns false if there is none.
+    /// Redoes one step. Returns false if there is none.
     bool redo();
 
     /// Returns whether there is something to save.
     bool changed() const;
     /// Writes the text, with the camera. Throws Error if the file cannot be written, or for a bare mesh.
     void save();
-    /// Starts anew from the file, with an empty history.
+    /// Loads the file again, and clears the history.
     void reload();
-    /// Returns a function that makes the scene of the present text, once, and can run on another thread. Only one of
-    /// them may run at a time: they share a cache of meshes and images.
+    /// Returns a function that builds the scene of the current text. The function may be called once, on any thread.
+    /// Only one such function may run at a time, because they share a cache of meshes and images.
     std::function<Scene()> reader();
     /// Returns the scene of another text for this file, and changes nothing. Throws Error if it is no valid scene.
     Scene parsed(const std::string& text) { return parse_scene(path_, text, *cache_); }
@@ -59,7 +59,7 @@ private:
         Camera camera;
     };
     const State& now() const { return states_[current_]; }
-    State& change(); // the state that changes go to
+    State& change(); // the state that changes apply to
     void parse();
 
     std::filesystem::path path_;
@@ -72,11 +72,11 @@ private:
     ImageSize image_size_{};
     ViewTransform view_transform_;
     std::shared_ptr<FileCache> cache_;
-    std::shared_ptr<Scene> file_scene_; // the scene as reload() has read it; null once a reader has it
+    std::shared_ptr<Scene> file_scene_; // the scene as reload() has read it; null once reader() has taken it
 };
 
 /// Returns the text of a scene file, whose camera is `before`, with another camera. Numbers that are equal stay as they
-/// were typed. Its projection, its up vector and its shutter must be those of `before`.
+/// were typed. The projection, the up vector and the shutter of the new camera must be those of `before`.
 std::string with_camera(std::string text, const Camera& before, const Camera& camera);
 
 } // namespace duet::compare

@@ -38,7 +38,8 @@ ordered_json matrix(const Mat4d& m) {
     return entries;
 }
 
-/// Returns the keys of the points that say where an element is; none for one that only a transform can move.
+/// Returns the keys of the points that determine the position of an element; none for one that only a transform can
+/// move.
 std::vector<std::string> places(const ordered_json& element) {
     if (element.contains("transform") || element.contains("transform_end")) return {};
     const std::string type = element.at("type");
@@ -55,7 +56,7 @@ const ordered_json& value_at(const ordered_json& scene, const JsonPath& element)
 bool is_object(const JsonPath& element) { return element.front() == "objects"; }
 
 /// Adds a step to the transform of an element, or changes its last step. `merged` returns the step that replaces the
-/// last one, or null where both must stay.
+/// last one, or null where both must remain.
 template <typename Merge>
 std::string with_step(std::string text, const JsonPath& element, const ordered_json& step, const Merge& merged) {
     for (const char* key : {"transform", "transform_end"}) {

@@ -1,4 +1,5 @@
-// The edits of a scene that the window offers: each takes the text of a scene file and returns the changed text.
+// This file declares the edits of a scene that the window offers: each takes the text of a scene file and returns the
+// changed text.
 #pragma once
 
 #include "common/vec/box.h"
@@ -40,7 +41,7 @@ inline constexpr std::array kNewElementNames{"sphere", "box", "quad", "area ligh
 /// Adds an element of about this size at a point. An area light shines downward. Shapes get the first material of the
 /// file, or a new one.
 std::string with_new_element(const std::string& text, NewElement element, Vec3d at, double size);
-/// Adds a mesh, at its own place.
+/// Adds a mesh, at the position that its file gives.
 std::string with_new_mesh(const std::string& text, const std::string& file);
 
 /// Rounds to seven significant digits, which is what a float holds.

@@ -40,7 +40,7 @@ void LatestJob::run() {
         stop_ = false;
         lock.unlock();
         job(stop_);
-        job = nullptr; // frees what the job holds, outside of the lock
+        job = nullptr; // frees the job's captures, outside of the lock
         lock.lock();
         running_ = false;
     }

@@ -1,4 +1,4 @@
-// LatestJob runs the newest of the jobs that it is given, on a thread of its own.
+// This file declares LatestJob, which runs the newest of the jobs that it is given, on a thread of its own.
 #pragma once
 
 #include <atomic>
@@ -9,20 +9,20 @@
 
 namespace duet::compare {
 
-/// A LatestJob serves a window, whose next wish makes the one before pointless: a new job stops the one that runs and
-/// replaces the one that waits.
+/// A LatestJob suits a window, in which each new request makes the previous one obsolete: a new job stops the running
+/// job and replaces the waiting one.
 class LatestJob {
 public:
-    /// The argument is set when the job shall stop. A job handles its own exceptions.
+    /// The argument is set when the job must stop. A job handles its own exceptions.
     using Job = std::function<void(const std::atomic<bool>& stop)>;
 
     LatestJob();
-    /// Stops the job that runs, and waits for its end.
+    /// Stops the running job, and waits for its end.
     ~LatestJob();
     LatestJob(const LatestJob&) = delete;
     LatestJob& operator=(const LatestJob&) = delete;
 
-    /// Runs a job as soon as the one that runs has ended.
+    /// Runs a job as soon as the running one has ended.
     void start(Job job);
     /// Returns whether a job runs or waits.
     bool busy() const;
@@ -30,7 +30,7 @@ public:
 private:
     void run();
 
-    mutable std::mutex mutex_; // guards all below but stop_
+    mutable std::mutex mutex_; // guards all members below except stop_
     std::condition_variable changed_;
     Job waiting_;
     bool running_ = false, ended_ = false;

@@ -12,17 +12,18 @@ namespace {
 
 /// While the camera moves, the rasterizer's images are made smaller until one takes at most this long, in seconds.
 constexpr double kMovingFrameSeconds = 1.0 / 30;
-/// They have at least this fraction of the width, in which shapes can still be made out.
+/// The smaller images have at least this fraction of the width, at which shapes are still recognizable.
 constexpr double kLeastScale = 0.25;
 /// The path tracer's first image has this fraction of the width.
 constexpr double kPreviewScale = 0.25;
-/// A pass of the path tracer takes about this long at first, in seconds, and later this part of the time so far: short
-/// enough to watch it converge, and long enough for copies of the image not to count.
+/// A pass of the path tracer takes about kPassSeconds at first, in seconds, and later the fraction kPassPart of the
+/// time so far. This is short enough to watch it converge, and long enough to make the cost of copying the image
+/// negligible.
 constexpr double kPassSeconds = 0.3, kPassPart = 0.1;
-/// The first image has one sample per pixel, which is shown whatever follows, and then this many. The whole image
-/// replaces it once it has as many.
+/// The preview first has one sample per pixel, which is shown in any case, and then this many. The full-size image
+/// replaces it once it has as many samples.
 constexpr std::uint32_t kPreviewSamples = 4;
-/// Probes are rendered anew when there was no edit for this long, in seconds.
+/// Probes are rendered anew when there was no edit for this time, in seconds.
 constexpr double kRestSeconds = 0.2;
 /// A pass adds at most this many samples per pixel, as passes of raytrace do.
 constexpr std::uint32_t kPassSamples = 16;
@@ -34,7 +35,7 @@ Scene seen_in(const View& view, Scene scene) {
     return scene;
 }
 
-// Waits until an edit has come to rest. Returns false if the next one comes first.
+// Waits until no edit has come for kRestSeconds. Returns false if the next one comes before.
 bool rests(const std::atomic<bool>& stop) {
     for (const Stopwatch watch; !stop && watch.seconds() < kRestSeconds;)
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -61,7 +62,7 @@ template <typename Settings> Settings LiveView::with_threads() const {
     return settings;
 }
 
-// Runs a job on a thread, and reports why it failed.
+// Runs a job on a thread. If it throws, the message is stored in LoadedScene::error.
 void LiveView::start(LatestJob& thread, LatestJob::Job job) {
     thread.start([this, job = std::move(job)](const std::atomic<bool>& stop) {
         try {
@@ -87,7 +88,7 @@ unsigned LiveView::load(const View& view, std::function<Scene()> read, bool edit
         next.raytrace = std::make_shared<const PreparedScene<raytrace::PathTracerScene>>(
             PreparedScene<raytrace::PathTracerScene>{++preparations_, load, next.scene, std::move(traced),
                                                      watch.seconds()});
-        LoadedScene before; // is freed outside of the lock
+        LoadedScene before; // freed outside of the lock
         publish([&] {
             next.raster = loaded_.raster;
             before = std::exchange(loaded_, next);
@@ -107,7 +108,7 @@ void LiveView::prepare_raster(unsigned load, const std::shared_ptr<const Scene>&
     set_raster({++preparations_, load, scene, std::move(result), watch.seconds()});
 }
 
-// Prepares the rasterizer's scene with the probes of the scene before. Returns false if they do not fit.
+// Prepares the rasterizer's scene with the probes of the previous scene. Returns false if they do not fit.
 bool LiveView::prepare_edited_raster(unsigned load, const std::shared_ptr<const Scene>& scene) {
     const auto before = loaded().raster;
     if (!before) return false;
@@ -121,7 +122,7 @@ bool LiveView::prepare_edited_raster(unsigned load, const std::shared_ptr<const 
 
 void LiveView::set_raster(PreparedScene<raster::RasterScene> next) {
     auto shared = std::make_shared<const PreparedScene<raster::RasterScene>>(std::move(next));
-    publish([&] { // what was before is freed outside of the lock
+    publish([&] { // the previous scene is freed outside of the lock
         if (loaded_.load == shared->load) loaded_.raster.swap(shared);
     });
 }
@@ -169,7 +170,8 @@ void LiveView::show_raster(const Wish& wish, const LoadedScene& scene) {
         return;
     }
     const bool moving = raster_started_.version != wish.version || raster_started_.load != scene.raster->load;
-    // The whole image waits for the first look at the scene, and while an edit is loaded, which makes it outdated.
+    // The full-size image waits until the first small one is finished. It also waits while an edit is loaded, which
+    // would make it outdated.
     if (!moving && raster_started_.scale < 1 && (raster_.busy() || loader_.busy())) return;
     Started next = full;
     if (moving && pixel_seconds_ > 0)
@@ -177,7 +179,8 @@ void LiveView::show_raster(const Wish& wish, const LoadedScene& scene) {
             std::clamp(std::sqrt(kMovingFrameSeconds / (pixel_seconds_ * pixels(wish.view))), kLeastScale, 1.0);
     raster_started_ = next;
     raster_.start([=, this](const std::atomic<bool>& stop) {
-        // A frame of something new runs to its end, or nothing would be seen while the camera or an object moves.
+        // The first frame of a new view runs to its end. Otherwise nothing would be shown while the camera or an object
+        // moves.
         const std::atomic<bool> go_on = false;
         render_raster(wish, scene, next.scale, moving ? go_on : stop);
     });

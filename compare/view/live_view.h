@@ -1,4 +1,5 @@
-// LiveView renders a scene with both pipelines in the background, for a window that shows what they have.
+// This file declares LiveView, which renders a scene with both pipelines in the background for a window that shows the
+// latest images.
 #pragma once
 
 #include "compare/renderer.h"
@@ -12,29 +13,30 @@
 
 namespace duet::compare {
 
-/// A scene as one pipeline has prepared it. It keeps the scene alive.
+/// A PreparedScene is a scene as one pipeline has prepared it. It keeps the scene alive.
 template <typename Prepared> struct PreparedScene {
     unsigned id;   ///< different for every preparation
     unsigned load; ///< LoadedScene::load
     std::shared_ptr<const Scene> scene;
     Prepared prepared;
     double seconds; ///< time of the preparation
-    bool whole = true; ///< false for the rasterizer's scene after an edit, while probes are those of the scene before
+    bool whole = true; ///< false after an edit, while the rasterizer's scene has the previous one's probes
 };
 
-/// What is known of the scene that was loaded last.
+/// Describes the scene that was loaded last.
 struct LoadedScene {
     unsigned load = 0;                  ///< what LiveView::load returned for this scene
     std::shared_ptr<const Scene> scene; ///< null until a scene has been loaded
-    std::shared_ptr<const PreparedScene<raytrace::PathTracerScene>> raytrace; ///< of `scene`
-    /// The rasterizer takes longer to prepare a scene; until then this is of the scene before, or of the scene with the
-    /// probes of before. It places probes and shadow maps for the scene's camera, so that it is prepared anew when the
-    /// camera has moved and come to rest.
+    std::shared_ptr<const PreparedScene<raytrace::PathTracerScene>> raytrace; ///< prepared from `scene`
+    /// The rasterizer takes longer to prepare a scene. Until it has finished, this is the previous scene, or the new
+    /// scene with the previous scene's probes. The rasterizer places probes and shadow maps for the scene's camera, so
+    /// the scene is prepared anew when the camera has moved and come to rest.
     std::shared_ptr<const PreparedScene<raster::RasterScene>> raster;
-    std::string error; ///< why the newest text could not be loaded; empty: it could, and `scene` is of it
+    std::string error; ///< why the newest text could not be loaded; empty if `scene` is of that text
 };
 
-/// What the window wants to see. `version` differs from that of the wish before if anything else does.
+/// A Wish describes the images that the window requests. Its `version` differs from that of the previous wish if
+/// anything else does.
 struct Wish {
     unsigned version = 0;
     View view;
@@ -42,55 +44,56 @@ struct Wish {
     raytrace::PathTracerSettings raytrace; ///< stops at samples_per_pixel
 };
 
-/// An image of the rasterizer.
+/// A RasterFrame is an image of the rasterizer.
 struct RasterFrame {
     unsigned version = 0, prepared = 0, load = 0; ///< Wish::version, PreparedScene::id and PreparedScene::load
-    double scale = 1;                             ///< width over that of the wish; below 1 while the camera moves
+    double scale = 1;                             ///< width over the requested width; below 1 while the camera moves
     double seconds = 0;
     Rendering rendering{};
     std::string error{}; ///< why there is no image
 };
 
-/// The path tracer's image so far.
+/// A TracerFrame is the path tracer's image so far.
 struct TracerFrame {
     unsigned version = 0, prepared = 0, load = 0;
-    bool preview = false; ///< whether it has a quarter of the width, for a first look
+    bool preview = false; ///< whether it is a preview of a quarter of the width
     std::uint32_t samples = 0;
-    double seconds = 0; ///< since the first sample
+    double seconds = 0; ///< time since the first sample
     ImageRgb image{};
     double estimated_relmse = -1;                   ///< see Film::estimated_relmse
     std::vector<std::pair<double, double>> curve{}; ///< seconds and estimated_relmse so far
     std::string error{};                            ///< why there is no image
 };
 
-/// A LiveView owns four threads: one loads and prepares scenes, one renders the rasterizer's probes, which takes
-/// longer, and one for each pipeline renders images. `wake` is called from them whenever there is something new.
+/// A LiveView owns four threads. One loads and prepares scenes, one renders the rasterizer's probes, which takes
+/// longer, and one for each pipeline renders images. They call `wake` whenever there is a new result.
 class LiveView {
 public:
     LiveView(int threads, std::function<void()> wake);
 
-    /// Loads a scene in the background, to be seen in this view. Until it is prepared, and if `read` throws, the scene
-    /// before stays. If it is that scene, `edited`, the rasterizer shows it with the probes of before, until nothing
-    /// has been edited for a moment. Returns a number that is different for every call, LoadedScene::load.
+    /// Loads a scene in the background, for this view. The previous scene stays until the new one is prepared, and if
+    /// `read` throws. With `edited`, the new scene is an edit of the previous one: the rasterizer shows it with the
+    /// previous scene's probes until no edit has come for a moment. Returns a number that is different for every call
+    /// (LoadedScene::load).
     unsigned load(const View& view, std::function<Scene()> read, bool edited = false);
     LoadedScene loaded() const;
 
-    /// Renders what is wanted, unless this happens already. Call it for every frame of the window. A frame of the
+    /// Renders the requested images, unless this happens already. Call it for every frame of the window. A frame of the
     /// rasterizer is smaller while wishes change faster than it renders. Once the camera rests, the scene is prepared
-    /// anew for it, so that the images are those that the programs render from there.
+    /// anew for this camera, so that the images are those that the programs render with it.
     void show(const Wish& wish);
-    /// While the path tracer is paused it renders nothing, and its image may show another view.
+    /// Pauses or resumes the path tracer. A paused path tracer renders nothing, and its image may show another view.
     void pause(bool paused) { paused_ = paused; }
     bool paused() const { return paused_; }
 
-    /// The latest images; null at first.
+    /// Returns the rasterizer's latest image, and the next function the path tracer's; null at first.
     std::shared_ptr<const RasterFrame> raster_frame() const;
     std::shared_ptr<const TracerFrame> tracer_frame() const;
-    /// Returns whether both images show the wish in full: the rasterizer's size, the path tracer's samples.
+    /// Returns whether both images are complete: the rasterizer's in full size, the path tracer's with all samples.
     bool finished(const Wish& wish) const;
 
 private:
-    void publish(const std::function<void()>& change); // under the lock; then calls wake_
+    void publish(const std::function<void()>& change); // calls change() under the lock, then wake_
     template <typename Settings> Settings with_threads() const;
     void start(LatestJob& thread, LatestJob::Job job);
     void prepare_raster(unsigned load, const std::shared_ptr<const Scene>& scene);
@@ -106,23 +109,24 @@ private:
     std::atomic<unsigned> preparations_ = 0;
     const std::function<void()> wake_;
     std::atomic<bool> paused_ = false;
-    std::atomic<bool> loading_ = false; // while a scene is read and prepared for the path tracer
+    std::atomic<bool> loading_ = false; // true while a scene is read and prepared for the path tracer
     mutable std::mutex mutex_; // guards the results
     LoadedScene loaded_;
     std::shared_ptr<const RasterFrame> raster_frame_;
     std::shared_ptr<const TracerFrame> tracer_frame_;
-    // The last renders that were started.
+    // These describe the last renders that were started.
     struct Started {
         unsigned version = 0, load = 0, prepared = 0;
         double scale = 1;
         friend bool operator==(const Started&, const Started&) = default;
     } raster_started_, tracer_started_;
-    // For which wish and scene the rasterizer was last prepared anew.
+    // This is the wish and the scene for which the rasterizer was last prepared anew.
     struct {
         unsigned version = 0, load = 0;
     } prepared_for_;
-    std::atomic<double> pixel_seconds_ = 0; // time of a frame of the rasterizer by its pixels; 0: unknown
-    // Last, since their threads use the members above. The loader, which starts jobs of the preparer, ends before it.
+    std::atomic<double> pixel_seconds_ = 0; // seconds per pixel of a frame of the rasterizer; 0: unknown
+    // These members come last, because their threads use the members above. The loader, which starts jobs of the
+    // preparer, ends before it.
     LatestJob preparer_, loader_, raster_, tracer_;
 };
 

@@ -1,4 +1,4 @@
-// What `compare view` is in a build without the libraries of the window.
+// This file implements `compare view` in a build without the libraries of the window, where it throws Error.
 #include "common/system/error.h"
 #include "compare/view/view.h"
 

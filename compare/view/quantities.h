@@ -1,4 +1,4 @@
-// What a window and the web page offer to be rendered.
+// This file lists the quantities and integrators that a window and the web page offer.
 #pragma once
 
 #include "compare/ladder/rungs.h"
@@ -12,7 +12,7 @@ namespace duet::compare {
 /// The whole image is the last of the ladder's quantities.
 inline constexpr const char* kWholeImage = "everything";
 
-/// The path tracer's integrators that can be chosen for the whole image.
+/// These integrators of the path tracer can be chosen for the whole image.
 inline constexpr std::array kIntegrators{raytrace::Integrator::kPath,    raytrace::Integrator::kNaive,
                                          raytrace::Integrator::kWhitted, raytrace::Integrator::kBidirectional,
                                          raytrace::Integrator::kVcm,     raytrace::Integrator::kPhotons,

@@ -10,12 +10,12 @@ using nlohmann::ordered_json;
 
 namespace {
 
-/// A part of the text, from its first character to the one behind its last.
+/// A Span is a part of the text, from its first character to the one behind its last.
 struct Span {
     std::size_t begin = 0, end = 0;
 };
 
-/// A member of an object or an element of an array.
+/// A Child is a member of an object or an element of an array.
 struct Child {
     std::string key;
     Span whole, value; ///< `whole` includes the key
@@ -84,7 +84,7 @@ const Child* child_of(const std::vector<Child>& all, const std::string& key) {
     return nullptr;
 }
 
-/// Returns the value that holds the last key of the path.
+/// Returns the object or array that holds the value at the path.
 Span parent_of(std::string_view text, const JsonPath& path) {
     if (path.empty()) throw Error("a path without keys: expected at least one");
     Span span = root(text);
@@ -118,10 +118,10 @@ std::string with_value(std::string_view text, const JsonPath& path, const ordere
     if (!object && text[parent.begin] != '[') throw Error(message("nothing can be added at ", joined(path)));
     const std::string member = object ? ordered_json(path.back()).dump() + ": " + typed_json(value) : typed_json(value);
     if (all.empty()) return replaced(text, {parent.begin + 1, parent.end - 1}, member);
-    // The new child is set off as the last one is: on a line of its own, or not.
+    // The new child is separated as the last one is: on a line of its own, or not.
     const std::size_t before = all.size() > 1 ? text.find(',', all[all.size() - 2].whole.end) : parent.begin;
     std::string gap(text.substr(before + 1, all.back().whole.begin - before - 1));
-    if (all.size() == 1 && gap.empty()) gap = " "; // the gap behind a bracket differs from that behind a comma
+    if (all.size() == 1 && gap.empty()) gap = " "; // the gap behind a bracket differs from the one behind a comma
     const std::size_t end = all.back().whole.end;
     return replaced(text, {end, end}, message(",", gap, member));
 }

@@ -1,4 +1,4 @@
-// `compare view`: a window that shows a scene rendered both ways, live.
+// `compare view` opens a window that shows a scene, rendered live by both pipelines.
 #pragma once
 
 #include "common/program/render_program.h"
@@ -13,12 +13,12 @@ namespace duet::compare {
 /// Holds the options of `compare view`.
 struct ViewOptions {
     std::filesystem::path scene;
-    SceneOptions scene_options; ///< a size other than 0 × 0 is the images'; else they fill the window
+    SceneOptions scene_options; ///< a size other than 0 × 0 is that of the images; else they fill the window
     ImageSize window{1600, 900};
     std::filesystem::path folder = ".";                                 ///< where screenshots and images are written
-    ComparisonSettings settings{.raster_spp = 1, .raytrace_spp = 4096}; ///< the path tracer's samples at most
+    ComparisonSettings settings{.raster_spp = 1, .raytrace_spp = 4096}; ///< the path tracer stops after these samples
     ViewTransformOptions view_transform;
-    double measure = 0; ///< seconds of a turn of the camera that is measured; 0: the window waits for its user
+    double measure = 0; ///< seconds of the camera's turn that is measured; 0: the window waits for its user
     std::string stats;  ///< file of the measurement as JSON; "-" for standard output; empty: none
 };
 

@@ -1,4 +1,4 @@
-// Command-line arguments of `compare view`.
+// This file declares the command-line arguments of `compare view`.
 #include "common/program/command_line.h"
 #include "compare/arguments.h"
 #include "compare/view/view.h"

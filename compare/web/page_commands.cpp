@@ -1,4 +1,4 @@
-// The commands of a PageSession.
+// This file implements the commands of a PageSession.
 #include "compare/web/page_session.h"
 
 #include "common/system/error.h"
@@ -41,7 +41,7 @@ Mat4d map_about(Vec3d center, const Json& command) {
     return there * rotation(axis, radians(command.at("degrees").get<double>())) * back;
 }
 
-/// Returns the value at a pixel of the full size, of an image that may be smaller.
+/// Returns the value of an image at a pixel that is given for the full size. The image may be smaller.
 template <typename T> const T& at_pixel(const Image<T>& image, const Json& pixel, ImageSize full) {
     const auto index = [&](std::size_t axis, int size, int full_size) {
         return std::clamp(static_cast<int>(pixel.at(axis).get<double>() * size / full_size), 0, size - 1);
@@ -51,11 +51,11 @@ template <typename T> const T& at_pixel(const Image<T>& image, const Json& pixel
 
 } // namespace
 
-// The commands. Each function takes the members that its comment names.
+// Each function carries out a command and takes the members that its comment names in braces.
 struct PageCommands {
     using Session = PageSession;
 
-    // {"file": a path in the page's file system}
+    // {"file"}: opens a file, by its path in the page's file system
     static Json open(Session& s, const Json& command) {
         SceneDocument opened(command.at("file").get<std::string>(), SceneOptions());
         s.document_ = std::move(opened);
@@ -68,7 +68,7 @@ struct PageCommands {
         return s.state();
     }
     static Json state(Session& s, const Json&) { return s.state(); }
-    // {"width", "height"}: of the images, in pixels
+    // {"width", "height"}: sets the size of the images, in pixels
     static Json size(Session& s, const Json& command) {
         const auto side = [&](const char* name) { return std::clamp(command.at(name).get<int>(), 1, kMaxSide); };
         s.size_ = {side("width"), side("height")};
@@ -79,7 +79,7 @@ struct PageCommands {
         s.prepared_->scene.height = s.size_.height;
         return {};
     }
-    // {"exposure"} or {"tone"}: shows the image in another way
+    // {"exposure"} or {"tone"}: changes the view transform of the image
     static Json display(Session& s, const Json& command) {
         if (command.contains("tone")) s.view_transform_.tone = kTones.value(command["tone"].get<std::string>());
         if (command.contains("exposure"))
@@ -87,9 +87,9 @@ struct PageCommands {
         return s.shown();
     }
 
-    // One or more of {"orbit", "look", "pan": [right, up]}, {"dolly": factor}, {"fly": [forward, right, up]},
-    // {"focus": [x, y] of a pixel}, {"frame": entry of "objects", or −1 for the whole scene}; "commit" ends a step of
-    // undo.
+    // {"orbit", "look", "pan": [right, up]}, {"dolly": factor}, {"fly": [forward, right, up]}, {"focus": [x, y] of a
+    // pixel}, {"frame": entry of "objects", or −1 for the whole scene}: moves the camera by one or more of these.
+    // "commit" ends a step of undo.
     static Json camera(Session& s, const Json& command) {
         Camera camera = s.document().camera();
         const auto two = [&](const char* name, Camera (*move)(Camera, double, double)) {
@@ -144,15 +144,16 @@ struct PageCommands {
         return edited(s,
                       [&](const std::string& text) { return with_value(text, path_of(command), command.at("value")); });
     }
-    // {"path"}: an element of a list
+    // {"path"}: removes an element of a list
     static Json remove(Session& s, const Json& command) {
         return edited(s, [&](const std::string& text) { return without_value(text, path_of(command)); });
     }
     static Json duplicate(Session& s, const Json& command) {
         return edited(s, [&](const std::string& text) { return duplicated(text, path_of(command)); });
     }
-    // {"path", "by": [x, y, z]}: moves an element of "objects" or "lights". {"path", "right", "up", "pixel": [x, y]}:
-    // moves it parallel to the image, by parts of the height, so that the point that the pixel shows follows.
+    // {"path", "by": [x, y, z]}: moves an element of "objects" or "lights" by a vector. {"path", "right", "up",
+    // "pixel": [x, y]}: moves it parallel to the image by fractions of the image's height, so that the surface point at
+    // this pixel follows the pointer.
     static Json move(Session& s, const Json& command) {
         const JsonPath path = path_of(command);
         Vec3d by;
@@ -162,7 +163,8 @@ struct PageCommands {
             const Ray ray = s.ray_through(command.at("pixel"));
             const Hit hit = raytrace::trace(s.path_tracer_scene(), ray);
             if (!hit.valid()) throw Error("there is no object at this pixel");
-            // A camera that looks at the point's depth pans by what the image shows there.
+            // The camera is set to look at the depth of the point, because pan() moves by the height of the visible
+            // region there.
             Camera camera = s.document().camera();
             const Vec3d forward = normalize(camera.look_at - camera.eye);
             const Vec3d point = Vec3d(ray.origin) + static_cast<double>(hit.t) * Vec3d(ray.direction);
@@ -190,7 +192,7 @@ struct PageCommands {
         return edited(s,
                       [&](const std::string& text) { return with_new_element(text, element, camera.look_at, size); });
     }
-    // {"back": whether to undo, or to redo}
+    // {"back"}: undoes a step if `back` is true, and else redoes one
     static Json undo(Session& s, const Json& command) {
         const bool back = command.at("back").get<bool>();
         SceneDocument& document = s.document();
@@ -201,7 +203,7 @@ struct PageCommands {
         s.render_.reset();
         return s.state();
     }
-    // Saves the scene in the page's file system, under {"saved"}.
+    // Saves the scene in the page's file system. The result has its path as "saved".
     static Json save(Session& s, const Json&) {
         s.document().save();
         Json result = s.state();
@@ -209,7 +211,7 @@ struct PageCommands {
         return result;
     }
 
-    // {"quantity"}, {"shading"} or {"integrator"}: what is rendered
+    // {"quantity"}, {"shading"} or {"integrator"}: chooses what is rendered
     static Json choose(Session& s, const Json& command) {
         const Session::Settings before = s.whole_image_;
         const std::string quantity = command.value("quantity", s.quantity_);
@@ -244,8 +246,9 @@ struct PageCommands {
         return {{"quantities", names}};
     }
 
-    // {"scale", "rest"}: renders with the rasterizer, at a part of the width; at rest, prepared for this camera and
-    // with more samples. A scene that is not prepared yet is seen in Phong shading first, which needs no probes.
+    // {"scale", "rest"}: renders with the rasterizer, at a fraction of the width. At rest, the scene is prepared for
+    // this camera and has more samples. A scene that is not prepared yet is first shown in Phong shading, which needs
+    // no probes.
     static Json raster(Session& s, const Json& command) {
         Session::Prepared& scene = s.prepared();
         const bool rest = command.value("rest", true);
@@ -267,8 +270,9 @@ struct PageCommands {
         for (const auto& [stage, time] : rendering.statistics.seconds) result["stages"][stage] = time;
         return result;
     }
-    // {"seconds", "preview", "others"}: adds samples for about this time. With a preview, the first image after a
-    // change is small. With others, the number of samples of other_image(), the image is the mean of all samples.
+    // {"seconds", "preview", "others"}: adds samples for about this time. With `preview`, the first image after a
+    // change is small. `others` is the number of samples of other_image(); if it is not 0, the image is the mean of all
+    // samples.
     static Json trace(Session& s, const Json& command) {
         const raytrace::PathTracerScene& ready = s.path_tracer_scene();
         Control control;
@@ -297,7 +301,7 @@ struct PageCommands {
         if (s.samples_ > 0) s.image_ = s.mean_of_all(static_cast<float>(s.samples_) / static_cast<float>(all));
         Json result = s.shown();
         result["samples"] = all;
-        result["own"] = s.samples_; // without others
+        result["own"] = s.samples_; // without those of other_image()
         result["seconds"] = s.seconds_;
         result["finished"] = s.samples_ >= PageSession::kMaxSamples;
         if (s.samples_ > 0) result["relmse"] = s.render_->film().estimated_relmse() * s.samples_ / all;

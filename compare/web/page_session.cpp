@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-/// Samples per pixel of the rasterizer's image at rest.
+/// This is the number of samples per pixel of the rasterizer's image at rest.
 constexpr int kRasterSamples = 4;
 
 } // namespace
@@ -70,26 +70,26 @@ Ray PageSession::ray_through(const Json& pixel) {
     return CameraModel(view()).ray({center(0), center(1)});
 }
 
-// The box of an element of "objects"; empty for any other path.
+// Returns the bounds of an element of "objects"; empty for any other path.
 Box3 PageSession::bounds_of(const JsonPath& path) {
     if (path.size() != 2 || path[0] != "objects") return {};
     return entry_bounds(prepared().scene, std::stoul(path[1]));
 }
 
-// Takes a scene of the document's new text, or none yet. What was seen before is gone.
+// Replaces the scene by that of the document's new text, or by none yet, and drops the results of the previous scene.
 void PageSession::scene_changed(std::unique_ptr<Prepared> scene) {
     render_.reset(); // refers to the scene before
     prepared_ = std::move(scene);
     hits_ = {};
 }
 
-// All quantities that both pipelines can render separately, by plan_rungs().
+// Returns all quantities that both pipelines can render separately, by plan_rungs().
 std::vector<RungRenderers> PageSession::quantities() {
     return color_quantities(prepared().scene,
                             {raster_scene(), whole_image_.raster, path_tracer_scene(), whole_image_.raytrace});
 }
 
-// Finds the settings of the quantity. Throws Error for an unknown one.
+// Returns the settings of the quantity. Throws Error for an unknown one.
 PageSession::Settings PageSession::settings_of(const std::string& quantity) {
     if (quantity == kWholeImage) return whole_image_;
     for (const RungRenderers& renderers : quantities())
@@ -97,7 +97,7 @@ PageSession::Settings PageSession::settings_of(const std::string& quantity) {
     throw Error(message("the scene has no quantity ", quantity));
 }
 
-// Returns the film's image, whose part in the mean with other_image() is given.
+// Returns the mean of the film's image, with the weight `part`, and other_image().
 ImageRgb PageSession::mean_of_all(float part) {
     ImageRgb image = render_->film().image();
     if (part == 1) return image;
@@ -107,7 +107,7 @@ ImageRgb PageSession::mean_of_all(float part) {
     return image;
 }
 
-// Describes the scene, for the page's panel.
+// Returns a description of the scene for the page's panel.
 Json PageSession::state() {
     const SceneDocument& scene = document();
     return {{"file", scene.path().filename().string()},
@@ -124,7 +124,7 @@ Json PageSession::state() {
             {"tone", kTones.name(view_transform_.tone)}};
 }
 
-// Makes the bytes that the page shows.
+// Computes the bytes of the image that the page shows, and returns the image's size.
 Json PageSession::shown() {
     bytes_ = display_bytes(image_, view_transform_, 1);
     return {{"width", image_.width()}, {"height", image_.height()}};

@@ -1,4 +1,4 @@
-// A PageSession is what one worker of the web page holds: the scene that is edited, and one pipeline's image of it.
+// A PageSession is the state of one worker of the web page: the scene that is edited, and one pipeline's image of it.
 #pragma once
 
 #include "compare/view/document.h"
@@ -16,7 +16,8 @@
 namespace duet::compare {
 
 /// The page has a worker for each pipeline, and sends each edit to both, so that both hold the same scene. Workers
-/// share no memory, so that the page needs neither threads nor the isolation that browsers ask for them.
+/// share no memory, so that the page needs neither threads nor the cross-origin isolation that browsers require for
+/// them.
 class PageSession {
 public:
     enum class Pipeline { kRaster, kRaytrace };
@@ -25,15 +26,15 @@ public:
     explicit PageSession(Pipeline pipeline, std::uint64_t seed = 0);
     ~PageSession();
 
-    /// Carries out a command, an object whose member "do" names it (the table kCommands in page_commands.cpp), and
-    /// returns an object: what the command says of its result, or {"error": message}. After an error all is as before.
+    /// Carries out a command: an object whose member "do" is a name of the table kCommands (page_commands.cpp). Returns
+    /// an object: the command's result, or {"error": message}. After an error the session is unchanged.
     nlohmann::ordered_json call(const nlohmann::ordered_json& command);
 
-    /// The linear image that was rendered last; empty at first.
+    /// Returns the linear image that was rendered last; empty at first.
     const ImageRgb& image() const { return image_; }
-    /// The bytes that the last command has made of an image, as display_bytes() returns them.
+    /// Returns the image of the last command as bytes, as display_bytes() returns them.
     const std::vector<std::uint8_t>& bytes() const { return bytes_; }
-    /// An image of another session, for the commands "compare" and "trace".
+    /// Returns a buffer for an image of another session, for the commands "compare" and "trace".
     ImageRgb& other_image() { return other_image_; }
 
 private:
@@ -42,7 +43,7 @@ private:
 
     static constexpr int kMaxSamples = 4096; // the path tracer stops here
 
-    // The scene as both pipelines have prepared it. Prepared scenes refer to the scene.
+    // A Prepared is the scene as both pipelines have prepared it. Prepared scenes refer to the scene.
     struct Prepared {
         Scene scene;
         std::optional<raster::RasterScene> raster;
@@ -74,12 +75,12 @@ private:
     ImageSize size_{};
     ViewTransform view_transform_;
     std::string quantity_;                                // a name of plan_rungs()
-    Settings whole_image_, settings_;                     // settings_: of the quantity
-    std::unique_ptr<Prepared> prepared_;                  // null after an edit
-    std::unique_ptr<raytrace::ProgressiveRender> render_; // null after a change of what is seen
-    std::uint32_t samples_ = 0;                           // of render_
-    double seconds_ = 0;                                  // of render_
-    Image<Hit> hits_;                                     // of the rasterizer's image
+    Settings whole_image_, settings_;                     // settings_: those of the quantity
+    std::unique_ptr<Prepared> prepared_;                  // null until it is needed
+    std::unique_ptr<raytrace::ProgressiveRender> render_; // null after a change of what is rendered
+    std::uint32_t samples_ = 0;                           // samples of render_
+    double seconds_ = 0;                                  // seconds of render_
+    Image<Hit> hits_;                                     // hits of the rasterizer's image
     ImageRgb image_, other_image_;
     std::vector<std::uint8_t> bytes_;
 };

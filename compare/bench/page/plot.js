@@ -1,6 +1,5 @@
-// ---- plot.js: a log-log plot in SVG.
-// Curves differ in shape and dashes as well as in color. Each point can be reached by pointer and by keyboard
-// and shows its values.
+// ---- plot.js: draws log-log plots in SVG. Curves differ in shape and dashes as well as in color. Each point can be
+// reached by pointer and by keyboard and shows its values.
 
 const svgNode = (name, attributes = {}, children = []) => {
   const node = document.createElementNS("http://www.w3.org/2000/svg", name);
@@ -9,7 +8,7 @@ const svgNode = (name, attributes = {}, children = []) => {
   return node;
 };
 
-// Marker shapes around the origin, for a radius of 6.
+// Each shape is a marker around the origin with a radius of 6.
 const shapes = [
   "M-5.5-5.5h11v11h-11z", "M0-6a6 6 0 1 0 0.001 0z", "M0-7L6.5 5h-13z", "M0-7.5L7 0L0 7.5L-7 0z", "M0 7L6.5-5h-13z",
   "M-2-6h4v4h4v4h-4v4h-4v-4h-4v-4h4z", "M-6-3L0-7L6-3V4L0 7.5L-6 4z", "M-6-6L0-2.5L6-6L2.5 0L6 6L0 2.5L-6 6L-2.5 0z",
@@ -56,7 +55,8 @@ class LogAxis {
 
 const frame = { width: 640, height: 440, left: 66, right: 158, top: 12, bottom: 50 };
 
-// curves: [{ name, index, points: [{ x, y, low, high, text }] }]; guide: the slope of the dotted lines.
+// Draws `curves`, a list of { name, index, points: [{ x, y, low, high, text }] }. `xTicks` may list the ticks of the x
+// axis.
 function plot({ curves, xName, yName, xTicks, label }) {
   const points = curves.flatMap(c => c.points);
   const xs = points.map(p => p.x), ys = points.flatMap(p => [p.y, p.low, p.high]).filter(v => v > 0);

@@ -1,4 +1,4 @@
-// ---- tables.js: formatting of values, and the tables.
+// ---- tables.js: formats values and builds the tables.
 
 const put = (tag, attributes, children = []) => make(tag, attributes, ...[].concat(children));
 function duration(s) {
@@ -10,7 +10,8 @@ const percent = part => part === null ? "–" : `${(100 * part).toFixed(part < 0
 const bandOf = e => e.high === null || !e.value ? "" : `± ${percent(e.high / e.value - 1)}`;
 const withBand = (e, text) => [text(e.value), " ", put("small", {}, bandOf(e))];
 
-// columns: [{ name, cell(row) → node or text, key(row) → number or text to sort by, down: sort downwards first }].
+// Builds a table that the user can sort by each of its columns, a list of { name, cell(row) → node or text, key(row) →
+// number or text to sort by, down: whether to sort downwards first }.
 function sortableTable(rows, columns, caption) {
   const body = make("tbody");
   let sorted = -1, downwards = false;

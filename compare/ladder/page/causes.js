@@ -1,4 +1,4 @@
-// ---- causes.js: the false-color image of the main cause in each pixel.
+// ---- causes.js: draws the false-color image of the main cause in each pixel.
 
 const causeNames = data.report.shares.map(share => share.title);
 const swatch = i => make("span", { class: "swatch", style: `background:rgb(${data.colors[i].join(",")})` });

@@ -1,4 +1,4 @@
-// ---- ladder.js: the tables, the images of the ladder, and the rungs.
+// ---- ladder.js: builds the tables, the images of the ladder, and the rungs.
 
 const report = data.report;
 const shareText = share => share === null ? "none" :
@@ -64,7 +64,7 @@ function sharesTable() {
               cell())));
 }
 
-// Shows the image at step k and what that step changed.
+// Shows the image at step k and the change by that step.
 function showStep(k, buttons) {
   buttons.forEach((b, i) => b.setAttribute("aria-pressed", String(i === k)));
   const caption = k === 0       ? "the rasterizer's image" :

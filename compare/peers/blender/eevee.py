@@ -1,4 +1,4 @@
-# Sets up EEVEE, Blender's rasterizer, up to Blender 4.0: lights that stand for emissive surfaces, and light probes.
+# Sets up EEVEE, Blender's rasterizer, up to Blender 4.0: lights in place of emissive surfaces, and light probes.
 import math
 import statistics
 
@@ -7,7 +7,8 @@ from mathutils import Matrix, Vector
 
 
 def add_lamp(name, shape, radiance, area, place, settings):
-    """Adds a light of EEVEE, whose surfaces do not light others by themselves. Lambert's law: power = pi L A."""
+    """Adds a light, because EEVEE's emissive surfaces do not light others by themselves. Its power is pi L A by
+    Lambert's law."""
     data = bpy.data.lights.new(name, shape)
     strength = max(radiance)
     data.color, data.energy = [c / strength for c in radiance], math.pi * strength * area
@@ -20,8 +21,8 @@ def add_lamp(name, shape, radiance, area, place, settings):
 
 
 def add_lamps(scene, things):
-    """Puts a rectangle in front of each flat emissive mesh, and a ball into each other. Returns the meshes, which light
-    probes must not see: they would give the same light once more."""
+    """Puts a rectangle light in front of each flat emissive mesh, and a spherical light into each other one. Returns
+    the meshes, which light probes must not see: they would add the same light once more."""
     emissive = bpy.data.collections.new("emissive")
     bpy.context.scene.collection.children.link(emissive)
     for o, thing in zip(scene["objects"], things):
@@ -62,7 +63,8 @@ def most(points):
 
 
 def add_irradiance_grid(boxes, side, hidden):
-    """Puts side³ irradiance probes around all objects but a ground much larger than most; boxes are their corners."""
+    """Puts side³ irradiance probes around all objects except a ground much larger than most. `boxes` holds the corners
+    of each object's box."""
     sizes = [(most(box) - least(box)).length for box in boxes]
     usual = statistics.median_low(sizes)
     corners = [p for box, size in zip(boxes, sizes) if size <= 20 * usual for p in box]
@@ -76,7 +78,8 @@ def add_irradiance_grid(boxes, side, hidden):
 
 
 def set_up_eevee(scene, description, things):
-    """Switches on what EEVEE has: screen-space reflection, refraction and occlusion, soft shadows, and light probes."""
+    """Switches on the effects that EEVEE has: screen-space reflection, refraction and occlusion, soft shadows, and
+    light probes."""
     if bpy.app.version >= (4, 1, 0):
         raise RuntimeError(f"EEVEE of Blender {bpy.app.version_string}: expected one of 3.x or 4.0")
     eevee = scene.eevee
@@ -85,7 +88,7 @@ def set_up_eevee(scene, description, things):
     eevee.use_ssr_halfres = False
     eevee.shadow_cube_size = eevee.shadow_cascade_size = "2048"
     eevee.light_threshold = 0.0
-    # With more than this llvmpipe bakes light probes for minutes.
+    # Above this number of polygons, llvmpipe takes minutes to bake light probes.
     many = sum(len(thing.data.polygons) for thing in things) > 500_000
     eevee.gi_cubemap_resolution, eevee.gi_diffuse_bounces = "64", 1 if many else 3
     boxes = [[thing.matrix_world @ Vector(corner) for corner in thing.bound_box] for thing in things]

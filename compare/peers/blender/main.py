@@ -47,7 +47,7 @@ def set_up_cycles(scene, settings):
     cycles.device = "CPU"
     cycles.pixel_filter_type = "BOX"
     # This pattern is as efficient as the default but scrambled per pixel, so that pixels are independent, as the bias
-    # check requires. Since 4.2 it is a developer option, and the default is blue noise.
+    # check requires. Since Blender 4.2 it is a developer option, and the default is blue noise.
     preferences = bpy.context.preferences
     set_where_known(True, "show_developer_ui", preferences.view)
     set_where_known(True, "use_cycles_debug", preferences.experimental)

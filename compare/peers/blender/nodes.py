@@ -17,7 +17,7 @@ def first_known(owner, name, *values):
 
 
 def set_where_known(value, name, *owners):
-    """Sets a property of the first owner that has it; none if newer versions have removed it."""
+    """Sets a property of the first owner that has it, or of none if newer versions have removed it."""
     for owner in owners:
         if hasattr(owner, name):
             setattr(owner, name, value)
@@ -29,7 +29,7 @@ def rgba(color):
 
 
 class Nodes:
-    """A node tree that is built bottom-up: add(...) returns an output socket."""
+    """Builds a node tree bottom-up: add(...) returns an output socket."""
 
     def __init__(self, owner):
         owner.use_nodes = True

@@ -26,7 +26,7 @@ def volume_shader(nodes, medium, density):
 
 
 def make_box(name, low, high):
-    """Makes a box that is a little larger. Cycles loses surfaces that coincide with its sides."""
+    """Makes a box that is a little larger, because Cycles loses surfaces that coincide with its sides."""
     mesh = bpy.data.meshes.new(name)
     sides = [(a - 1e-4 * (b - a), b + 1e-4 * (b - a)) for a, b in zip(low, high)]
     corners = [(x, y, z) for x in sides[0] for y in sides[1] for z in sides[2]]
@@ -48,7 +48,7 @@ def make_grid(name, low, high, density):
         if value > 0.0:
             points.setValueOn((i % size[0], i // size[0] % size[1], i // (size[0] * size[1])), value)
     step = [(b - a) / (n - 1) for a, b, n in zip(low, high, size)]
-    # Cycles takes a number for the density in the middle between a point of the grid and the next.
+    # Cycles places each density halfway between a point of the grid and the next one. The grid is shifted back by that.
     first = [a - 0.5 * s for a, s in zip(low, step)]
     grid.transform = pyopenvdb.createLinearTransform(
         [[step[0], 0, 0, 0], [0, step[1], 0, 0], [0, 0, step[2], 0], [*first, 1]])
@@ -72,7 +72,7 @@ def make_box_medium(name, medium):
 
 
 def make_media(media, environment):
-    """Makes volumes of the media. Those without a box are in the world of Blender, whose nodes are `environment`."""
+    """Makes volumes of the media. Media without a box are in the world of Blender, whose nodes are `environment`."""
     everywhere = [volume_shader(environment, medium, 1.0) for medium in media if medium["box"] is None]
     if everywhere:
         environment.output("ShaderNodeOutputWorld", Volume=environment.sum(everywhere))

@@ -1,4 +1,4 @@
-// ---- base.js: code that all pages of the compare tool share: data, elements, theme, number formatting.
+// ---- base.js: defines what all pages of the compare tool share: data, elements, theme, number formatting.
 
 const data = JSON.parse(document.getElementById("data").textContent);
 const element = id => document.getElementById(id);
@@ -13,7 +13,7 @@ function make(tag, attributes = {}, ...children) {
 }
 function fill(id, ...children) { element(id).replaceChildren(...children); }
 
-// ---- The theme: the system's, or the one chosen with the button #theme and stored in the page's URL (#theme=dark).
+// ---- The theme is the system's, or the one chosen with the button #theme and stored in the page's URL (#theme=dark).
 
 const themes = { auto: "light", light: "dark", dark: "auto" }; // maps each theme to the next one
 const themeNow = () => document.documentElement.dataset.theme || "auto";
@@ -24,7 +24,7 @@ function showTheme(theme) {
   element("theme").textContent = `Theme: ${themeNow()}`;
 }
 
-// The fragment of the URL (after the #), as this page last read or wrote it.
+// This is the fragment of the URL (after the #), as this page last read or wrote it.
 let knownHash = location.hash;
 
 // Replaces the URL's fragment by these [key, value] pairs, and the theme if one is chosen. Does nothing while a
@@ -55,7 +55,7 @@ function startTheme(themeChanged = () => {}) {
   });
 }
 
-// Returns one of base.css's colors in the current theme: themeColor("raster").
+// Returns one of base.css's colors in the current theme, for example themeColor("raster").
 const themeColor = name => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 
 // ---- Numbers as text, with a true minus sign.
@@ -87,7 +87,7 @@ const superscripts = {
 };
 const powerText = exponent => `10${[...String(exponent)].map(d => superscripts[d]).join("")}`;
 
-// Formats a metric with three or four digits; small and large values get a power of ten.
+// Formats a metric with three or four digits, and small and large values with a power of ten.
 function figure(v) {
   if (v === null || v === undefined) return "none";
   const size = Math.abs(v);
@@ -104,7 +104,7 @@ function figure(v) {
                          v.toPrecision(3));
 }
 
-// Formats a round number exactly: 0.5, −1, 10⁻⁵.
+// Formats a round number exactly, such as 0.5, −1 or 10⁻⁵.
 const roundText = v => v !== 0 && Math.abs(v) < 0.001 ? figure(v) : minus(String(Number(v.toPrecision(3))));
 
 // Formats a fraction as a percentage that is never rounded to 0 % or 100 %.

@@ -1,4 +1,4 @@
-// ---- decode.js: decoding of images from text, the counterpart of compare/report/encode.h.
+// ---- decode.js: decodes images from text, the inverse of compare/report/encode.h.
 
 const width = data.width, height = data.height, pixelCount = width * height;
 
@@ -23,7 +23,7 @@ async function decodePlane(text, bytes) {
   return values;
 }
 
-// The value of every half-precision number, indexed by its bits.
+// This table holds the value of every half-precision number, indexed by its bits.
 const halfValue = (() => {
   const table = new Float32Array(65536);
   for (let bits = 0; bits < 65536; ++bits) {
@@ -35,13 +35,13 @@ const halfValue = (() => {
   return table;
 })();
 
-// The largest half-precision number. It stands for all values that are larger.
+// The largest half-precision number stands for all values that are larger.
 const largestHalf = 65504;
 const isBeyond = v => Math.abs(v) >= largestHalf && Number.isFinite(v);
 const pixelText = v => isBeyond(v) ? (v > 0 ? `≥ ${largestHalf}` : `≤ −${largestHalf}`) : radianceText(v);
 const signedPixelText = v => isBeyond(v) ? pixelText(v) : signedText(v);
 
-// An image as three planes of half-precision bits.
+// Holds an image as three planes of half-precision bits.
 class Picture {
   constructor(planes) { this.planes = planes; }
   value(i, channel) { return halfValue[this.planes[channel][i]]; }

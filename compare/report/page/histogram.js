@@ -1,4 +1,4 @@
-// ---- histogram.js: a histogram of pixel errors. A selected bin highlights its pixels on the stage.
+// ---- histogram.js: draws a histogram of pixel errors. A selected bin highlights its pixels on the stage.
 
 // Returns a round number (1, 2 or 5 times a power of ten) that is at least v.
 function roundUp(v) {
@@ -21,7 +21,8 @@ function quantile(values, share) {
   return sorted.length ? sorted[Math.floor((sorted.length - 1) * share)] : 0;
 }
 
-// Quantities for the histogram: the values of all pixels, the bin edges, the tick values, and the color of a value.
+// Each quantity of the histogram has the values of all pixels, the bin edges, the tick values, and the color of a
+// value.
 const quantities = {
   signed: {
     title: "signed relative difference",

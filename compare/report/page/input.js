@@ -1,4 +1,4 @@
-// ---- input.js: input on the stage: pointers, wheel, keys, and stepping between pixels.
+// ---- input.js: handles input on the stage: pointers, wheel, keys, and stepping between pixels.
 
 const handle = element("handle");
 const pointers = new Map(); // active pointers on the stage, with their positions
@@ -118,7 +118,7 @@ function wireStage() {
   handle.addEventListener("keydown", handleKey);
 }
 
-// ---- The selected pixel.
+// ---- The selected pixel
 
 function inspectAt([sx, sy]) {
   const [x, y] = toImage(sx, sy).map(Math.floor);
@@ -147,7 +147,7 @@ function moveTo(x, y, zoom = 0) {
   changed();
 }
 
-// Selects the next pixel of the selected bin. Without one, selects the next pixel whose hits differ:
+// Selects the next pixel of the selected bin. If no bin is selected, selects the next pixel whose hits differ:
 // unexplained ones first, then ties, then edges.
 function step(by) {
   const list = state.bin >= 0 ? lit : disagreeing;

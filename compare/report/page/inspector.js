@@ -1,4 +1,4 @@
-// ---- inspector.js: details of the selected pixel: both values, their difference, and the hit of each side.
+// ---- inspector.js: shows details of the selected pixel: both values, their difference, and the hit of each side.
 
 const seen = hit => hit.object === 0 ?
     "nothing" :

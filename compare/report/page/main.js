@@ -1,4 +1,4 @@
-// ---- main.js: the controls and the start-up code.
+// ---- main.js: connects the controls and starts the page.
 
 function changed() {
   settle();
@@ -62,7 +62,7 @@ function showSteps() {
                                                       `Lit: ${countText(list.length)} pixels`;
 }
 
-// ---- Exposure, difference, FLIP, flicker.
+// ---- Exposure, difference, FLIP, flicker
 
 function updateExposure() {
   element("exposure").value = state.ev;
@@ -121,7 +121,7 @@ function updateFlicker() {
   element("period-value").textContent = `${(state.period / 1000).toFixed(2)} s`;
 }
 
-// Selects the pixel with the largest error of what the stage shows: FLIP, or the difference.
+// Selects the pixel with the largest error of the kind that the stage shows: FLIP, or the difference.
 function showWorst() {
   const values = state.mode === "flip" ? decoded.flip : difference;
   let worst = -1;
@@ -130,7 +130,7 @@ function showWorst() {
   if (worst >= 0) moveTo(worst % width, Math.floor(worst / width), 24);
 }
 
-// ---- Event handlers.
+// ---- Event handlers
 
 function setExposure(ev) {
   state.ev = clamp(Math.round(ev * 10) / 10, -maxStops, maxStops);
@@ -198,7 +198,7 @@ function pageKey(event) {
   action();
 }
 
-// ---- Start-up.
+// ---- Start-up
 
 // Fills in the content that depends on the page's data but not on its state.
 function fillIn() {
@@ -245,7 +245,7 @@ function refresh() {
   setMode(state.mode);
 }
 
-// Tells how many pixels exceed half precision. The metrics are computed from the original values.
+// Shows how many pixels exceed half precision. The metrics are computed from the original values.
 function showBeyond() {
   let count = 0;
   for (let i = 0; i < pixelCount; ++i) count += decoded.pictures.some(picture => picture.isBeyond(i));

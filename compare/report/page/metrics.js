@@ -1,7 +1,7 @@
-// ---- metrics.js: the table of error metrics, each with an explanation.
+// ---- metrics.js: builds the table of error metrics, each with an explanation.
 
-// The name and meaning of each metric's key, in the order of the table. An unknown key is shown as it is. A key
-// that starts with another key's name (flip_max) is listed below that one.
+// This table has the name and meaning of each metric's key, in the order of display. An unknown key is shown as it is.
+// A key that starts with another key's name (flip_max) is listed below that one.
 const metricTexts = {
   mse: ["MSE", "mean squared difference"],
   rmse: ["RMSE", "its root"],

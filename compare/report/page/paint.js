@@ -1,4 +1,4 @@
-// ---- paint.js: conversion of values to colors.
+// ---- paint.js: converts values to colors.
 
 // Encodes a value by the sRGB curve (IEC 61966-2-1) as a byte.
 function encodeSrgb(v) {
@@ -27,7 +27,7 @@ function displayedColor(rgb, stops) {
   return times(outset, compressed).map(encodeSrgb);
 }
 
-// Creates a canvas for an image. It is also read back, to choose text colors with enough contrast.
+// Creates a canvas for an image. Its pixels are also read back, to choose text colors with enough contrast.
 function newCanvas() {
   const canvas = make("canvas", { width, height });
   canvas.getContext("2d", { willReadFrequently: true });
@@ -78,9 +78,9 @@ function paintDimming(canvas, lit) {
   });
 }
 
-// Anchors of the false colors. "hue" uses the colors of compare/report/false_color.cpp for signed values and
-// matplotlib's "magma" (Smith and van der Walt 2015), whose lightness increases evenly, for errors. "grey" uses
-// no hues.
+// These are the anchors of the false colors. "hue" uses the colors of compare/report/false_color.cpp for signed values
+// and matplotlib's "magma" (Smith and van der Walt 2015), whose lightness increases evenly, for errors. "grey" uses no
+// hues.
 const palettes = {
   hue: {
     signed: [

@@ -1,6 +1,6 @@
-// ---- panels.js: results and costs as sentences and tables.
+// ---- panels.js: shows results and costs as sentences and tables.
 
-const rendered = sides.every(side => side.rendering); // so times and skips are known
+const rendered = sides.every(side => side.rendering); // then times and skips are known
 const tag = side => make("span", { class: side.style }, `${side.symbol} ${side.name}`);
 const secondsOf = side => side.rendering.statistics.seconds;
 const workSeconds = side => secondsOf(side).prepare + secondsOf(side).render;

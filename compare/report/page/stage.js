@@ -1,4 +1,4 @@
-// ---- stage.js: drawing of the stage.
+// ---- stage.js: draws the stage.
 
 const sides = data.sides.map((side, k) => ({ ...side, symbol: "▲●"[k], style: ["side-a", "side-b"][k] }));
 const layers = {
@@ -98,8 +98,7 @@ function drawGrid(context, pane, z) {
   context.stroke();
 }
 
-// The relative luminance above which black text has more contrast than white text: √(1.05 · 0.05) − 0.05 (WCAG
-// 2.1).
+// Above this relative luminance black text has more contrast than white text: √(1.05 · 0.05) − 0.05 (WCAG 2.1).
 const middleLuminance = 0.179;
 const relativeLuminance = (r, g, b) =>
     luminance([r, g, b].map(byte => byte <= 10 ? byte / 255 / 12.92 : ((byte / 255 + 0.055) / 1.055) ** 2.4));

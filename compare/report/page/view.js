@@ -1,4 +1,4 @@
-// ---- view.js: the visible part of the image, the zoom, and the state in the page's URL.
+// ---- view.js: manages the visible part of the image, the zoom, and the state in the page's URL.
 
 const modes = [
   { key: "split", title: "Split" },
@@ -9,7 +9,7 @@ const modes = [
   ...(data.hits ? [{ key: "hits", title: "Hits" }] : []),
 ];
 
-// The state that a link can contain, besides the theme. Zoom is in screen pixels per image pixel; 0 fits the
+// This is the state that a link can contain, besides the theme. Zoom is in screen pixels per image pixel; 0 fits the
 // image to the pane. `bin` is the histogram's selected bin; −1 means none.
 const state = {
   mode: "split",
@@ -74,7 +74,7 @@ const maxZoom = 128;
 const stage = element("stage"), canvas = element("canvas");
 let stageWidth = 1, stageHeight = 1; // in CSS pixels
 
-// Whether panes are stacked vertically, as on a narrow screen, instead of side by side.
+// Returns whether panes are stacked vertically, as on a narrow screen, instead of side by side.
 const stacked = () => stageWidth < 620;
 
 // Returns the rectangles in which images are shown: one, or two for comparison.
@@ -118,7 +118,7 @@ function settle() {
 }
 
 const paneAt = (sx, sy) => panes().find(p => sx >= p.x && sx < p.x + p.w && sy >= p.y && sy < p.y + p.h) || panes()[0];
-// These two convert a position on the stage to one in the image, and back.
+// These two functions convert a position on the stage to one in the image, and back.
 function toImage(sx, sy) {
   const p = paneAt(sx, sy), z = zoomNow();
   return [(sx - p.x - p.w / 2) / z + state.x, (sy - p.y - p.h / 2) / z + state.y];

@@ -12,7 +12,7 @@ namespace {
 
 /// Returns the next line of JSON, or the reason why there is none. Other lines, such as a sanitizer's, go to `output`.
 Subprocess::Read read_result(Subprocess& process, SceneTimeLimits limits, std::string& output) {
-    constexpr std::chrono::milliseconds kPoll{50}; // between two looks at the processor time
+    constexpr std::chrono::milliseconds kPoll{50}; // interval at which the processor time is read
     const auto processor_limit = process.processor_time() + limits.processor;
     auto processor_time = process.processor_time();
     auto last_progress = std::chrono::steady_clock::now();
@@ -36,7 +36,7 @@ SceneVerdict SceneChecker::check(const std::filesystem::path& scene) {
     process->write_line(scene.string());
     const Subprocess::Read read = read_result(*process, limits_, output);
     if (read.status != Subprocess::Status::kLine) {
-        const std::unique_ptr<Subprocess> ended(process.release()); // cannot check another scene
+        const std::unique_ptr<Subprocess> ended(process.release()); // the process cannot check another scene
         if (read.status == Subprocess::Status::kEnd) return {.failure = "crash", .details = output};
         const std::chrono::duration<double> processor = limits_.processor, waiting = limits_.waiting;
         return {.failure = "hang",

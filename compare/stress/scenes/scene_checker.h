@@ -1,4 +1,4 @@
-// Checks scenes in other processes, which may crash or hang.
+// This file checks scenes in other processes, which may crash or hang.
 #pragma once
 
 #include "common/system/object_pool.h"
@@ -11,17 +11,17 @@
 
 namespace duet::compare {
 
-/// The result of `compare check` for one scene.
+/// Holds the result of `compare check` for one scene.
 struct SceneVerdict {
     bool refused = false;     ///< the scene cannot be loaded; `details` says why
-    std::string failure{};    ///< what does not hold (CheckResult), "crash" or "hang"; empty: nothing
+    std::string failure{};    ///< the violated requirement (CheckResult), "crash" or "hang"; empty: nothing
     std::string details{};
 
     bool failed() const { return !failure.empty(); }
 };
 
-/// Holds how long a scene may take before it counts as one that hangs. Processor time does not depend on what else the
-/// machine does. A deadlock takes none, so there is a limit to how long a process may wait.
+/// Holds how long a scene may take before it counts as one that hangs. The limit is on processor time, which does not
+/// depend on other programs. A deadlocked process uses none, so there is also a limit on waiting.
 struct SceneTimeLimits {
     std::chrono::milliseconds processor{10'000}; ///< of all threads together
     std::chrono::milliseconds waiting{60'000};   ///< by the clock, without any processor time
@@ -31,7 +31,7 @@ struct SceneTimeLimits {
 /// many scenes, one after the other.
 class SceneChecker {
 public:
-    /// `command` starts a process.
+    /// Each process is started by `command`.
     SceneChecker(std::vector<std::string> command, SceneTimeLimits limits)
         : command_(std::move(command)), limits_(limits) {}
 

@@ -32,7 +32,8 @@ template <typename Point> std::string grid_mesh(int columns, int rows, bool text
     return obj.str();
 }
 
-/// A sphere whose polar triangles have no area and whose seam and poles are open by rounding alone.
+/// Returns a point of a sphere. In its grid mesh the polar triangles have no area, and rounding alone opens the seam
+/// and the poles.
 Vec3d on_sphere(double u, double v) {
     const double a = 2 * kPiDouble * u, b = kPiDouble * v;
     return {std::sin(b) * std::cos(a), std::cos(b), -std::sin(b) * std::sin(a)};

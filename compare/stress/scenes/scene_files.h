@@ -1,4 +1,4 @@
-// The meshes and images that random scenes use.
+// This file writes the meshes and images that random scenes use.
 #pragma once
 
 #include <array>
@@ -9,11 +9,11 @@
 
 namespace duet::compare {
 
-/// The points of the grid in smoke.raw along each axis.
+/// These are the numbers of points of the grid in smoke.raw along each axis.
 inline constexpr std::array kGridPoints{4, 3, 5};
 
 /// Writes small meshes, images and a grid of densities into a folder: a closed mesh, an open one, a soup with slivers
-/// and triangles of no area, quads, and a mesh with materials of its own; images with and without alpha, and an
+/// and triangles without area, quads, and a mesh with materials of its own; images with and without alpha, and an
 /// environment with a bright spot. Returns the names for each definition of the scene's schema that has a key `file`.
 std::map<std::string, std::vector<std::string>> write_scene_files(const std::filesystem::path& folder);
 

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kAttempts = 8; ///< at a scene that is not refused, and not empty
+constexpr int kAttempts = 8; ///< attempts to draw a scene that is neither refused nor empty
 constexpr double kReduceSeconds = 120;
 
 /// Returns the process that checks scenes, with its budget of memory and time for each.
@@ -34,8 +34,8 @@ SceneChecker scene_checker() {
     return SceneChecker(std::move(command), {.processor = kLimit});
 }
 
-/// Most scenes are of ordinary size about the origin. The others are tiny, huge or far away, or have numbers from
-/// anywhere in their ranges.
+/// Draws the sizes of a scene. Most scenes are of ordinary size about the origin. The others are tiny, huge or far
+/// away, or have numbers from anywhere in their ranges.
 SceneSizes random_sizes(TrialRandom& random) {
     SceneSizes sizes;
     if (random.below(4) == 0) sizes.unit = static_cast<double>(random.log_uniform(1e-6f, 1e6f));
@@ -46,7 +46,8 @@ SceneSizes random_sizes(TrialRandom& random) {
     return sizes;
 }
 
-/// Returns whether a scene shows a shape that is not part of an instance. Without any, almost nothing is judged.
+/// Returns whether a scene shows a shape that is not part of an instance. In a scene without such a shape, the check
+/// finds almost nothing.
 bool shows_shape(const Json& objects) {
     return std::any_of(objects.begin(), objects.end(), [](const Json& object) {
         if (object["type"] == "group") return !object.value("hidden", false) && shows_shape(object["objects"]);
@@ -71,7 +72,8 @@ public:
             verdict = checker_.check(file);
             judged = verdict.failed() || (!verdict.refused && shows_shape(scene["objects"]));
         }
-        // A tenth of the scenes is refused and fewer are empty, so kAttempts of them never are.
+        // A tenth of the scenes is refused and fewer are empty. It practically never happens that all kAttempts of them
+        // are.
         if (!judged) verdict.failure = verdict.refused ? "refused" : "empty";
         trial.record_failure_if(verdict.failed());
         if (verdict.failed())
@@ -80,8 +82,8 @@ public:
             fs::remove(file);
     }
 
-    /// Returns a message about the first scene of each kind of failure, with the part of it that fails alike. A request
-    /// to stop ends the search for smaller parts.
+    /// Returns a message about the first scene of each kind of failure, with a reduced scene that fails in the same
+    /// way. A request to stop ends the reduction.
     std::string explain(const Control& control) {
         std::string text;
         for (const auto& entry : first_) {
@@ -101,7 +103,7 @@ public:
 
 private:
     struct Failure {
-        std::int64_t number = 0; ///< of the trial
+        std::int64_t number = 0; ///< number of the trial
         Json scene;
         SceneVerdict verdict;
     };
@@ -116,7 +118,7 @@ private:
     TemporaryFolder folder_{"duet-scenes"};
     const std::map<std::string, std::vector<std::string>> files_;
     std::mutex mutex_;
-    std::map<std::string, Failure> first_; ///< by kind of failure
+    std::map<std::string, Failure> first_; ///< key: kind of failure
     SceneChecker checker_ = scene_checker();
 };
 

@@ -12,12 +12,13 @@ namespace duet::compare {
 namespace {
 
 constexpr int kMostObjects = 24, kDeepest = 12;
-/// A range of numbers narrower than this is drawn from evenly. Numbers of wider ranges are about 1.
+/// Numbers of a range narrower than this are drawn uniformly. Numbers of wider ranges are about 1.
 constexpr double kNarrow = 1000;
 
-/// The keywords that say nothing about a value.
+/// These are the keywords that say nothing about a value.
 const std::set<std::string> kAnnotations = {"$schema", "$defs", "title", "description", "default"};
-/// The keywords and types that decide how a value is drawn, with the keywords that are understood beside each.
+/// These are the keywords and types that decide how a value is drawn, each with the other keywords that may accompany
+/// it.
 const std::map<std::string, std::set<std::string>> kKinds = {
     {"$ref", {}},
     {"const", {}},
@@ -30,7 +31,8 @@ const std::map<std::string, std::set<std::string>> kKinds = {
     {"number", {"type", "minimum", "exclusiveMinimum", "maximum"}},
     {"integer", {"type", "minimum", "exclusiveMinimum", "maximum"}}};
 
-/// Returns the kind in kKinds of a schema. Throws Error if it has none, or a keyword that is not understood beside it.
+/// Returns the kind of a schema, a key of kKinds. Throws Error if it has none, or a keyword that kKinds does not list
+/// for its kind.
 std::string kind_of(const Json& schema) {
     const auto fail = [&](const std::string& expected) {
         throw Error(message("the scene's schema: found ", schema.dump().substr(0, 80), ", expected ", expected));
@@ -46,19 +48,19 @@ std::string kind_of(const Json& schema) {
     return {};
 }
 
-/// The names that a key's value refers to.
+/// These keys refer to a name in the list that is given beside each.
 const std::map<std::string, std::string> kReferences = {{"texture", "textures"},
                                                         {"radiance_texture", "textures"},
                                                         {"material", "materials"},
                                                         {"of", "groups"}};
-/// Vectors under these keys are points. They lie about the middle of the scene.
+/// Vectors under these keys are points, which are drawn around the middle of the scene.
 const std::set<std::string> kPoints = {"eye", "look_at", "corner", "center", "low", "high", "position"};
 /// Numbers under these keys are not lengths.
 const std::set<std::string> kUnitless = {"up", "axis", "direction", "scale", "matrix", "rotate_degrees"};
 /// Numbers of these definitions are lengths, unless their key is unitless.
 const std::set<std::string> kLengths = {"number", "positive", "notNegative"};
 
-/// Gives a box corners in order, and an extent.
+/// Sorts the corners of a box on each axis, and gives the box an extent.
 void repair_box(Json& low, Json& high) {
     for (std::size_t i = 0; i < 3; ++i) {
         if (low[i] > high[i]) std::swap(low[i], high[i]);
@@ -66,7 +68,7 @@ void repair_box(Json& low, Json& high) {
     }
 }
 
-/// Makes a transform's step one that can be undone.
+/// Makes a transform's step invertible.
 void repair_step(Json& step) {
     if (step.contains("matrix"))
         for (std::size_t i = 12; i < 16; ++i) step["matrix"][i] = i < 15 ? 0 : 1;
@@ -75,8 +77,8 @@ void repair_step(Json& step) {
         if (x == 0) x = 1;
 }
 
-/// Makes a matrix of a motion one whose diagonal outweighs the rest of each row, as that of any mean of it and the
-/// identity does, so that no moment is singular.
+/// Makes the diagonal of a matrix outweigh the rest of each row. This also holds for every mean of the matrix and the
+/// identity, so that a motion from the identity to it is never singular.
 void repair_motion_matrix(Json& matrix) {
     for (std::size_t row = 0; row < 3; ++row)
         for (std::size_t column = 0; column < 3; ++column) {
@@ -85,7 +87,8 @@ void repair_motion_matrix(Json& matrix) {
         }
 }
 
-/// Makes the end of a motion its beginning and what moves an object little enough that no moment is singular.
+/// Makes the end of a motion its beginning followed by small steps, so that the interpolated transform is never
+/// singular.
 void repair_motion(Json& object) {
     Json steps = object.value("transform", Json::array());
     for (Json& step : object["transform_end"]) {
@@ -99,14 +102,15 @@ void repair_motion(Json& object) {
     object["transform_end"] = std::move(steps);
 }
 
-/// Returns whether an object moves in itself: it or one of its members, also by way of an instance of a moving group.
+/// Returns whether an object moves, or one of its members, also by way of an instance of a moving group.
 bool moves(const Json& object, const std::set<std::string>& moving_groups) {
     if (object.contains("transform_end") || moving_groups.contains(object.value("of", ""))) return true;
     const Json members = object.value("objects", Json::array());
     return std::ranges::any_of(members, [&](const Json& member) { return moves(member, moving_groups); });
 }
 
-/// Leaves out a motion of an object around others, because both together may be singular at a moment between.
+/// Removes the motion of an object that contains moving objects, because the product of both may be singular in
+/// between.
 void repair_nested_motion(Json& object, const std::set<std::string>& moving_groups) {
     if (!object.contains("transform_end")) return;
     Json rest = object;
@@ -123,13 +127,13 @@ void repair_subsurface(Json& object) {
     }
 }
 
-/// Changes what the schema allows and the format does not (models/README.md).
+/// Repairs what the schema allows but the format does not (models/README.md).
 void repair(Json& object, const std::string& definition) {
     const std::string type = object.value("type", "");
     const bool has_corners = object.contains("low") && object.contains("high");
     if (has_corners && (type == "box" || type == "fog" || type == "cloud" || type == "smoke"))
         repair_box(object["low"], object["high"]);
-    if (type == "cloud") // a scene's grids together may not have too many points
+    if (type == "cloud") // a scene's grids are limited in their total number of points
         object["resolution"] = 1 + object.value("resolution", 12) % 24;
     if (type == "smoke") object["resolution"] = kGridPoints;
     if (object.contains("transform_end")) repair_motion(object);
@@ -152,7 +156,7 @@ void repair(Json& object, const std::string& definition) {
 
 Json SchemaValues::scene() {
     Json result = *value(schema_, {});
-    if (!points_.empty() && chance(0.8)) // look at something
+    if (!points_.empty() && chance(0.8)) // aims the camera at an object or light
         result["camera"]["look_at"] = element(points_);
     return result;
 }
@@ -217,7 +221,7 @@ std::optional<Json> SchemaValues::object(const Json& schema, const Place& place)
 }
 
 std::optional<Json> SchemaValues::array(const Json& schema, const Place& place) {
-    constexpr std::uint32_t kUsualItems = 6; // more take time, and find nothing more
+    constexpr std::uint32_t kUsualItems = 6; // more items take time, and find no other faults
     const auto least = schema.value("minItems", 0u),
                most = std::max(least, std::min(schema.value("maxItems", kUsualItems), kUsualItems));
     const bool objects = place.key == "objects";

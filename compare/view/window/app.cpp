@@ -12,7 +12,7 @@ namespace duet::compare {
 
 namespace {
 
-/// How often the scene file is looked at for changes by another program, in seconds.
+/// This is the interval, in seconds, between checks of whether another program has changed the scene file.
 constexpr double kFileCheckSeconds = 1;
 
 } // namespace

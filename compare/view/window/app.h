@@ -1,4 +1,4 @@
-// The state of the window of `compare view`, and what it draws.
+// This file declares the state of the window of `compare view`, and the functions that draw it.
 #pragma once
 
 #include "compare/view/document.h"
@@ -15,18 +15,18 @@
 
 namespace duet::compare {
 
-/// What the image area shows.
+/// Selects what the image area shows.
 enum class Show { kSplit, kRaster, kTraced, kDifference, kFlip };
 inline constexpr std::array<const char*, 5> kShowNames{"split", "raster", "path tracer", "difference", "FLIP"};
 
-/// Where the window shows an image of the wish's size, in pixels of the window.
+/// Holds the rectangle in which the window shows an image of the requested size, in pixels of the window.
 struct ImageArea {
     ImVec2 low, size;
     bool hovered = false; ///< whether the pointer is on the image
     Vec2d pixel;          ///< position of the pointer in pixels of the image
 };
 
-/// The difference of both images, as bytes for a texture.
+/// Holds the difference of both images, as bytes for a texture.
 struct Comparison {
     std::shared_ptr<const RasterFrame> raster{};
     std::shared_ptr<const TracerFrame> traced{};
@@ -56,23 +56,23 @@ inline constexpr std::array<const char*, 3> kSelectableLists{"objects", "lights"
 class App {
 public:
     App(const ViewOptions& options, Window& window);
-    /// Draws a frame. Returns whether the next one shall follow at once, because something moves.
+    /// Draws a frame. Returns whether the next frame must follow at once, because something moves.
     bool draw();
-    /// Turns the camera around what it looks at, by an angle in radians.
+    /// Orbits the camera around the look-at point by an angle in radians.
     void turn(double angle);
     /// Moves the first object of the scene file by a vector, in meters, if it can be edited. Returns whether it can.
     bool move_first_object(Vec3d by);
-    /// Returns whether the window may close. With changes that were not saved, the first request only warns.
+    /// Returns whether the window may close. With unsaved changes, the first request only warns.
     bool may_close() { return may_lose_changes("closes the window"); }
     LiveView& live() { return live_; }
     const Wish& wish() const { return wish_; }
-    /// Returns whether a screenshot of this frame is wanted.
+    /// Returns whether a screenshot of this frame is requested.
     bool wants_screenshot() const { return wants_screenshot_; }
-    /// Writes the screenshot that is wanted.
+    /// Writes the requested screenshot.
     void write_screenshot(const ImageRgb& pixels);
 
 private:
-    // image_area.cpp
+    // These functions are in image_area.cpp.
     void draw_images();
     void fit_images(ImVec2 low, ImVec2 size);
     Vec2d pixel_at(ImVec2 position) const;
@@ -93,7 +93,7 @@ private:
     void draw_handle(Handle handle, std::size_t axis, const std::vector<Vec3d>& points);
     void drag_object();
     std::optional<ImVec2> on_screen(Vec3d point) const;
-    // side_panel.cpp
+    // These functions are in side_panel.cpp.
     void draw_panel();
     void draw_display();
     void draw_renderers();
@@ -101,7 +101,7 @@ private:
     void draw_timings();
     void draw_curve();
     void draw_help();
-    // scene_panel.cpp
+    // These functions are in scene_panel.cpp.
     void draw_scene();
     void draw_camera();
     void draw_members(const char* list);
@@ -129,7 +129,7 @@ private:
     void undo(bool back);
     void save();
     void write_images();
-    // Returns whether changes may be lost: there are none, or this is the second request in a row.
+    // Returns whether the document may be replaced: it has no unsaved changes, or this is the second request in a row.
     bool may_lose_changes(const std::string& what);
     void attempt(const std::function<void()>& action); // shows the message of an Error
     void use_settings();
@@ -157,32 +157,32 @@ private:
         std::shared_ptr<const Scene> scene;
         Selection selected;
         Box3 box;
-    } bounds_; // of the selected object, as it was found last
+    } bounds_; // bounds of the selected object, as last computed
     struct Gizmo {
-        Handle handle = Handle::kNone; // under the pointer or dragged
+        Handle handle = Handle::kNone; // handle under the pointer, or dragged
         std::size_t axis = 0;
         double angle = 0; // of the grabbed point of a ring
         std::array<Vec3d, 3> axes{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};
         Vec3d center;
-        double length = 0;  // of the arrows, in meters
+        double length = 0;  // length of the arrows, in meters
         double dragged = 0; // in meters, in radians, or the logarithm of a factor
-        std::string text;   // before the drag
+        std::string text;   // text before the drag
     } gizmo_;
-    unsigned requested_load_ = 0; // the scene of the document's text; 0 before the first
+    unsigned requested_load_ = 0; // LoadedScene::load of the document's text; 0 before the first
     double turn_degrees_ = 15, scale_factor_ = 1.1;
-    std::string mesh_file_;          // that is being typed
-    std::string message_, path_log_; // of the last action; of the path under the last click
+    std::string mesh_file_;          // name that is being typed
+    std::string message_, path_log_; // message of the last action; log of the path under the last click
     ImageArea area_;
     std::filesystem::file_time_type file_time_;
     double file_checked_ = 0;
 
-    // What the textures show.
+    // These members hold what the textures show.
     std::shared_ptr<const RasterFrame> shown_raster_;
     std::shared_ptr<const TracerFrame> shown_traced_;
     ViewTransform shown_transform_;
     Texture raster_texture_, traced_texture_, comparison_texture_;
     std::mutex comparison_mutex_;                                                // guards comparison_
-    std::shared_ptr<const Comparison> comparison_, shown_comparison_, compared_; // compared_: the last that was begun
+    std::shared_ptr<const Comparison> comparison_, shown_comparison_, compared_; // compared_: last one started
     LatestJob comparer_;
 };
 

@@ -10,7 +10,7 @@ namespace duet::compare {
 
 namespace {
 
-constexpr double kLengthOfHeight = 0.15; // length of an arrow, as a fraction of what the image shows at the object
+constexpr double kLengthOfHeight = 0.15; // length of an arrow, as a fraction of the height of the visible region
 constexpr double kRingOfLength = 0.75;   // radius of a ring
 constexpr float kGrabPixels = 7;         // distance from which a handle is grabbed
 constexpr double kScalePerPixel = 0.01;  // logarithm of the factor
@@ -83,7 +83,7 @@ void App::draw_gizmo() {
     if (possible.scale) draw_handle(Handle::kScale, 0, {center, center});
 }
 
-// Draws a handle, and takes it where it is the first under the pointer.
+// Draws a handle, and selects it if it is the first under the pointer.
 void App::draw_handle(Handle handle, std::size_t axis, const std::vector<Vec3d>& points) {
     std::vector<ImVec2> line;
     for (const Vec3d& point : points) {

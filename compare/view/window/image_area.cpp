@@ -1,4 +1,4 @@
-// The images of `compare view`, and the mouse on them.
+// This file draws the images of `compare view`, and handles the mouse on them.
 #include "compare/view/camera_control.h"
 #include "compare/view/edits.h"
 #include "compare/view/image_comparison.h"
@@ -17,8 +17,8 @@ namespace {
 
 constexpr float kSplitGrip = 8;      // distance in pixels from which the line is grabbed
 constexpr double kOrbitRadians = 4;  // a drag over the height of the image turns by this angle
-constexpr double kLookRadians = 1;   // the same where the camera looks around
-constexpr double kWheelFactor = 0.9; // change of distance by a step of the wheel
+constexpr double kLookRadians = 1;   // the same for looking around
+constexpr double kWheelFactor = 0.9; // factor of the distance for a step of the wheel
 constexpr double kFlyPerSecond = 1;  // distances per second
 constexpr float kClickPixels = 4;    // a click moves the pointer by less
 
@@ -76,7 +76,7 @@ void App::draw_images() {
 void App::update_textures() {
     const auto raster = live_.raster_frame();
     const auto traced = live_.tracer_frame();
-    const bool colors = quantity_ == "normals" || quantity_ == "albedo"; // no light
+    const bool colors = quantity_ == "normals" || quantity_ == "albedo"; // colors without light
     const ViewTransform transform = colors ? ViewTransform{} : view_transform_;
     const bool all = !(transform == shown_transform_);
     const auto set = [&](Texture& texture, const ImageRgb& image) {

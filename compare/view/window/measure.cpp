@@ -16,7 +16,8 @@ using nlohmann::json;
 
 namespace {
 
-// Draws a frame. Throws Error if the window was closed or the scene cannot be loaded: there is nothing to measure.
+// Draws a frame. Throws Error if the window was closed or the scene cannot be loaded, because nothing can be measured
+// then.
 void draw_frame(App& app, Window& window, double wait = 0) {
     window.begin_frame(wait);
     app.draw();
@@ -25,7 +26,7 @@ void draw_frame(App& app, Window& window, double wait = 0) {
     if (const LoadedScene loaded = app.live().loaded(); !loaded.error.empty()) throw Error(loaded.error);
 }
 
-// Returns statistics of times in seconds, in milliseconds.
+// Returns the median and the 95th percentile, in milliseconds, of times in seconds.
 json percentiles(std::vector<double> times) {
     const auto at = [&](double part) {
         const auto i = static_cast<std::ptrdiff_t>(part * static_cast<double>(times.size() - 1));
@@ -58,8 +59,8 @@ json measure_turn(App& app, Window& window, double seconds) {
     return result;
 }
 
-// Moves the first object to and fro with every frame of the window, as a hand would drag it. Returns the times between
-// images of edited scenes, for both pipelines, or null if the scene cannot be edited.
+// Moves the first object back and forth with every frame of the window, as a user would drag it. Returns the times
+// between images of edited scenes, for both pipelines, or null if the scene cannot be edited.
 json measure_drag(App& app, Window& window, double seconds) {
     const Box3 bounds = app.live().loaded().scene->bounds;
     const double step = 1e-3 * static_cast<double>(length(bounds.diagonal()));
@@ -87,7 +88,7 @@ json measure_drag(App& app, Window& window, double seconds) {
     return {{"raster", percentiles(raster.intervals)}, {"raytrace", percentiles(traced.intervals)}};
 }
 
-// Returns samples of pixels per second, of the window at rest and of a render without one.
+// Returns the samples per second of the path tracer, in the window at rest and in a render without a window.
 json measure_rates(App& app, Window& window, double seconds) {
     const Wish& wish = app.wish();
     const double pixels = static_cast<double>(wish.view.width) * wish.view.height;

@@ -1,4 +1,4 @@
-// The loop of the window of `compare view`.
+// This file runs the event loop of the window of `compare view`.
 #include "common/program/program.h"
 #include "compare/view/window/measure.h"
 

@@ -12,10 +12,10 @@ using nlohmann::ordered_json;
 
 namespace {
 
-/// Edits a value of a scene file in place: numbers, colors and words, and objects and arrays of them.
+/// Edits a value of a scene file in place: numbers, colors and words, and objects and arrays of these.
 class JsonEditor {
 public:
-    /// A member "material" may have the names of the scene's materials.
+    /// The names of the scene's materials are offered for a member "material".
     explicit JsonEditor(const ordered_json& scene)
         : materials_(scene.contains("materials") ? scene.at("materials") : ordered_json::object()) {}
 
@@ -106,7 +106,7 @@ private:
     const ordered_json materials_;
 };
 
-/// Writes the parts of a value that differ, so that the others stay as they were typed.
+/// Writes the parts of a value that differ, so that the rest stays as it was typed.
 std::string with_changes(std::string text, const JsonPath& path, const ordered_json& old, const ordered_json& changed) {
     if (old == changed) return text;
     if (!changed.is_structured() || changed.size() != old.size()) return with_value(text, path, changed);

@@ -1,4 +1,5 @@
-// The panel of `compare view`: how the images are shown, what is rendered, and what lies under the pointer.
+// This file draws the panel of `compare view`: how the images are shown, which quantity is rendered, and what lies
+// under the pointer.
 #include "compare/view/window/app.h"
 
 #include "common/program/program.h"

@@ -15,7 +15,7 @@ namespace {
 
 Window& window_of(GLFWwindow* window) { return *static_cast<Window*>(glfwGetWindowUserPointer(window)); }
 
-// Returns the key of the letter that a key types: GLFW names keys by their place on an American keyboard.
+// Returns the key of the letter that a key types, because GLFW names keys by their position on an American keyboard.
 int labeled_key(int position, int code) {
     const char* name = glfwGetKeyName(position, code);
     const bool letter = name && name[0] >= 'a' && name[0] <= 'z' && name[1] == 0;
@@ -30,7 +30,7 @@ int labeled_key(int position, int code) {
     throw Error(message(what, ": ", text, " (view needs a screen, and OpenGL 3.3; `compare run` needs neither)"));
 }
 
-// Returns the pixels that are drawn and not yet shown.
+// Returns the pixels of the frame that is drawn but not yet shown.
 ImageRgb drawn_pixels(int width, int height) {
     std::vector<std::uint8_t> bytes(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
@@ -57,7 +57,7 @@ Window::Window(const std::string& title, ImageSize size) {
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(1);
     glfwSetWindowUserPointer(window_, this);
-    // Dear ImGui keeps these callbacks and calls them before its own.
+    // Dear ImGui stores these callbacks and calls them before its own.
     glfwSetKeyCallback(window_, [](GLFWwindow* window, int position, int code, int action, int mods) {
         if (action == GLFW_REPEAT) return;
         Window& self = window_of(window);

@@ -1,4 +1,5 @@
-// This file wraps the libraries of the window: GLFW opens it and reads keys and mouse, Dear ImGui draws into it.
+// This file wraps the libraries of the window: GLFW opens it and reads keys and mouse, and Dear ImGui draws its
+// contents.
 #pragma once
 
 #include "common/image/image.h"
@@ -14,7 +15,7 @@ struct GLFWwindow;
 
 namespace duet::compare {
 
-/// A key that was pressed, as GLFW names it (GLFW_KEY_A …). F1 also stands for the character ?.
+/// A KeyPress is a key that was pressed, as GLFW names it (GLFW_KEY_A …). F1 also stands for the character ?.
 struct KeyPress {
     int key = 0;
     bool control = false, shift = false;
@@ -33,20 +34,20 @@ public:
     void begin_frame(double seconds);
     /// Draws the frame. With `screenshot`, returns its pixels, else an empty image.
     ImageRgb end_frame(bool screenshot = false);
-    /// Ends the wait of begin_frame. Any thread may call it.
+    /// Ends the wait of begin_frame. It may be called from any thread.
     static void wake();
-    /// Requests that the window closes, as its button does.
+    /// Requests that the window closes, as its close button does.
     void close();
     /// Returns whether the window was requested to close since the last call.
     bool closing();
     /// Sets the text above the window.
     void set_title(const std::string& title);
 
-    /// The keys that were pressed, as they are labeled, and the files that were dropped on the window since the frame
-    /// before. Keys that a text field receives are left out.
+    /// Returns the keys that were pressed since the previous frame, as they are labeled. Keys that a text field
+    /// receives are left out. The next function returns the files that were dropped on the window.
     const std::vector<KeyPress>& keys() const { return keys_; }
     const std::vector<std::filesystem::path>& dropped() const { return dropped_; }
-    /// Returns whether a key is held down that was pressed without Ctrl, and outside of text fields.
+    /// Returns whether a key is held down that was pressed without Ctrl and outside of text fields.
     bool held(int key) const { return held_.contains(key); }
 
 private:
@@ -67,7 +68,7 @@ public:
     /// Sets the pixels, 3 bytes each, with rows from the top.
     void set(const std::vector<std::uint8_t>& bytes, int width, int height);
     bool empty() const { return name_ == 0; }
-    /// Returns the texture as Dear ImGui names it.
+    /// Returns the texture's ID for Dear ImGui.
     void* id() const;
 
 private:

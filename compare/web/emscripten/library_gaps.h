@@ -26,7 +26,7 @@ template <typename T> enable_if_t<is_array_v<T>, unique_ptr<T>> make_unique_for_
     return unique_ptr<T>(new remove_extent_t<T>[size]);
 }
 
-/// Without threads, every access is atomic.
+/// Replaces std::atomic_ref. Without threads, every access is atomic.
 template <typename T> class atomic_ref {
 public:
     explicit atomic_ref(T& value) : value_(value) {}

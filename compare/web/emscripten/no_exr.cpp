@@ -1,4 +1,4 @@
-// The page has no OpenEXR: these functions of common/image/formats.h and image_file.h say so.
+// The page has no OpenEXR, so these functions of common/image/formats.h and image_file.h throw an Error that says so.
 #include "common/image/formats.h"
 #include "common/image/image_file.h"
 #include "common/system/error.h"

@@ -1,5 +1,5 @@
-// What JavaScript calls of a PageSession in a worker of the web page (worker.js). Emscripten compiles it; in this
-// build the libraries run in the worker's only thread.
+// This file exports the functions of a PageSession that JavaScript calls in a worker of the web page (worker.js).
+// Emscripten compiles it; in this build the libraries run in the worker's only thread.
 #include "compare/web/page_session.h"
 
 #include <emscripten/emscripten.h>
@@ -25,14 +25,15 @@ EMSCRIPTEN_KEEPALIVE void duet_start(int pipeline, int seed) {
         std::make_unique<PageSession>(static_cast<PageSession::Pipeline>(pipeline), static_cast<std::uint64_t>(seed));
 }
 
-/// Carries out a command, PageSession::call(). The answer is valid until the next call.
+/// Carries out a command by PageSession::call(). The answer is valid until the next call.
 EMSCRIPTEN_KEEPALIVE const char* duet_call(const char* command) {
     const auto parsed = nlohmann::ordered_json::parse(command, nullptr, false);
     answer = session->call(parsed).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
     return answer.c_str();
 }
 
-/// Returns PageSession::bytes() with four bytes per pixel, as a canvas takes them. They are valid until the next call.
+/// Returns PageSession::bytes() with four bytes per pixel, as a canvas expects them. The result is valid until the next
+/// call.
 EMSCRIPTEN_KEEPALIVE const std::uint8_t* duet_pixels() {
     const std::vector<std::uint8_t>& bytes = session->bytes();
     rgba.assign(bytes.size() / 3 * 4, 255);
@@ -41,10 +42,10 @@ EMSCRIPTEN_KEEPALIVE const std::uint8_t* duet_pixels() {
     return rgba.data();
 }
 
-/// Returns PageSession::image(), three floats per pixel. They are valid until the next call.
+/// Returns PageSession::image(), three floats per pixel. The result is valid until the next call.
 EMSCRIPTEN_KEEPALIVE const float* duet_image() { return &session->image().pixels().data()->r; }
 
-/// Returns where PageSession::other_image() of this size has to be written.
+/// Returns the memory into which the pixels of PageSession::other_image() of this size must be written.
 EMSCRIPTEN_KEEPALIVE float* duet_other_image(int width, int height) {
     session->other_image() = duet::ImageRgb(width, height);
     return &session->other_image().pixels().data()->r;

@@ -1,8 +1,8 @@
-// Scenes and files: opened, saved, downloaded.
+// This script opens, saves and downloads scenes and files.
 'use strict';
 
 const loadedFiles = new Map();
-/** The scripts of files/ call this: each holds a file of the scenes' folder in base64. */
+/** Stores a file of the scenes' folder, given in base64. Each script in files/ calls this function with its file. */
 function addFile(path, base64) { loadedFiles.set(path, base64); }
 
 function bytesOf(base64) { return Uint8Array.from(atob(base64), c => c.charCodeAt(0)); }
@@ -21,7 +21,7 @@ function giveFiles(files) {
     for (const p of [...pipelines, ...helpers]) p.worker.postMessage({files});
 }
 
-let opened = 0; // numbers what is opened: what is chosen last wins
+let opened = 0; // numbers the requests to open something: the last one wins
 
 async function openFiles(files, path) {
     const number = ++opened;
@@ -65,7 +65,7 @@ function pathsNamed(scene, name) {
 
 let ownFolders = 0;
 
-/** Opens files that people have chosen. With `adds`, a mesh becomes a part of the scene instead. */
+/** Opens files that the user has chosen. With `adds`, a mesh is added to the scene instead. */
 async function openFilesOf(list, adds) {
     const own = await Promise.all([...list].map(async file => {
         const bytes = await file.arrayBuffer().catch(() => { throw new Error(`cannot read ${file.name}`); });
@@ -78,7 +78,7 @@ async function openFilesOf(list, adds) {
         giveFiles(own.map(([name, bytes]) => [`${state.folder}/${name}`, bytes]));
         return addElement({do: 'add', mesh: main[0]});
     }
-    // Browsers tell the names of dropped files without their folders.
+    // Browsers give the names of dropped files without their folders.
     let scene = null;
     try { scene = sceneFile && JSON.parse(new TextDecoder().decode(sceneFile[1])); } catch { /* open says where */ }
     const folder = `/own/${++ownFolders}`;
@@ -88,7 +88,7 @@ async function openFilesOf(list, adds) {
     await openFiles(files, `${folder}/${main[0]}`);
 }
 
-/** Runs what replaces the scene. With changes that were not saved, the first call only warns. */
+/** Runs an action that replaces the scene. With unsaved changes, the first call only warns. */
 function replaceScene(action) {
     const warning = 'There are changes that were not saved. The same once more loses them.';
     if (state && state.changed && $('message').textContent !== warning) {

@@ -1,7 +1,7 @@
-// The images in the page, their comparison, and their figures.
+// This script shows the images in the page, their comparison, and their figures.
 'use strict';
 
-const largestSide = 4096;   // of an image
+const largestSide = 4096;   // largest side of an image, in pixels
 
 const compares = () => $('show').value === 'difference' || $('show').value === 'FLIP';
 const shownSplit = () => $('show').value === 'rasterizer' ? 1 : $('show').value === 'path tracer' ? 0 : split;
@@ -39,7 +39,7 @@ function drawSplit() {
 }
 
 let comparing = false;
-let compareAgain = false;   // an image has come meanwhile
+let compareAgain = false;   // another image has come meanwhile
 
 /** Shows the difference of both images, if they are of one view. */
 async function compareImages() {
@@ -94,7 +94,7 @@ function showTimes() {
     drawCurve();
 }
 
-let curveVersion = 0;      // of the view that the curve is of
+let curveVersion = 0;      // version of the view that the curve belongs to
 function addToCurve(frame) {
     if (frame.version !== curveVersion) curve = [];
     curveVersion = frame.version;

@@ -1,15 +1,15 @@
-// Mouse, fingers and keys: they move the camera, select, and start what the panel does.
+// This script handles mouse, fingers and keys: they move the camera, select objects, and start actions of the panel.
 'use strict';
 
 const orbitRadians = 4;     // a drag over the height of the image turns by this angle
 const arrowRadians = 0.1;   // an arrow key turns by this angle
-const lookRadians = 1;      // the same where the camera looks around
-const wheelFactor = 0.9;    // change of distance by a step of the wheel
-const flyPerSecond = 1;     // distances per second
+const lookRadians = 1;      // the same for looking around
+const wheelFactor = 0.9;    // factor of the distance for a step of the wheel
+const flyPerSecond = 1;     // distances to the look-at point
 const clickPixels = 4;      // a click moves the pointer by less
 
 let drag = null;         // {what, x, y, moved}
-let pointed = null;      // the pixel that is to be inspected
+let pointed = null;      // the pixel to be inspected
 let inspecting = false;
 
 function pixelAt(event) {
@@ -128,7 +128,7 @@ document.addEventListener('keydown', event => {
     const tag = event.target.tagName;
     const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
     if (/^(INPUT|SELECT|TEXTAREA)$/.test(tag) || $('help').open) return;
-    if (key === ' ' && /^(BUTTON|SUMMARY)$/.test(tag)) return; // presses it
+    if (key === ' ' && /^(BUTTON|SUMMARY)$/.test(tag)) return; // the key presses the button
     if (event.ctrlKey || event.metaKey) {
         const action = {z: () => undo(!event.shiftKey), y: () => undo(false), s: save,
                         d: () => selected >= 0 && addElement({do: 'duplicate', path: objectPath()})}[key];

@@ -1,4 +1,4 @@
-// The panel beside the images, and the start of the page.
+// This script fills the panel beside the images, and starts the page.
 'use strict';
 
 async function undo(back) {
@@ -25,7 +25,7 @@ function pause() {
 }
 
 function changeShow() {
-    $('compared').width = 1;    // what it shows is of another kind
+    $('compared').width = 1;    // the previous content is of another kind
     $('left-tag').textContent = $('show').value;
     drawSplit();
     compareImages();
@@ -94,7 +94,7 @@ function jsonFields(path, value) {
     return fields;
 }
 
-/** A group of lines that stays open or closed while the panel is made anew. */
+/** This map keeps groups of lines open or closed when the panel is rebuilt. */
 const openGroups = new Map();
 function partGroup(path, open) {
     const id = path.join('/');
@@ -171,7 +171,7 @@ $('show').onchange = changeShow;
 $('shading').onchange = () => send({do: 'choose', shading: $('shading').value});
 $('integrator').onchange = () => send({do: 'choose', integrator: $('integrator').value});
 $('quantity').onchange = () => send({do: 'choose', quantity: $('quantity').value});
-/** Sends changes of controls one after the other, and of many changes the latest. */
+/** Sends changes of controls one after the other, and skips changes that a later one replaces. */
 let wanted = null, isSending = false;
 async function display(change) {
     wanted = {...wanted, ...change};
@@ -212,7 +212,7 @@ new ResizeObserver(() => {
     fitting = setTimeout(fitImage, 200);
 }).observe($('stage'));
 
-/** Returns the scene that the address names behind #, if there is such a scene. */
+/** Returns the name of the scene that the URL's fragment (after the #) names, if there is such a scene. */
 function sceneInAddress() {
     const name = location.hash.slice(1);
     return name in scenes ? name : null;

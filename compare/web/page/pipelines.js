@@ -1,18 +1,19 @@
-// The workers of the page, and the state that all scripts share: the scene, the selection, the line between the images.
+// This script declares the workers of the page, and the state that all scripts share: the scene, the selection, the
+// line between the images.
 'use strict';
 
 const $ = id => document.getElementById(id);
 
 let state = null;         // PageSession::state()
 let selected = -1;        // entry of the scene's "objects"
-let split = 0.5;          // part of the width that the rasterizer's image has
+let split = 0.5;          // fraction of the width that the rasterizer's image has
 let curve = [];           // seconds and estimated error of the path tracer's image
 let imageSize = {width: 1, height: 1};
-let commands = 0;         // numbers the commands that go to all workers
+let commands = 0;         // numbers the commands that are sent to all workers
 
 function say(text) { $('message').textContent = text; }
 
-/** One pipeline's worker. Commands are answered in order. */
+/** Owns one pipeline's worker, which answers commands in order. */
 class Pipeline {
     constructor(name, source, seed = 0) {
         this.name = name;
@@ -54,9 +55,9 @@ class Pipeline {
         drawSplit();
         showTimes();
         compareImages();
-        if ($('message').textContent.endsWith('…')) say(''); // it was loading
+        if ($('message').textContent.endsWith('…')) say(''); // the message was that of loading
     }
-    /** No image could be rendered: the one before would be of another scene. */
+    /** Clears the image, because none could be rendered and the previous one is of another scene. */
     fail(error) {
         if (this.canvas) {
             this.frame = null;

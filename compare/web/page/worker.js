@@ -1,28 +1,29 @@
-// A worker of the page: it holds a PageSession (compare/web/page_session.h) of one pipeline, carries out the commands
-// of the page, and renders whenever something has changed. The build puts Emscripten's createDuet() before this text.
-// Of several path tracers the first shows the mean of all images; the others, its helpers, have other seeds.
+// This script is a worker of the page: it holds a PageSession (compare/web/page_session.h) of one pipeline, carries out
+// the commands of the page, and renders whenever something has changed. The build puts Emscripten's createDuet() before
+// this text. If there are several path tracers, the first shows the mean of all images; the others, its helpers, have
+// other seeds.
 'use strict';
 
 // The path tracer shows its image after as many samples as fit into this time, but at least after one of each pixel.
 const passSeconds = 0.25;
-// While something moves, the rasterizer's images are made smaller until one takes this long.
+// While something moves, the rasterizer's images are made smaller until one takes this time, in seconds.
 const movingSeconds = 1 / 25;
-const leastScale = 0.25;      // of the width
-const restSeconds = 0.4;      // the rasterizer prepares the scene for the camera's new place after this time
-const samplesToReplace = 4;   // after an edit, the image before stays until the new one has this many samples per pixel
+const leastScale = 0.25;      // least fraction of the width
+const restSeconds = 0.4;      // seconds after which the rasterizer prepares the scene for the camera's new position
+const samplesToReplace = 4;   // after an edit, the old image stays until the new one has this many samples per pixel
 
 let module = null;
 let pipeline = 'raster';
-let seed = 0;           // above 0: a helper
-let version = 0;        // of the view: the number of the page's last command that has changed it
+let seed = 0;           // 0: the first path tracer; above 0: a helper
+let version = 0;        // version of the view: the number of the page's last command that has changed it
 let others = null;      // {version, samples, image}: mean image of the helpers
 let renders = false;    // a scene is open, and its size is known
 let isPaused = false;
 let timer = null;
-let changed = 0;        // when something changed last, in milliseconds
+let changed = 0;        // time of the last change, in milliseconds
 let needs = 'nothing';  // raster: 'frame', 'full' (size) or 'rest' (prepared for this camera); raytrace: 'samples'
 let isNew = false;      // path tracer: nothing has been rendered since the last change
-let pixelSeconds = 0;   // time of a frame of the rasterizer by its pixels
+let pixelSeconds = 0;   // seconds per pixel of a frame of the rasterizer
 let holdsImage = false; // path tracer: the image before an edit stays for a while
 let size = {width: 1, height: 1};
 let lastFrame = null;
@@ -57,7 +58,7 @@ function writeOtherImage(image) {
     module.HEAPF32.set(image.data, at);
 }
 
-// Commands that change what is rendered.
+// These commands change what is rendered.
 const changesView = new Set(['size', 'camera', 'choose', 'open']);
 const changesScene = new Set(['set', 'remove', 'duplicate', 'move', 'transform', 'add', 'undo']);
 
@@ -76,7 +77,7 @@ function carryOut({id, command, number, other}) {
     postMessage({id, answer});
     if (answer.error) return;
     if (command.do === 'open') {
-        renders = false; // until the page has told the size
+        renders = false; // until the page has sent the size
         lastFrame = null;
     }
     if (command.do === 'size') {
@@ -101,7 +102,7 @@ function fail(error) {
 function renderRaster() {
     const quiet = (performance.now() - changed) / 1000;
     if (needs === 'rest' && quiet < restSeconds) return schedule(restSeconds - quiet);
-    // How long a frame takes is not known at first: the first one is small.
+    // The time of a frame is not known at first, so the first frame is small.
     const fitting = pixelSeconds > 0 ? Math.sqrt(movingSeconds / pixelSeconds / (size.width * size.height)) : 0;
     const scale = needs === 'frame' ? Math.min(1, Math.max(leastScale, fitting)) : 1;
     const answer = call({do: 'raster', scale, rest: needs === 'rest'});
@@ -136,10 +137,10 @@ function step() {
     timer = null;
     if (!renders || needs === 'nothing') return;
     if (pipeline === 'raster') renderRaster();
-    else if (!isPaused || isNew) addSamples(); // paused, too, the image is of what is there
+    else if (!isPaused || isNew) addSamples(); // a paused path tracer, too, shows an image of the current view
 }
 
-// Between two steps the worker takes the page's messages.
+// Between two steps the worker receives the page's messages.
 function schedule(seconds) {
     if (timer !== null) clearTimeout(timer);
     timer = setTimeout(step, 1000 * seconds);
@@ -169,7 +170,7 @@ function take(message) {
             carryOut(message);
         }
     } catch (error) {
-        // WebAssembly has stopped, for lack of memory most likely.
+        // WebAssembly has stopped, most likely for lack of memory.
         postMessage({id: message.id, answer: {error: String(error)}});
         return fail(`${error}. Reload the page`);
     }
