@@ -74,7 +74,7 @@ double dolphin(double x, double y) {
 }
 
 struct Band {
-    double top; ///< v at the upper edge, as a fraction of the painted part
+    double top; ///< v at the upper edge, as a fraction of the painted range
     int repeats;
     Pattern pattern;
 };
@@ -87,7 +87,7 @@ constexpr Band kBands[] = {
     {0.845, 14, rosettes}, {0.865, 1, two_lines}, {1.0, 1, black},
 };
 
-/// Returns the fraction of black at (u, v); v is relative to the painted part.
+/// Returns the fraction of black at (u, v); v is a fraction of the painted range.
 double paint(double u, double v) {
     double bottom = 0;
     for (const Band& band : kBands) {

@@ -10,7 +10,7 @@
 namespace duet::models {
 namespace {
 
-/// The wax, 12 cm high: its rim has melted unevenly around a hollow.
+/// Returns the wax, 12 cm high, whose rim has melted unevenly around a hollow.
 MeshBuilder wax() {
     constexpr std::array kProfile = {Vec2d(0, 0),         Vec2d(0.033, 0),     Vec2d(0.035, 0.002), Vec2d(0.035, 0.06),
                                      Vec2d(0.035, 0.11),  Vec2d(0.0335, 0.12), Vec2d(0.030, 0.12),  Vec2d(0.026, 0.115),

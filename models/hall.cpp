@@ -47,8 +47,8 @@ Vec2d arch(double s, double half, double foot, double spring) {
     return Vec2d(half * std::cos(angle), spring + half * std::sin(angle));
 }
 
-/// This is a wall in the plane x = `x` with an arched opening, one bay long, centered at z = `middle`. It has both
-/// faces and the sides of the opening.
+/// An ArchedWall is a wall in the plane x = `x` with an arched opening, one bay long, centered at z = `middle`. It has
+/// both faces and the sides of the opening.
 struct ArchedWall {
     double x, middle;
     double half, foot, spring; ///< of the opening
@@ -109,7 +109,7 @@ void add_column(MeshBuilder& mesh, double x, double z) {
     constexpr std::array kProfile = {Vec2d(0.62, 0), Vec2d(0.62, 0.25), Vec2d(0.5, 0.3), Vec2d(0.54, 0.42),
                                      Vec2d(0.42, 0.5), Vec2d(0.4, 1.5), Vec2d(0.36, 3.3), Vec2d(0.38, 3.45),
                                      Vec2d(0.44, 3.55), Vec2d(0.5, 3.9),
-                                     // Below all of the arches' springing points, whose corners are at 0.65.
+                                     // This is below all of the arches' springing points, whose corners are at 0.65.
                                      Vec2d(0.66, 4.0), Vec2d(0.66, kSpringingHeight)};
     constexpr int kFlutes = 16;
     const std::vector<Vec2d> profile = sample_profile(kProfile, 32);
@@ -162,7 +162,7 @@ void add_end_wall(MeshBuilder& mesh) {
 
 void add_floor(MeshBuilder& mesh) {
     ParametricSurface surface{.columns = 60, .rows = 120, .point = {}};
-    surface.point = [](double s, double t) { // worn slabs
+    surface.point = [](double s, double t) { // floor of worn slabs
         const double x = lerp(-kHalfWidth, kHalfWidth, s), z = lerp(kEnd, -kEnd, t);
         return Vec3d(x, 0.012 * gradient_noise(Vec3d(x, 0, z) * 1.3), z);
     };

@@ -139,7 +139,7 @@ void write_bytes(const std::filesystem::path& path, const Bytes& bytes) {
     write_file(path, std::string(bytes.begin(), bytes.end()));
 }
 
-/// Returns three mantissas and a common exponent.
+/// Returns a color as three mantissas and a common exponent.
 std::array<std::uint8_t, 4> rgbe(Rgb c) {
     const float largest = max_component(c);
     if (!(largest > 1e-32f)) return {0, 0, 0, 0};

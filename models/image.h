@@ -9,7 +9,7 @@
 
 namespace duet::models {
 
-/// This is a pixel with 8 bits per channel, sRGB-encoded.
+/// An Rgb8 is a pixel with 8 bits per channel, sRGB-encoded.
 struct Rgb8 {
     std::uint8_t r = 0, g = 0, b = 0;
     friend bool operator==(const Rgb8&, const Rgb8&) = default;

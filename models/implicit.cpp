@@ -8,7 +8,7 @@
 namespace duet::models {
 namespace {
 
-/// This is a lattice point in units of half a cell. A cube's corner has even coordinates, its center odd ones.
+/// A Lattice is a lattice point in units of half a cell. A cube's corner has even coordinates, and its center odd ones.
 struct Lattice {
     std::int32_t x = 0, y = 0, z = 0;
 
@@ -23,7 +23,7 @@ struct Lattice {
 
 Vec3d to_vec(Lattice a) { return Vec3d(a.x, a.y, a.z); }
 
-/// Stores the value and the gradient at p, estimated from four samples around it.
+/// Holds the value and the gradient at a point, estimated from four samples around it.
 struct Differential {
     double value;
     Vec3d gradient;
@@ -67,7 +67,7 @@ private:
         if (std::abs(surface_.value(position(center))) > surface_.steepness * reach) return;
         if (size == 1) return march_cube(low);
         for (int octant = 0; octant < 8; ++octant) {
-            const std::int32_t s = size; // half the size, in half cells
+            const std::int32_t s = size; // half the cube's size, in half cells
             visit({low.x + (octant & 1 ? s : 0), low.y + (octant & 2 ? s : 0), low.z + (octant & 4 ? s : 0)}, size / 2);
         }
     }

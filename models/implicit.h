@@ -5,7 +5,8 @@
 
 namespace duet::models {
 
-/// This is the surface value = 0, negative inside; it lies entirely between low and high.
+/// An Implicit is the surface value = 0, where negative values are inside. The surface lies entirely between low and
+/// high.
 struct Implicit {
     std::function<double(Vec3d)> value;
     Vec3d low, high;

@@ -21,7 +21,7 @@ std::string triple(double x, double y, double z) {
            "]";
 }
 
-/// This is the list of objects of the scene file.
+/// Collects the objects of the scene file.
 class Objects {
 public:
     void sphere(Vec3d center, double radius, const std::string& material) {

@@ -123,7 +123,8 @@ void add_revolution(MeshBuilder& mesh, std::span<const Vec2d> profile, int colum
 }
 
 void add_tube(MeshBuilder& mesh, const Tube& tube) {
-    // The first and last `kDome` of t round the ends: there the radius decreases to zero along a quarter ellipse.
+    // The first and last `kDome` of t form the rounded ends: there the radius decreases to zero along a quarter
+    // ellipse.
     constexpr double kDome = 0.06;
     ParametricSurface surface;
     surface.columns = tube.columns;

@@ -50,7 +50,7 @@ Vec2d on_square(double s) {
     return out + Vec2d(-out.y, out.x) * a;
 }
 
-/// Adds the stone above a bay of nave or aisle: a groin vault below, flat above.
+/// Adds the stone above a bay of nave or aisle, with a groin vault below and a flat top.
 void add_vault(MeshBuilder& mesh, Vec2d middle, Vec2d half) {
     constexpr int kColumns = 4 * 32, kRings = 24;
     add_rings(mesh, kColumns, kRings + 1, [&](double s, int ring) {
@@ -80,7 +80,7 @@ void add_rib(MeshBuilder& mesh, Vec3d from, Vec3d span, std::span<const Vec2d> p
     });
 }
 
-/// Returns a rib's profile: chamfers that end in hollows, and a roll below. The upper corners are in the vault.
+/// Returns a rib's profile: chamfers that end in hollows, and a roll below. The upper corners lie inside the vault.
 std::vector<Vec2d> rib_profile(double half, double depth) {
     std::vector<Vec2d> right{{half, -0.12}, {half, depth * 0.42}};
     for (int i = 0; i <= 3; ++i) { // a hollow
@@ -108,7 +108,7 @@ void add_boss(MeshBuilder& mesh, Vec3d crown) {
     });
 }
 
-/// Returns the radius of a pier's plan in a direction: a round core with four shafts.
+/// Returns the radius of a pier's plan in a direction. The plan is a round core with four shafts.
 double cluster(double angle) {
     constexpr double kCore = 0.4, kShaft = 0.15, kAxis = 0.42;
     const double off = std::remainder(angle, kPi / 2), beside = kAxis * std::sin(off);
@@ -117,10 +117,10 @@ double cluster(double angle) {
 }
 double octagon(double angle) { return 1 / std::cos(std::remainder(angle - kPi / 8, kPi / 4)); }
 
-/// Adds a pier with its base and its capital: a bell with leaves under an abacus.
+/// Adds a pier with its base and its capital, which is a bell with leaves under an abacus.
 void add_pier(MeshBuilder& mesh, double x, double z) {
     struct Ring {
-        double height, offset; // offset: from the cluster's plan
+        double height, offset; // offset: from the plan of core and shafts
         double octagon = 0;    // above 0: the plan is an octagon of this inner radius instead
         double leaf = 0;       // how far the leaves stand out
     };
@@ -183,7 +183,7 @@ void add_pier(MeshBuilder& mesh, double x, double z) {
 /// A wall's coordinates are along, up, and inward from its inner face.
 struct Wall {
     Vec3d middle, along, inward;
-    double half; ///< of its length
+    double half; ///< half of its length
     Vec3d at(double a, double height, double in) const {
         return middle + along * a + Vec3d(0, height, 0) + inward * in;
     }
@@ -227,7 +227,7 @@ void add_window_wall(MeshBuilder& mesh, const Wall& wall, double scale) {
                             : Vec2d(wall.half * (kJamb + kArc - mirrored) / (kJamb + kArc - corner), kTop);
         return Vec2d(i > kJamb + kArc ? -p.x : p.x, p.y);
     };
-    // The jamb's profile, from the tracery out to the inner face: (wider, inward), with a hollow and a roll.
+    // This is the jamb's profile, from the tracery out to the inner face: (wider, inward), with a hollow and a roll.
     std::vector<Vec2d> jamb{{0, -0.45}, {0, -0.36}, {0.05, -0.33}};
     for (int i = 0; i <= 6; ++i) {
         const double angle = kPi / 2 * i / 6;

@@ -34,7 +34,7 @@ constexpr ArmPlan kArms[] = {
 
 double arm_radius(double s) { return 0.014 + 0.131 * std::pow(1 - s, 1.05); }
 
-/// This is an arm with two rows of suckers along the underside.
+/// An Arm has two rows of suckers along the underside.
 struct Arm {
     std::vector<LimbSphere> spheres;
     std::vector<Sucker> suckers;
@@ -129,7 +129,7 @@ Arm holding_arm() {
     return arm;
 }
 
-/// Octopuses differ in their eyes and skin.
+/// Selects the eyes and the skin.
 enum class Look {
     kPlain, ///< eyes on the skin
     kFine,  ///< eyes within lids, and small warts that only a fine mesh shows
@@ -205,7 +205,7 @@ private:
         return d;
     }
 
-    /// Adds a lid around the eye, which leaves it open where it looks: a slot with round ends.
+    /// Adds a lid around the eye, with an opening in the direction of gaze: a slot with round ends.
     static double with_lids(double d, Vec3d from_eye) {
         const Vec3d ahead = normalize(kEyeGaze), across = normalize(cross(Vec3d(0, 1, 0), ahead));
         const double x = max(std::abs(dot(from_eye, across)) - 0.35 * kEyeRadius, 0.0);

@@ -5,8 +5,9 @@
 
 namespace duet::models {
 
-/// This is PCG32, XSH-RR (O'Neill 2014, "PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms",
-/// §6.3). Unlike the distributions of `<random>`, its output for a seed is determined by integer arithmetic alone.
+/// Implements PCG32, XSH-RR (O'Neill 2014, "PCG: A Family of Simple Fast Space-Efficient Statistically Good
+/// Algorithms", §6.3). Unlike the distributions of `<random>`, its output for a seed is determined by integer
+/// arithmetic alone.
 class Random {
 public:
     explicit Random(std::uint64_t seed) : state_(seed * kMultiplier + kIncrement) { next(); }

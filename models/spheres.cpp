@@ -72,7 +72,7 @@ void write_spheres(const std::filesystem::path& folder) {
             const double x = a + 0.9 * random.uniform(), z = b + 0.9 * random.uniform();
             const std::string material = random_material(random);
             const Vec3d center(x, 0.2, z);
-            // Does not intersect the metal sphere.
+            // The sphere must not intersect the metal sphere.
             if (length(center - Vec3d(4, 0.2, 0)) > 0.9) lists.add(center, 0.2, material);
         }
     }

@@ -36,15 +36,16 @@ double quatrefoil(double x, double y) {
     return circle(std::max(x, y) - 0.27, min(x, y), 0.3);
 }
 
-/// Returns the signed distance to a chamfered bar at distance d from its middle line, and z from its middle plane.
+/// Returns the signed distance to a chamfered bar, for a point at distance d from the bar's middle line and z from its
+/// middle plane.
 double bar(double d, double z) {
     constexpr Vec2d kChamfer(kDepth - kArris, kBar - kNose); // its normal, unnormalized
     const double chamfer = ((d - kBar) * kChamfer.x + (z - kArris) * kChamfer.y) / std::hypot(kChamfer.x, kChamfer.y);
     return std::max({d - kBar, z - kDepth, chamfer});
 }
 
-/// Returns the signed distance to a plate that fills what is inside of `outer` but not inside of `opening`, and tapers
-/// to that.
+/// Returns the signed distance to a plate that fills the region inside of `outer` but not inside of `opening`, and
+/// tapers toward the opening.
 double plate(double outer, double opening, double z) {
     return std::max({outer, -opening, z - kCuspDepth, (z - 0.035 - opening) * std::sqrt(0.5)});
 }

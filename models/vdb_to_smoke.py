@@ -23,7 +23,7 @@ def fail(text):
 
 
 def load_modules():
-    """Imports what only a conversion needs, so that --help works without it."""
+    """Imports the modules that only a conversion needs, so that --help works without them."""
     global numpy, openvdb
     try:
         import numpy
@@ -36,7 +36,7 @@ def load_modules():
 
 
 def read_grid(path, name):
-    """Returns the grid of floats of that name, or if it is empty, the one named density, or the only one."""
+    """Returns the grid of floats of that name. For an empty name, returns the grid named density, or the only one."""
     if not os.path.isfile(path):
         fail(f"{path}: there is no such file")
     try:
@@ -52,8 +52,8 @@ def read_grid(path, name):
 
 
 def voxel_grid(grid, path, far):
-    """Returns the position of voxel (0, 0, 0) and the sides of a voxel, in meters. Fails for a grid that is turned or
-    not linear, because boxes of media are neither; `far` is a voxel at the end of the grid."""
+    """Returns the position of voxel (0, 0, 0) and the sides of a voxel, in meters. Fails for a grid that is rotated or
+    not linear, because boxes of media are axis-aligned; `far` is a voxel at the end of the grid."""
     origin = numpy.array(grid.transform.indexToWorld((0, 0, 0)))
     axes = [numpy.array(grid.transform.indexToWorld(unit)) - origin for unit in numpy.eye(3).tolist()]
     sides = numpy.array([axes[i][i] for i in range(3)])

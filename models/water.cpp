@@ -9,7 +9,8 @@
 namespace duet::models {
 namespace {
 
-/// Waves are sums of sines that run in random directions around that of the wind. Their height falls with their length.
+/// Represents waves as sums of sines that run in random directions around that of the wind. Their height falls with
+/// their length.
 class Waves {
 public:
     Waves() {
