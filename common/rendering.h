@@ -35,7 +35,7 @@ struct SkipFlags {
     bool light_samples = true; ///< skips light samples where nothing emits or no material can use them
     bool mirror_light = true;  ///< skips light samples at mirrors and glass
     bool emission = true;      ///< skips the emission of hit surfaces where no surface emits
-    bool last_bounce = true;   ///< skips last rays, which can only find a light, where there is no light to hit
+    bool last_bounce = true;   ///< skips the last ray of a path, which can only find a light, if none can be hit
     bool shadow_rays = true;   ///< skips shadow rays to light that the surface does not reflect
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 // Rounds a point to float coordinates. Both pipelines then use exactly the same eye point, as they use the same float
 // vertices. The code uses conversion instructions instead of casts to float and back, because GCC 12 removes such a
-// pair of casts when it vectorizes; rays through the lens then no longer passed through their origin.
+// pair of casts when it vectorizes. Rays through the lens would then not pass through their origin.
 Vec3d round_to_float(Vec3d p) {
     const auto one = [](double x) {
         return _mm_cvtsd_f64(_mm_cvtss_sd(_mm_setzero_pd(), _mm_cvtsd_ss(_mm_setzero_ps(), _mm_set_sd(x))));

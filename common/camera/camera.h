@@ -41,7 +41,7 @@ struct View {
 struct Pinhole {
     Vec3d origin, origin_dx,
         origin_dy; ///< origin(x, y) = origin + x·origin_dx + y·origin_dy; dx = dy = 0 if perspective
-    Vec3d direction, direction_dx, direction_dy; ///< affine like the origin; depth 1, so t equals depth
+    Vec3d direction, direction_dx, direction_dy; ///< affine like the origin; with depth 1, so that t is the depth
     Vec3d forward;                               ///< unit vector along the camera's −z
     Mat4d world_to_pixel; ///< maps a point to (x·w, y·w, depth, w); w = depth (perspective) or 1 (orthographic)
     double near;          ///< depth of the near plane

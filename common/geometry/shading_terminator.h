@@ -1,5 +1,5 @@
-// This file computes the smooth surface that the vertex normals of a flat triangle represent. It fixes the shading
-// terminator: without it, smooth-shaded triangles near the terminator cast stepped shadows on each other.
+// This file computes the smooth surface that the vertex normals of a flat triangle represent. Rays that start there fix
+// the shading terminator: otherwise, smooth-shaded triangles near the terminator cast stepped shadows on each other.
 #pragma once
 
 #include "common/vec/vec.h"

@@ -113,7 +113,7 @@ bool is_closed_outwards(const Mesh& mesh) {
         const auto corner = [&](std::size_t i) { return Vec3d(mesh.positions[t[i]]) - origin; };
         volume[root] += dot(corner(0), cross(corner(1), corner(2)));
     }
-    // The edges are sorted by the vertex that they leave, by counting, and then by the vertex that they reach.
+    // The edges are sorted by the vertex that they leave, with a counting sort, and then by the vertex that they reach.
     std::partial_sum(first.begin(), first.end(), first.begin());
     std::vector<std::uint32_t> ends(first.back()), next = first;
     for_edges([&](std::uint32_t from, std::uint32_t to) { ends[next[from]++] = to; });

@@ -58,7 +58,7 @@ Box3 bounds(const Shape& shape, const Mat4& transform);
 /// Requires low < high on each axis. Adjacent quads have exactly the same corners, so no ray passes between them. To
 /// achieve this, the corner `high` moves by the rounding error of low + (high − low).
 QuadList box_quads(Vec3 low, Vec3 high);
-/// Returns an index for each position such that equal positions have equal indices. The index is that of one of them.
+/// Returns an index for each position: that of one of the positions equal to it. Equal positions have the same index.
 std::vector<std::uint32_t> weld(const std::vector<Vec3>& positions);
 /// Returns whether a mesh is closed and oriented outward, as defined at Mesh::closed. Vertices at the same position
 /// count as one vertex.

@@ -105,9 +105,8 @@ SurfacePoint surface_point(const Shape& shape, const Hit& hit, const Ray& ray, c
     const Mat4d m(to_world), inverse(to_object);
     const Vec3d p = transform_point(m, local.p);
     point.p = Vec3(p);
-    // A ray from here is transformed to object space in float. Its origin there has an error of γ₄
-    // |M⁻¹| |p − M 0|, which is an error of |M| times that in world space. γ₅ instead of γ₄ covers the
-    // rounding of the stored inverse.
+    // A ray from p is transformed to object space in float. Its origin there has an error of γ₄ |M⁻¹| |p − M 0|, which
+    // is an error of |M| times that in world space. γ₅ instead of γ₄ covers the rounding of the stored inverse.
     const Vec3d from_origin = abs(p - transform_point(m, Vec3d()));
     const Vec3d in_object = local.magnitude * kPointRounding +
                             absolute_transform(to_object, from_origin, 0) * static_cast<double>(gamma_bound(5));

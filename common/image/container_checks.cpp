@@ -34,7 +34,7 @@ std::uint32_t crc32(std::string_view bytes) {
 void check_png_size(const ImageBytes& file, std::string_view header, std::size_t pixel_bytes) {
     const long long width = big_endian_32(header, 0), height = big_endian_32(header, 4);
     check_image_size(file.name, width, height);
-    constexpr std::array<double, 7> kChannels{1, 0, 3, 1, 2, 0, 4}; // by color type
+    constexpr std::array<double, 7> kChannels{1, 0, 3, 1, 2, 0, 4}; // channels by color type
     const double channels = byte_at(header, 9) < kChannels.size() ? kChannels[byte_at(header, 9)] : 0;
     const double bytes = static_cast<double>(width * height) * channels * byte_at(header, 8) / 8;
     check_pixel_data_size(file, width, height, bytes / 1032, static_cast<double>(pixel_bytes));

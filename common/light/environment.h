@@ -33,7 +33,7 @@ struct ImageEnvironment {
     // make_image_environment computes the fields below.
     bool all_black = true;       ///< whether all pixels are black
     float excess = 0;            ///< mean over directions of the luminance above the mean; 0: too little to sample
-    Distribution2D distribution; ///< distribution of that luminance over (u, v); empty where it is not sampled
+    Distribution2D distribution; ///< distribution over (u, v) of the luminance above the mean; empty: not sampled
 };
 using Environment = std::variant<ConstantEnvironment, SkyEnvironment, ImageEnvironment>;
 

@@ -26,7 +26,8 @@ struct GgxAlbedoTables {
         return (T(1) + alpha) * cosine / (cosine + alpha);
     }
     static float cosine_of_steepness(float alpha, float x) { return clamp(x * alpha / (1 + alpha - x), 1e-7f, 1.0f); }
-    // The Schlick weight varies with the cosine, fastest at grazing angles, so its columns are equal steps of the root.
+    // The Schlick weight varies with the cosine, fastest at grazing angles, so its columns are equal steps of the
+    // square root of the cosine.
     static float height(float cosine) { return std::sqrt(cosine); }
 
     struct TableIndex {

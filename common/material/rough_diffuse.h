@@ -1,4 +1,4 @@
-// This file defines rough diffuse reflection (clay, plaster, the moon), by facets that shadow each other.
+// This file defines rough diffuse reflection (clay, plaster, the moon), which models facets that shadow each other.
 #pragma once
 
 #include "common/image/rgb.h"

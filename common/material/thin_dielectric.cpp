@@ -20,7 +20,7 @@ std::optional<BsdfSample> ThinDielectricBsdf::sample(Vec3 wo, float lobe, Vec2, 
     if (wo.z == 0) return std::nullopt;
     const Fractions p = fractions(abs_cos_theta(wo));
     const float r = average(p.reflected), t = average(p.transmitted);
-    if (!(r + t > 0)) return std::nullopt; // a black tint, and the index of the surroundings
+    if (!(r + t > 0)) return std::nullopt; // the tint is black, and the index is that of the surroundings
     const float reflected = r / (r + t);
     if (lobe < reflected) return BsdfSample{{-wo.x, -wo.y, wo.z}, p.reflected / reflected, reflected, true};
     const float through = t / (r + t); // 1 − reflected would cancel at grazing angles

@@ -12,7 +12,7 @@ struct Cloud {
     float scale = 1;       ///< cycles of the noise per meter, > 0
     int octaves = 5;       ///< 1 to 16, as of NoiseTexture
     float coverage = 0.5f; ///< 0 to 1: how much of the box is filled
-    float softness = 0.3f; ///< > 0: by how much noise exceeds the threshold where the density becomes 1
+    float softness = 0.3f; ///< > 0: excess of the noise over the threshold at which the density becomes 1
     int resolution = 96;   ///< cells along the longest side of the box, ≥ 1
 };
 /// Returns the number of points along each axis of a grid of nearly cubic cells, `resolution` of them along the longest

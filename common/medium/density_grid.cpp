@@ -73,7 +73,7 @@ public:
 
     /// Returns the density at a distance. T is float or a batch of floats.
     template <typename T> T density(const T& s) const {
-        const auto fraction = [&](std::size_t axis) { // rounding may leave the cell
+        const auto fraction = [&](std::size_t axis) { // clamped, because rounding may leave the cell
             const T p = T(ray_.origin[axis] - corner_[axis]) + T(ray_.direction[axis]) * s;
             return min(max(T(0), p), T(1));
         };
@@ -143,7 +143,7 @@ DensityGrid::DensityGrid(std::array<int, 3> size, std::vector<float> densities)
                                     static_cast<std::size_t>(size_[2]));
     empty_.assign(blocks, 1);
     std::size_t i = 0;
-    // A point at the border of blocks belongs to both.
+    // A point at the border between two blocks belongs to both.
     const auto first = [](int point) { return std::max(point - 1, 0) / kBlockSide; };
     for (int z = 0; z < size_[2]; ++z)
         for (int y = 0; y < size_[1]; ++y)

@@ -67,7 +67,7 @@ class DensityOnRay {
 public:
     /// Stores a reference to the grid. The ray must be inside of the box on the whole interval.
     DensityOnRay(const DensityGrid& grid, const Box3& box, const Ray& ray, Interval inside);
-    /// Returns what DensityGrid::follow returns.
+    /// Returns the same as DensityGrid::follow, for the interval of the constructor.
     DensityGrid::Reached follow(double column);
     /// Returns a distance at which the column has been passed, too large by at most one cell; infinite if the ray never
     /// passes it.
@@ -87,7 +87,7 @@ private:
     const DensityGrid* grid_;
     GridRay ray_;
     Interval inside_;
-    std::vector<Step> steps_; // through cells of blocks that are not empty
+    std::vector<Step> steps_; // steps through cells of blocks that are not empty
     float followed_ = 0;      // the distance up to which steps_ go
     double column_ = 0;       // column up to followed_
 };

@@ -35,7 +35,7 @@ struct OutputOptions {
 struct RenderProgram {
     std::string name, description;
     std::vector<std::string> examples; ///< command lines, for --help
-    std::string spp_help;              ///< what --spp means here, and its default
+    std::string spp_help;              ///< help text of --spp: its meaning for this pipeline, and its default
     /// Adds the pipeline's own options.
     std::function<void(CommandLine&)> add_options;
     /// Where wants_text_output returns true, the program prints text_output() of the view instead of rendering it. Both

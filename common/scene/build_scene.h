@@ -1,4 +1,5 @@
-// These functions build a scene in code. finish_scene() completes it; the pipelines' prepare() then take it.
+// These functions build a scene in code. finish_scene() completes the scene, and each pipeline's prepare() then takes
+// it.
 #pragma once
 
 #include "common/scene/scene.h"
@@ -13,7 +14,7 @@ Object& add_object(Scene& scene, std::string name, Shape shape, std::uint32_t ma
 
 /// Throws Error, which names what is wrong and where, unless a scene's parts fit together: all indices are in range,
 /// positions are finite, radii positive, directions of lights of unit length, objects placed by Object::place(), and
-/// the camera looks somewhere. Ranges of materials are not checked. finish_scene() calls it.
+/// the camera's look-at point differs from its eye. Ranges of materials are not checked. finish_scene() calls it.
 void check_scene(const Scene& scene);
 
 } // namespace duet

@@ -5,7 +5,7 @@
 
 namespace duet {
 
-/// A FileLock holds a file for this process. It locks a file `PATH.lock` beside it, since the file itself may be
+/// A FileLock reserves a file for this process. It locks a file `PATH.lock` beside it, since the file itself may be
 /// replaced by another. The operating system releases the lock of a process that is killed; its lock file stays and
 /// does no harm.
 class FileLock {

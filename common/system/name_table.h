@@ -12,7 +12,7 @@ namespace duet {
 
 /// Holds N names of values, each once.
 template <typename Value, std::size_t N> struct NameTable {
-    const char* what; ///< what the values are: "integrator", or the option that takes them
+    const char* what; ///< name of the kind of value, such as "integrator", or of the option for it
     std::array<std::pair<std::string_view, Value>, N> entries;
 
     /// Returns the value of a name. Throws Error for an unknown name, with the nearest known one or a list.

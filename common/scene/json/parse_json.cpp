@@ -99,7 +99,7 @@ private:
     JsonNode root_;
     JsonNode* last_ = nullptr;
     std::vector<JsonNode*> open_;
-    std::vector<std::unordered_set<std::string>> keys_; ///< keys so far of each open value
+    std::vector<std::unordered_set<std::string>> keys_; ///< keys read so far, for each open value
 };
 
 } // namespace
