@@ -15,7 +15,7 @@ struct JoinOptions {
     int columns = 0; ///< of the grid; 0: all images in one row
     int gap = 0; ///< white pixels between images
     bool bands = false; ///< shows a band of each image in one image of their size, in place of a grid
-    double slant_degrees = 0; ///< of the lines between bands, from the vertical: they rise to the right
+    double slant_degrees = 0; ///< angle between the vertical and the lines between bands, which rise to the right
     ViewTransformOptions view_transform;
 };
 

@@ -138,7 +138,7 @@ std::vector<BenchRenderer> duet_renderers(const Scene& scene, const View& view, 
             traced = raytrace::prepare(scene, settings);
         }
         for (const std::string& sampler : choice.samplers) {
-            if (technique == kAdaptive && needs_sample_count(sampler_kind(sampler))) continue; // counts vary by pixel
+            if (technique == kAdaptive && needs_sample_count(sampler_kind(sampler))) continue; // sample counts vary
             renderers.push_back(path_tracer_bench_renderer(*traced, scene, view, choice, technique, sampler));
         }
     }

@@ -28,7 +28,7 @@ struct BenchRenderer {
     std::string technique; ///< "raster", an integrator, "adaptive", "denoised" or "no-roulette" (path), or a
                            ///< peer's name
     std::string sampler;   ///< empty if the technique has no choice of samplers
-    std::string note;      ///< what it omits, in sentences; empty: it converges to the reference
+    std::string note;      ///< sentences on what the technique omits; empty if it converges to the reference
     std::vector<int> spps;
     std::function<TimedImage(int spp, std::uint64_t seed, Control& control)> render;
 };

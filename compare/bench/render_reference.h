@@ -47,8 +47,8 @@ struct EstimatorId {
     int version = 0;
     std::string program;
 };
-/// Returns a reference by another renderer, which `render` calls: kReferenceSeeds times, if it is not in the cache. The
-/// result is stored there.
+/// Returns a reference by another renderer. If it is not in the cache, `render` is called kReferenceSeeds times, and
+/// the result is stored there.
 CachedReference reference_by_seeds(const EstimatorId& estimator, const Scene& scene, const View& view,
                                    const ReferenceSettings& settings,
                                    const std::function<ImageRgb(int spp, std::uint64_t seed)>& render,

@@ -27,10 +27,10 @@ struct SceneResult {
     int width = 0, height = 0;
     CachedReference reference;
     std::vector<IndependentCheck> checks; ///< one per independent estimator
-    std::string no_naive;                 ///< why `naive` is not among the checks; empty: it is
+    std::string no_naive;                 ///< why `naive` is not among the checks; empty if it is
     std::vector<Measurement> rows;
     std::vector<EqualTimeRow> equal_times;
-    double processor_share = 1; ///< see measure.h
+    double processor_share = 1; ///< processor_share() of the rows (measure.h)
 };
 
 } // namespace duet::compare

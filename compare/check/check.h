@@ -1,4 +1,4 @@
-// `compare check`: renders scenes both ways and checks what must hold for any valid scene.
+// `compare check` renders scenes with both pipelines and checks what must hold for any valid scene.
 #pragma once
 
 #include "common/program/command_line.h"

@@ -1,11 +1,11 @@
-"""Measured figures on Markdown pages: each stands in a block that compare/figures.sh writes.
+"""Fills and checks blocks of measured figures on Markdown pages. compare/figures.sh writes each block:
 
     <!-- figure: NAME DIGEST -->
     | scene | ms |
     …
     <!-- end of figure -->
 
-The digest is of the block's lines and of the images that it shows, so that a change by hand is noticed.
+The digest is that of the block's lines and of the images that it shows, so that a change by hand is noticed.
 """
 import hashlib
 import os

@@ -2,7 +2,7 @@
 import math
 import pathlib
 
-FIGURES = {}  # name: (function, minutes)
+FIGURES = {}  # maps each name to (function, minutes)
 
 
 def figure(name, minutes):

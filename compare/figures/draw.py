@@ -3,7 +3,7 @@ import html
 import math
 
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 640, 400, 190, 615, 62, 368
-MARGIN = 65  # between the axis and the dots, for the values beside them
+MARGIN = 65  # pixels between the axis and the dots, for the values beside the dots
 COLORS = ("#0072b2", "#d55e00")
 
 

@@ -19,7 +19,7 @@ class Failed(Exception):
 class Measurement:
     command: list[str]
     date: str
-    commit: str      # of the last change of the programs; with a + if there are uncommitted changes
+    commit: str      # last commit that changed the programs; with a + if there are uncommitted changes
     processor: str
     others: float    # fraction of the processors' time that other programs took meanwhile
     seconds: float

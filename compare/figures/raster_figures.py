@@ -57,7 +57,7 @@ def llvmpipe(run):
     for row in phong_frames(run):
         rates.setdefault((row["mesh"], row["triangles"], row["view"], row["work"]), []).append(row)
     for (mesh, triangles, view, work), measured in rates.items():
-        one, every = measured[0], measured[-1]  # numbers of threads
+        one, every = measured[0], measured[-1]  # rows of one thread and of all threads
         rows.append([f"`{mesh}`, {triangles:,}", view, WORKS[work]] + [ms(1 / each["ours"]) for each in (one, every)]
                     + [f"{number(each['ratio']['median'])} ({number(each['ratio']['min'])} to "
                        f"{number(each['ratio']['max'])})" for each in (one, every)])

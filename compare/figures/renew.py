@@ -15,7 +15,7 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 sys.path.append(str(SOURCE / "compare" / "lessons"))
 import course  # noqa: E402
 
-MOST_COMMANDS = 3  # at most so many commands are shown with a block
+MOST_COMMANDS = 3  # maximum number of commands shown with a block
 MOST_OTHERS = 0.1  # fraction of the processors' time that other programs may take
 
 

@@ -25,7 +25,7 @@ LitRow measure_row(const raster::RasterScene& prepared, const View& view, int th
     const raster::RasterSettings lit = lit_settings(threads);
     const WorkStopwatch clock(settings.processor_time);
     Control control;
-    raster::render(prepared, view, lit, control, image); // touches the memory
+    raster::render(prepared, view, lit, control, image); // touches the memory before it is timed
     std::vector<double> frames;
     std::vector<std::string> names;
     std::map<std::string, std::vector<double>> stages;

@@ -16,7 +16,7 @@ namespace duet::compare {
 /// Holds medians over the repeats, in seconds.
 struct LitRow {
     int threads = 1;
-    double frame = 0; ///< by the clock of FrameSettings
+    double frame = 0; ///< seconds, by the clock that FrameSettings selects
     /// These are the wall-clock times of the stages, in the order of the frame. "other" is the rest of the frame.
     std::vector<std::pair<std::string, double>> stages;
 };

@@ -15,7 +15,7 @@ struct EdgeSearcher {
     double radius; ///< in pixels
     const Hit &a, &b;
     EdgeSearch result;
-    double farthest = 0; ///< hit of all rays so far; infinite if one misses
+    double farthest = 0; ///< largest t of the closest hits of all rays so far; infinite if a ray misses
 
     /// Traces one displaced ray. Returns true once both hits have been found.
     bool try_at(Vec2d p) {
@@ -136,7 +136,7 @@ bool try_primitive(EdgeSearcher& search, const Hit& hit) {
 /// plane and within reach. The primitive then projects to a line, to which snapping may give some area. Some displaced
 /// ray must reach as far as the hit.
 bool edge_on(const EdgeSearcher& search, const Hit& hit) {
-    constexpr double kRounding = 1e-12; // in double
+    constexpr double kRounding = 1e-12; // bound on the rounding error in double
     if (!hit.valid() || hit.t > search.farthest) return false;
     const Rayd ray = search.pinhole.ray(search.pixel);
     const double reach = search.radius * pixel_width(search.pinhole, search.pixel, hit.t);

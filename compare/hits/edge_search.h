@@ -18,8 +18,8 @@ inline constexpr double kTieTolerance = 1e-6;
 
 /// Says which of two pipelines' hits are found by double-precision rays within kEdgeRadius of the pixel center.
 struct EdgeSearch {
-    bool found_a = false, found_b = false; ///< whether a ray returns it as its closest hit
-    bool tied_a = false, tied_b = false;   ///< whether a ray hits it within kTieTolerance of the closest hit
+    bool found_a = false, found_b = false; ///< whether a ray has the pipeline's hit as its closest hit
+    bool tied_a = false, tied_b = false;   ///< whether a ray hits the primitive within kTieTolerance of its closest hit
     ReferenceHit center;                   ///< closest hit of the undisplaced ray
 
     bool both() const { return found_a && found_b; }

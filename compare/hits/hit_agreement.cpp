@@ -42,7 +42,7 @@ struct HitClassifier {
 
     /// Returns the largest displacement of rays, in pixels, that is tried to find both hits.
     double radius(int x, int y, const Hit& a, const Hit& b) const {
-        constexpr double kLargest = 1e4; // across any image; the plane of a triangle without area may be anywhere
+        constexpr double kLargest = 1e4; // in pixels; the plane of a triangle without area may be anywhere
         double result = kEdgeRadius;
         for (const Hit& hit : {a, b})
             if (hit.valid() && hit.t > 0) {

@@ -26,7 +26,7 @@ double distance_tolerance(const Rayd& ray, double t) {
     return HitOracle::kTolerance * (max_component(abs(ray.origin)) + std::abs(t));
 }
 
-double distance_to_segment(Vec3d a, Vec3d b) { // from the origin
+double distance_to_segment(Vec3d a, Vec3d b) { // from the origin to the segment
     const Vec3d along = b - a;
     const double size = dot(along, along);
     const double s = size > 0 ? clamp(-dot(a, along) / size, 0.0, 1.0) : 0.0;
@@ -185,8 +185,8 @@ AnswerVerdict HitOracle::occluded(const Ray& ray, const Hit& end, bool blocked) 
     return is_nearly_occluded(r, end) ? AnswerVerdict::kEdge : AnswerVerdict::kWrong;
 }
 
-// Returns whether there is something just beside an unoccluded ray or just beyond its end. Displaced rays start
-// behind the surface that the ray itself starts on; that surface does not count as an occluder.
+// Returns whether a surface lies just beside an unoccluded ray or just beyond its end. Displaced rays start behind the
+// surface that the ray itself starts on; that surface does not count as an occluder.
 bool HitOracle::is_nearly_occluded(const Rayd& ray, const Hit& end) const {
     const double reach = std::isfinite(ray.t_max) ? ray.t_max : length(scene_.bounds.diagonal());
     const double tolerance = distance_tolerance(ray, reach);
@@ -248,8 +248,9 @@ Mismatches compare_results(const HitOracle& oracle, const RayQueries& ray_querie
     parallel_for(different.size(), threads, [&](std::size_t k) {
         const std::size_t i = different[k];
         findings[k].first = verdict_of(oracle, ray_queries, i, ours[i]);
+        // The peer's shadow rays simply end at their t_max.
         findings[k].second = ray_queries.closest() ? oracle.closest(rays[i], peers[i])
-                                                   : oracle.occluded(rays[i], peers[i].hit()); // the peer's query
+                                                   : oracle.occluded(rays[i], peers[i].hit());
     });
     Mismatches result;
     result.rays = std::ssize(rays);

@@ -78,8 +78,8 @@ struct KernelErrors {
 /// Counts the rays on which two kernels differ, by explanation. Hits of the same triangle at distances within
 /// HitOracle::kTolerance count as equal.
 struct Mismatches {
-    std::int64_t rays = 0;                                      ///< rays that both traced
-    std::int64_t tie = 0, edge = 0, fault = 0, unexplained = 0; ///< by the worse of the two findings
+    std::int64_t rays = 0;                                      ///< rays that both kernels traced
+    std::int64_t tie = 0, edge = 0, fault = 0, unexplained = 0; ///< rays by the worse of the two findings
     KernelErrors ours, peer;                                    ///< findings for the results that differ, per kernel
 
     std::int64_t differ() const { return tie + edge + fault + unexplained; }

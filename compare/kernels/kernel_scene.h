@@ -26,7 +26,7 @@ std::string_view name_of(Arrangement arrangement);
 struct KernelScene {
     std::string mesh; ///< file name without its extension
     Arrangement arrangement = Arrangement::kAlone;
-    std::unique_ptr<const Scene> scene; ///< accelerators refer to it
+    std::unique_ptr<const Scene> scene; ///< scene to which accelerators refer
     Camera camera;
     std::vector<Light> lights; ///< targets of the shadow rays, used in turn
     bool enclosed = false;     ///< every ray from the camera or a surface hits a triangle

@@ -59,7 +59,7 @@ constexpr const char* kNoLights = "The scene has no light but, perhaps, its envi
 PreparedPair prepare_pair(const Scene& scene, const ComparisonSettings& common) {
     const raster::RasterSettings raster = raster_settings(common);
     raytrace::PathTracerSettings raytrace = path_tracer_settings(common);
-    raytrace.samples_per_pixel += raytrace.samples_per_pixel % 2; // two halves
+    raytrace.samples_per_pixel += raytrace.samples_per_pixel % 2; // must be even, for two halves
     raytrace.aovs.variance = true; // makes the halves replicates
     return {raster::prepare(scene, raster), raster, raytrace::prepare(scene, raytrace), raytrace};
 }

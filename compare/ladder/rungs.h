@@ -47,13 +47,13 @@ struct RungRenderers {
     std::string name;
     raster::RasterSettings raster_settings;
     raytrace::PathTracerSettings raytrace_settings;
-    RenderFunction raster, raytrace; ///< with these settings
+    RenderFunction raster, raytrace; ///< render functions with these settings
 };
 
 /// Says what both pipelines render at a rung.
 struct RungPlan {
     std::vector<RungRenderers> renderers;       ///< empty if the scene does not have the rung's light
-    std::string raster_method, raytrace_method; ///< how each pipeline computes it, as a sentence
+    std::string raster_method, raytrace_method; ///< how each pipeline computes the quantity, as a sentence
     std::string note;                     ///< what the scene or the rasterizer lacks; empty: nothing
 };
 

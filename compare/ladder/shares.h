@@ -9,7 +9,7 @@ namespace duet::compare {
 inline constexpr std::size_t kNoise = kRungCount, kCauseCount = kRungCount + 1;
 using Causes = std::array<double, kCauseCount>;
 
-/// Shares of the causes in the difference. Let D = I₀ − I₇ be the whole difference, Δ_k = I_{k−1} − I_k the
+/// Holds the shares of the causes in the difference. Let D = I₀ − I₇ be the whole difference, Δ_k = I_{k−1} − I_k the
 /// change at rung k, both from the halves A and B of the samples, and ⟨,⟩ the sum of products over all pixels
 /// and channels. The share of rung k is
 ///

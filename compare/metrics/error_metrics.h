@@ -30,7 +30,7 @@ struct ErrorMetrics {
     std::int64_t pixels = 0;           ///< pixels that are finite in both images
     std::int64_t nan_a = 0, nan_b = 0; ///< pixels with a NaN channel
     std::int64_t infinite_a = 0, infinite_b = 0;     ///< pixels with an infinite channel
-    std::int64_t non_finite_a = 0, non_finite_b = 0; ///< pixels with either
+    std::int64_t non_finite_a = 0, non_finite_b = 0; ///< pixels with a NaN or infinite channel
 };
 
 /// Computes the metrics of A against the reference B. Throws Error if the images differ in size.

@@ -316,7 +316,7 @@ private:
         const auto radius = static_cast<double>(sphere.radius);
         const Vec3d eye = transform_point(inverse_affine(place), view_.camera.eye);
         const double height = std::abs(length(eye) / radius - 1); // distance above the surface, in radii
-        constexpr double kLargestError = 2e-3; // of facets, relative to their distance
+        constexpr double kLargestError = 2e-3; // largest error of facets, relative to their distance
         // Emitters always use the shared mesh, which has a sphere's area.
         const bool emits = emitter(scene_.materials[o.materials.front()]) != nullptr;
         if (!emits && 1 - std::cos(kPiDouble / (2 * rings_)) > kLargestError * height && length(eye) > 0) {
@@ -364,7 +364,7 @@ private:
     std::set<std::string> notes_;
     struct SharedMesh {
         std::size_t index;
-        double radius; ///< of a unit sphere whose mesh has a sphere's area
+        double radius; ///< radius at which the mesh has the area of a unit sphere
     };
     std::optional<SharedMesh> sphere_mesh_;
     const int rings_ = sphere_rings(count_spheres()); ///< of the shared mesh

@@ -52,7 +52,7 @@ Subprocess::Subprocess(const std::vector<std::string>& command) {
     for (const std::string& argument : command) arguments.push_back(const_cast<char*>(argument.c_str()));
     arguments.push_back(nullptr);
     const FileActions actions(in[1], out[1]);
-    posix_spawnattr_t group{}; // of its own, so that it ends with the processes that it starts
+    posix_spawnattr_t group{}; // its own process group, so that it ends together with the processes that it starts
     ::posix_spawnattr_init(&group);
     ::posix_spawnattr_setflags(&group, POSIX_SPAWN_SETPGROUP);
     const int error = ::posix_spawnp(&pid_, arguments[0], actions.get(), &group, arguments.data(), environ);

@@ -41,7 +41,7 @@ struct ReportPage {
     Encoding encoding = Encoding::kLinear; ///< encoding of the compared values; kEncoded: the page also shows 8-bit
                                            ///< values
     std::optional<ReportHits> hits = {};
-    ViewTransform view = {}; ///< what the page shows at first; its controls change exposure and tone
+    ViewTransform view = {}; ///< initial view transform; the page's controls change exposure and tone
 };
 
 /// Returns the page: two images to split, flicker, subtract and zoom, and the tables. The URL's fragment links to the

@@ -18,7 +18,7 @@ enum class SkipProof {
 /// A SkipCase is a skip to be measured.
 struct SkipCase {
     std::string pipeline, name; ///< "raster" or "raytrace"; name on the command line and in JSON
-    std::string omitted;        ///< what it omits, in words
+    std::string omitted;        ///< description of what the skip omits
     std::string statistic;      ///< name in RenderStatistics::skipped; empty: none
     SkipProof proof = SkipProof::kSameBits;
     /// Renders one image with or without the skip.

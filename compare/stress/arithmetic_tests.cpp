@@ -31,7 +31,7 @@ std::array<float, 4> factors(Trial& trial) {
 
 void difference_float(Trial& trial) {
     const auto [a, b, c, d] = factors(trial);
-    // Products of floats are exact in double, and so is nearly all of their difference.
+    // Products of floats are exact in double, and their difference is nearly exact.
     const double exact_value =
         static_cast<double>(a) * static_cast<double>(b) - static_cast<double>(c) * static_cast<double>(d);
     trial.note("a, b, c, d = ", exact(a), ", ", exact(b), ", ", exact(c), ", ", exact(d));

@@ -118,7 +118,7 @@ void into_spheres(Trial& trial) {
     if (dot(w, point.ng) > 0) w = -w;
     const float cosine = -dot(w, point.ng), chord = 2 * sphere.radius * cosine;
     if (cosine < 1e-2f) return; // grazing: the chord is hardly longer than the offset
-    // A ray origin δ below the surface makes the chord δ/cos longer and 2·δ·cos shorter.
+    // A ray origin δ below the surface changes the length of the chord by δ/cos − 2·δ·cos.
     const Vec3 start = offset_origin(point, w);
     const float offset = dot(abs(point.ng), abs(start - point.p) + point.p_error) + 4e-7f * sphere.radius;
     const auto error = [&](std::optional<float> t) {
@@ -201,7 +201,7 @@ StressResult convex_shadows(const StressTest& test, const StressSetting& setting
         const AcceleratedScene& accelerated = accelerated_scenes[which];
         const Mesh& mesh = std::get<Mesh>(accelerated.scene->shapes[0]);
         const Vec3 center = Vec3(1, -2, 3) * scales[which];
-        const auto on_face = [&](std::uint32_t face) { // away from the edges, which neighboring faces share
+        const auto on_face = [&](std::uint32_t face) { // a point away from the edges, which neighboring faces share
             const float u = random.uniform(0.02f, 0.96f), v = random.uniform(0.02f, 0.98f - u);
             const auto& [a, b, c] = mesh.triangles[face];
             return mesh.positions[a] * (1 - u - v) + mesh.positions[b] * u + mesh.positions[c] * v;

@@ -157,7 +157,7 @@ void duplicates(Trial& trial) {
         if (!(found == expected))
             trial.note("object ", found.object, " primitive ", found.primitive, ", expected ", expected.object, " and ",
                        expected.primitive);
-        float nearest = kInfinity; // the last one tested wins
+        float nearest = kInfinity; // of several hits, the last one tested wins
         std::uint32_t last = 0;
         for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
             const auto& [a, b, c] = mesh.triangles[i];
@@ -211,8 +211,8 @@ QuadList whole_boxes(TrialRandom& random) {
     return all;
 }
 
-/// Returns the distance at which the ray from a half-integer point along ± axis hits the first face. It is exact, and
-/// infinity if there is none.
+/// Returns the distance at which the ray from a half-integer point along ± axis hits the first face. The distance is
+/// exact, and infinite if the ray hits no face.
 float whole_distance(const QuadList& boxes, Vec3 origin, std::size_t axis, float sign) {
     float nearest = kInfinity;
     for (const Quad& quad : boxes.quads) {
@@ -240,7 +240,7 @@ void axis_parallel(Trial& trial) {
             ray.direction[i] = random.coin() ? 0.0f : -0.0f;
         }
         ray.direction[axis] = sign;
-        Ray other = ray; // zeros of the opposite sign
+        Ray other = ray; // the same ray with zeros of the opposite sign
         other.direction = -ray.direction;
         other.direction[axis] = sign;
         const Hit hit = accelerated.accelerator.closest(ray), same = accelerated.accelerator.closest(other);

@@ -116,7 +116,7 @@ void far_spheres(Trial& trial) {
     if (d2 <= r2 * 1.001L) return;
     const long double sin2 = r2 / d2, gap = sin2 / (1 + std::sqrt(1 - sin2));
     const auto truth = static_cast<double>(1 / (2 * static_cast<long double>(kPiDouble) * gap));
-    // A rounding error of sin² changes the density by the same relative error; at the limb that of √(1 − sin²) is
+    // A rounding error of sin² changes the density by the same relative error. At the limb, the error of √(1 − sin²) is
     // larger.
     const auto terms = static_cast<double>(1 + sin2 / std::sqrt(1 - sin2));
     const auto density_error = [&](double pdf) { return in_double_roundoffs(relative_error(pdf, truth)) / terms; };

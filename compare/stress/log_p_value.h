@@ -13,7 +13,7 @@ namespace duet::compare {
 /// a row a false alarm probability of 1e-6.
 inline double family_log_p_value(double p, std::int64_t tests) {
     const double odds = -std::log10(sidak(p, static_cast<double>(tests)));
-    return odds < 0 ? 0 : odds; // NaN stays
+    return odds < 0 ? 0 : odds; // NaN stays NaN
 }
 
 } // namespace duet::compare

@@ -260,7 +260,7 @@ StressResult chi_squared_test(const StressTest& test, const StressSetting& setti
     constexpr std::array<float, 5> kCosines{1.0f, 0.6f, 0.1f, 1e-3f, -0.6f};
     return run_trials(test, setting, [&](Trial& trial) {
         const auto number = static_cast<std::size_t>(trial.number());
-        const Named& m = rough_materials()[number % 7]; // the narrowest lobe is below the resolution of the cells
+        const Named& m = rough_materials()[number % 7]; // without the narrowest lobe, which the cells do not resolve
         const Vec3 wo = direction_of(kCosines[number / 7 % 5], 2 * kPi * trial.random.uniform());
         const auto* metal = std::get_if<MetalBsdf>(&m.bsdf);
         DirectionTest cells; // cells narrow toward the mirror direction, where a narrow lobe lies

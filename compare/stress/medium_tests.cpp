@@ -177,7 +177,7 @@ void collisions(Trial& trial) {
     const float scale = random.log_uniform(1e-6f, 1e6f);
     std::vector<Medium> media;
     Box3 box = random_box(random, scale);
-    for (std::uint32_t i = 0; i <= random.below(3); ++i) { // some in the same box
+    for (std::uint32_t i = 0; i <= random.below(3); ++i) { // some media share a box
         media.push_back(random_medium(random, box));
         if (random.coin()) box = {box.low, box.low + box.diagonal() * random.uniform(0.1f, 2)};
     }

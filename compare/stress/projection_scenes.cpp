@@ -113,7 +113,7 @@ std::array<Vec3, 3> random_visible(TrialRandom& random, const TrialView& v) {
 std::array<Vec3, 3> random_sliver(TrialRandom& random, const TrialView& v) {
     const double nearest = v.pinhole.near * 1.01 + log_uniform(random, 1e-2f, 1e2f);
     const auto depth = [&] { return nearest * log_uniform(random, 1, 10); };
-    const Vec2d within = pixel_in(random, v.window); // next to this pixel's sample
+    const Vec2d within = pixel_in(random, v.window); // the sliver passes next to this pixel's sample
     const Vec2d p = v.window.offset.position(static_cast<int>(within.x), static_cast<int>(within.y)) +
                     Vec2d(Vec2(random.uniform(-1, 1), random.uniform(-1, 1))) * (1.0 / 256);
     const double angle = 2 * kPiDouble * static_cast<double>(random.uniform());

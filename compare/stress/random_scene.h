@@ -13,7 +13,7 @@ struct SceneContents {
     bool meshes = false; ///< closed tori with shared vertices, whose back faces may be culled
     bool spheres = false;   ///< of radii 0.01 to 1
     bool quads = false;     ///< boxes and walls
-    bool instances = false; ///< of each shape so far: rotated, stretched, mirrored
+    bool instances = false; ///< instances of each shape so far, rotated, stretched or mirrored
 };
 
 /// Holds the placement of a scene: the sphere's center and scale. The view moves with the scene, and is perspective if

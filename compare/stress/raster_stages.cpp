@@ -68,7 +68,7 @@ CoverageProbe::CoverageProbe(const Window& window) {
     mesh.triangles = {{0, 1, 2}};
     scene_ = MeshScene::make(mesh);
     triangles_.scene = &scene_;
-    triangles_.objects.resize(1); // their transform is the identity: orthographic, (x, y, depth, 1)
+    triangles_.objects.resize(1); // the object's transform is the identity: orthographic, (x, y, depth, 1)
     triangles_.objects[0].vertices.resize(3);
     triangles_.runs.resize(1);
     tile_.reset(window.rect, window.offset, plan_.viewport);

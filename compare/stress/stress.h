@@ -37,7 +37,7 @@ struct StressOutcome {
 /// Holds the result of one test.
 struct StressResult {
     std::int64_t trials = 0; ///< trials that judged something
-    std::int64_t least_trials = 1;      ///< least number of such trials (StressTest::required_fraction)
+    std::int64_t least_trials = 1;      ///< least number of trials that must judge (StressTest::required_fraction)
     StressOutcome library;              ///< the library's implementation: any failure fails the suite
     std::optional<StressOutcome> naive; ///< the textbook implementation on the same trials, for comparison
     std::string details;                ///< notes of the first failed trial of the library's implementation
@@ -76,7 +76,7 @@ std::span<const StressTest> projection_tests();   ///< near plane, attributes, d
 std::span<const StressTest> pipeline_tests();     ///< thread counts, both pipelines' Hits
 std::span<const StressTest> scene_tests();        ///< random valid scenes
 
-/// Returns the tests of all groups in the order above.
+/// Returns the tests of all groups in the order of the functions above.
 std::vector<StressTest> all_stress_tests();
 /// Returns the tests of the given names. A name that matches no test selects those that begin with it up to a '/' or
 /// '-', such as "departure" or "intersection/leak". Without names, all tests are returned. Throws Error, listing the

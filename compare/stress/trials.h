@@ -56,8 +56,8 @@ public:
     void record_failure_if(bool wrong) { record(wrong ? 1 : 0); }
     void record_naive_failure_if(bool wrong) { record_naive(wrong ? 1 : 0); }
 
-    /// Appends to the message that explains the trial. It is only used after a failure, when the trial runs again to
-    /// collect it.
+    /// Appends to the message that explains the trial. The message is used only after a failure, when the trial runs
+    /// again to collect it.
     template <typename... Parts> void note(const Parts&... parts) {
         if (collects_notes_) details_ += (details_.empty() ? "" : "; ") + message(parts...);
     }

@@ -51,7 +51,7 @@ Camera moved(Camera camera, Vec3d by) {
 /// Returns the view vector turned around the up vector and then toward it, but no closer to it than one degree.
 Vec3d turned(const Camera& camera, Vec3d view, double right, double up) {
     const Vec3d axis = normalize(camera.up);
-    const double angle = std::acos(std::clamp(dot(normalize(view), axis), -1.0, 1.0)); // from the up vector
+    const double angle = std::acos(std::clamp(dot(normalize(view), axis), -1.0, 1.0)); // angle from the up vector
     const double limit = radians(1.0);
     const double wanted = std::clamp(angle - up, std::min(limit, angle), std::max(kPiDouble - limit, angle));
     const Vec3d side = cross(view, axis);

@@ -17,7 +17,8 @@ Camera look_around(Camera camera, double right, double up);
 /// Moves the camera sideways. (1, 0) moves it to the right by the height of the visible region around the look-at
 /// point, and (0, 1) upward.
 Camera pan(const Camera& camera, double right, double up);
-/// Moves the eye to `factor` times its distance, above 0. An orthographic camera shows `factor` times the height.
+/// Moves the eye to `factor` (> 0) times its distance from the look-at point. An orthographic camera shows `factor`
+/// times the height.
 Camera dolly(Camera camera, double factor);
 /// Moves the camera by a fraction of its distance: along its view, to the right and upward.
 Camera fly(const Camera& camera, double forward, double right, double up);

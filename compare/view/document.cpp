@@ -22,7 +22,7 @@ void SceneDocument::reload() {
     const auto cache = std::make_shared<FileCache>(); // a reader on another thread may still use the previous cache
     std::string file = editable_file ? read_file(path_, kMaxSceneBytes) : "";
     const auto scene = std::make_shared<Scene>(editable_file ? parse_scene(path_, file, *cache)
-                                                             : load_scene(path_, options_)); // throws for other files
+                                                             : load_scene(path_, options_)); // a bare mesh; else throws
     cache_ = cache;
     states_.assign(1, State{std::make_shared<const std::string>(std::move(file)), scene->camera});
     image_size_ = {scene->width, scene->height};

@@ -34,7 +34,7 @@ public:
     void set_camera(const Camera& camera);
     /// Replaces the text, which must be valid JSON.
     void set_text(std::string changed);
-    /// Ends a step, if one has begun.
+    /// Ends the current step of undo(), if one has begun.
     void commit();
     /// Undoes one step. Returns false if there is none.
     bool undo();

@@ -193,7 +193,7 @@ std::string with_new_element(const std::string& text, NewElement element, Vec3d 
         shape = {{"type", "sphere"}, {"center", vector(at)}, {"radius", typed_number(half)}};
     else if (element == NewElement::kBox)
         shape = {{"type", "box"}, {"low", vector(low)}, {"high", vector(high)}};
-    else { // an area light's normal, u × v, points downward, a quad's upward
+    else { // the normal u × v of an area light points downward, that of a quad upward
         const Vec3d x(size, 0, 0), z(0, 0, size);
         const bool light = element == NewElement::kAreaLight;
         shape = {{"type", "quad"},

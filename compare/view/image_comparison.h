@@ -12,7 +12,7 @@ namespace duet::compare {
 /// Holds the difference of two images in false color.
 struct ImageComparison {
     std::vector<std::uint8_t> bytes{}; ///< as display_bytes() returns them
-    double figure = 0;                 ///< signed difference: luminance of full orange or blue; FLIP: the mean
+    double figure = 0;                 ///< signed difference: luminance shown as full orange or blue; FLIP: mean
 };
 
 /// Returns a − b in luminance: blue where a is darker, orange where it is brighter. Like flip_comparison(), it throws

@@ -10,7 +10,7 @@ using nlohmann::ordered_json;
 
 namespace {
 
-/// A Span is a part of the text, from its first character to the one behind its last.
+/// A Span is a part of the text, from its first character to the one after its last.
 struct Span {
     std::size_t begin = 0, end = 0;
 };
@@ -23,14 +23,14 @@ struct Child {
 
 std::size_t skip_space(std::string_view text, std::size_t at) { return text.find_first_not_of(" \t\r\n", at); }
 
-/// Returns the position behind the string that begins at `at`.
+/// Returns the position after the string that begins at `at`.
 std::size_t skip_string(std::string_view text, std::size_t at) {
     for (++at; text[at] != '"'; ++at)
         if (text[at] == '\\') ++at;
     return at + 1;
 }
 
-/// Returns the position behind the value that begins at `at`.
+/// Returns the position after the value that begins at `at`.
 std::size_t skip_value(std::string_view text, std::size_t at) {
     if (text[at] == '"') return skip_string(text, at);
     if (text[at] != '{' && text[at] != '[') return std::min(text.find_first_of(",]} \t\r\n", at), text.size());
@@ -74,7 +74,7 @@ std::string joined(const JsonPath& path) {
 }
 
 Span root(std::string_view text) {
-    const std::size_t begin = text.find_first_of("{["); // behind a byte order mark, where there is one
+    const std::size_t begin = text.find_first_of("{["); // after a byte order mark, if there is one
     return {begin, skip_value(text, begin)};
 }
 
@@ -121,7 +121,7 @@ std::string with_value(std::string_view text, const JsonPath& path, const ordere
     // The new child is separated as the last one is: on a line of its own, or not.
     const std::size_t before = all.size() > 1 ? text.find(',', all[all.size() - 2].whole.end) : parent.begin;
     std::string gap(text.substr(before + 1, all.back().whole.begin - before - 1));
-    if (all.size() == 1 && gap.empty()) gap = " "; // the gap behind a bracket differs from the one behind a comma
+    if (all.size() == 1 && gap.empty()) gap = " "; // the gap after a bracket differs from the one after a comma
     const std::size_t end = all.back().whole.end;
     return replaced(text, {end, end}, message(",", gap, member));
 }

@@ -14,7 +14,7 @@ import shutil
 import sys
 
 PAGE = pathlib.Path(__file__).parent / 'page'
-FIRST = ['cornell', 'spheres', 'demo', 'veach', 'glass', 'everything']  # in the menu
+FIRST = ['cornell', 'spheres', 'demo', 'veach', 'glass', 'everything']  # first scenes in the menu
 
 
 def strings(value):

@@ -179,8 +179,8 @@ struct PageCommands {
         const Mat4d map = map_about(Vec3d(s.bounds_of(path).center()), command);
         return edited(s, [&](const std::string& text) { return transformed(text, path, map); });
     }
-    // {"what": a name of kNewElementNames}: adds an element where the camera looks. {"mesh"}: adds the
-    // mesh of a file, named by its path from the scene's folder.
+    // {"what": a name of kNewElementNames}: adds an element at the camera's look-at point. {"mesh"}: adds the mesh of a
+    // file, named by its path from the scene's folder.
     static Json add(Session& s, const Json& command) {
         if (command.contains("mesh"))
             return edited(s, [&](const std::string& text) { return with_new_mesh(text, command["mesh"]); });

@@ -78,7 +78,7 @@ Box3 PageSession::bounds_of(const JsonPath& path) {
 
 // Replaces the scene by that of the document's new text, or by none yet, and drops the results of the previous scene.
 void PageSession::scene_changed(std::unique_ptr<Prepared> scene) {
-    render_.reset(); // refers to the scene before
+    render_.reset(); // render_ refers to the previous scene
     prepared_ = std::move(scene);
     hits_ = {};
 }

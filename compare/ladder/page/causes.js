@@ -3,7 +3,8 @@
 const causeNames = data.report.shares.map(share => share.title);
 const swatch = i => make("span", { class: "swatch", style: `background:rgb(${data.colors[i].join(",")})` });
 
-// Return whether a cause's pattern darkens a pixel. Each cause has its own pattern, for users who do not see colors.
+// Each function returns whether the pattern of a cause darkens a pixel. Each cause has its own pattern, for users who
+// do not see colors.
 const patterns = [
   (x, y) => (x + y) % 8 < 2, (x, y) => (x - y + 32768) % 8 < 2, x => x % 6 < 2, (x, y) => y % 6 < 2,
   (x, y) => x % 6 < 3 && y % 6 < 3, (x, y) => (x + y) % 8 < 2 || (x - y + 32768) % 8 < 2,

@@ -93,7 +93,7 @@ function ladderSection() {
   });
   fill("range", radianceText(data.range));
   const shares = report.shares.slice(0, -1).map(s => s.share ?? 0);
-  showStep(shares.indexOf(Math.max(...shares)) + 1, buttons); // the largest share
+  showStep(shares.indexOf(Math.max(...shares)) + 1, buttons); // the step with the largest share
 }
 
 function figures(q) {

@@ -48,7 +48,7 @@ def add_lamps(scene, things):
         center = along * (low[0] + high[0]) / 2 + across * (low[1] + high[1]) / 2 + normal * normal.dot(points[0])
         size = {"shape": "RECTANGLE", "size": high[0] - low[0], "size_y": high[1] - low[1]}
         for side in (1.0, -1.0) if used[0]["two_sided"] else (1.0,):
-            turn = Matrix((along, across * -side, normal * -side)).transposed().to_4x4()  # it shines along its -z
+            turn = Matrix((along, across * -side, normal * -side)).transposed().to_4x4()  # lights shine along -z
             offset = normal * (side * 1e-3 * max(size["size"], size["size_y"]))
             add_lamp(o["name"], "AREA", used[0]["radiance"], area, Matrix.Translation(center + offset) @ turn, size)
     return emissive
@@ -96,6 +96,6 @@ def set_up_eevee(scene, description, things):
     reach = (most(corners) - least(corners)).length + max((scene.camera.matrix_world.translation - p).length
                                                           for p in corners)
     data = scene.camera.data
-    data.clip_start, data.clip_end = max(data.clip_start, 1e-4 * reach), reach  # its depths have 24 bits
+    data.clip_start, data.clip_end = max(data.clip_start, 1e-4 * reach), reach  # EEVEE's depths have 24 bits
     add_irradiance_grid(boxes, 2 if many else 4, add_lamps(description, things))
     bpy.ops.scene.light_cache_bake()

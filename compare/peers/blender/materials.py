@@ -115,7 +115,7 @@ def make_material(m):
     if EEVEE:
         material.use_screen_refraction = m["type"] == "dielectric"
         if m["type"] == "emissive":
-            material.shadow_method = "NONE"  # the light that stands for it would be in its shadow
+            material.shadow_method = "NONE"  # the light in place of this surface would be in its shadow
     inside = absorption(nodes, m)
     if inside is not None:
         nodes.output("ShaderNodeOutputMaterial", Volume=inside)

@@ -31,7 +31,7 @@ const state = {
   bin: -1,
 };
 const defaults = { ...state };
-const maxStops = Math.max(8, Math.ceil(Math.abs(defaults.ev))); // at the ends of the exposure slider
+const maxStops = Math.max(8, Math.ceil(Math.abs(defaults.ev))); // stops at the ends of the exposure slider
 
 function readAddress() {
   Object.assign(state, defaults); // values that are not in the URL get their defaults

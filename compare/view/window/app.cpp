@@ -52,7 +52,7 @@ bool App::draw() {
     ImGui::End();
     if (help_) draw_help();
     if (!ImGui::IsAnyItemActive() && !flying_) document_.commit();
-    handle_keys(); // after the mouse: a key that follows the end of a drag sees its result
+    handle_keys(); // after the mouse, so that keys apply to the result of a drag that has just ended
 
     if (requested_load_ == 0) load(); // the first frame: the size of the images is known now
     live_.show(wish_);

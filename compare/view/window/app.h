@@ -34,7 +34,7 @@ struct Comparison {
     ViewTransform view_transform{};
     std::vector<std::uint8_t> bytes{};
     int width = 0, height = 0;
-    double figure = 0; ///< luminance of full orange or blue; for FLIP the mean
+    double figure = 0; ///< luminance shown as full orange or blue; for FLIP the mean
 };
 
 /// Returns the title of the window that shows a scene.

@@ -11,9 +11,9 @@ namespace duet::compare {
 namespace {
 
 constexpr double kLengthOfHeight = 0.15; // length of an arrow, as a fraction of the height of the visible region
-constexpr double kRingOfLength = 0.75;   // radius of a ring
+constexpr double kRingOfLength = 0.75;   // radius of a ring, as a fraction of the length of an arrow
 constexpr float kGrabPixels = 7;         // distance from which a handle is grabbed
-constexpr double kScalePerPixel = 0.01;  // logarithm of the factor
+constexpr double kScalePerPixel = 0.01;  // logarithm of the scale factor per pixel of the drag
 constexpr double kSnapDegrees = 15, kSnapFactor = 0.1;
 constexpr int kRingPoints = 48;
 constexpr float kMarkerPixels = 6; // radius of a marker
@@ -156,7 +156,7 @@ void App::drag_object() {
         return;
     }
     if (gizmo_.handle == Handle::kTurn) {
-        constexpr double kStep = 0.01; // of the angle, along the tangent
+        constexpr double kStep = 0.01; // step of the angle, to find the tangent
         const auto point = [&](double angle) {
             return on_screen(center + kRingOfLength * gizmo_.length * ring_point(gizmo_.axes, gizmo_.axis, angle));
         };

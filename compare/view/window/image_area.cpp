@@ -17,10 +17,10 @@ namespace {
 
 constexpr float kSplitGrip = 8;      // distance in pixels from which the line is grabbed
 constexpr double kOrbitRadians = 4;  // a drag over the height of the image turns by this angle
-constexpr double kLookRadians = 1;   // the same for looking around
+constexpr double kLookRadians = 1;   // a drag over the height of the image looks around by this angle
 constexpr double kWheelFactor = 0.9; // factor of the distance for a step of the wheel
-constexpr double kFlyPerSecond = 1;  // distances per second
-constexpr float kClickPixels = 4;    // a click moves the pointer by less
+constexpr double kFlyPerSecond = 1;  // distances to the look-at point per second
+constexpr float kClickPixels = 4;    // a click moves the pointer by fewer pixels
 
 Comparison compared(const Comparison& begun, int threads) {
     const ImageRgb &a = begun.raster->rendering.radiance, &b = begun.traced->image;
@@ -212,7 +212,7 @@ void App::select_at(Vec2d pixel) {
         return;
     }
     const LoadedScene loaded = live_.loaded();
-    if (!loaded.raytrace || loaded.load != requested_load_) return; // objects of another text
+    if (!loaded.raytrace || loaded.load != requested_load_) return; // the scene is that of an older text
     const Ray ray = CameraModel(wish_.view).ray({std::floor(pixel.x) + 0.5, std::floor(pixel.y) + 0.5});
     const Hit hit = trace(loaded.raytrace->prepared, ray);
     selected_ = {};

@@ -31,7 +31,7 @@ async function openFiles(files, path) {
     if (!await send({do: 'open', file: path}) || number !== opened) return;
     fillSelect($('quantity'), ['everything']);
     await fitImage(true);
-    setTimeout(async () => { // the rasterizer's worker builds the path tracer's hierarchy for this
+    setTimeout(async () => { // later, because the rasterizer's worker builds the path tracer's BVH for this
         const {answer} = await raster.ask({do: 'quantities'});
         if (number !== opened || !answer.quantities) return;
         fillSelect($('quantity'), answer.quantities);

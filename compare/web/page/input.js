@@ -3,10 +3,10 @@
 
 const orbitRadians = 4;     // a drag over the height of the image turns by this angle
 const arrowRadians = 0.1;   // an arrow key turns by this angle
-const lookRadians = 1;      // the same for looking around
+const lookRadians = 1;      // a drag over the height of the image looks around by this angle
 const wheelFactor = 0.9;    // factor of the distance for a step of the wheel
-const flyPerSecond = 1;     // distances to the look-at point
-const clickPixels = 4;      // a click moves the pointer by less
+const flyPerSecond = 1;     // distances to the look-at point per second
+const clickPixels = 4;      // a click moves the pointer by fewer pixels
 
 let drag = null;         // {what, x, y, moved}
 let pointed = null;      // the pixel to be inspected

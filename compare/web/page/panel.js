@@ -2,7 +2,7 @@
 'use strict';
 
 async function undo(back) {
-    if (await send({do: 'undo', back})) selected = -1; // its index may stand for another object
+    if (await send({do: 'undo', back})) selected = -1; // the index may now belong to another object
     showParts();
 }
 

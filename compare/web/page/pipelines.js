@@ -106,7 +106,7 @@ async function send(command) {
     const replies = await Promise.all(pipelines.map(p => p.ask(command, {number})));
     const errors = replies.map(reply => reply.answer.error);
     const error = errors[0] || errors[1];
-    if (error && isEdit(command)) { // both pipelines keep the same scene
+    if (error && isEdit(command)) { // undo the edit where it succeeded, so that both pipelines have the same scene
         const winner = pipelines.find((p, i) => !errors[i]);
         if (winner) await winner.ask({do: 'undo', back: true}, {number: ++commands});
     }
