@@ -38,9 +38,9 @@ double meander(double x, double y) {
 double wave(double x, double y) {
     const auto crest = [&](double center) {
         const double dx = x - center, dy = y - 0.52;
-        const double r = std::sqrt(dx * dx + dy * dy), angle = std::atan2(dy, -dx); // 0 to the left
+        const double r = std::sqrt(dx * dx + dy * dy), angle = std::atan2(dy, -dx); // angle 0 is to the left
         const double turn =
-            (angle < -0.6 ? angle + 2 * kPiDouble : angle) + 0.6; // clockwise from below the back of the crest
+            (angle < -0.6 ? angle + 2 * kPiDouble : angle) + 0.6; // angle clockwise from below the back of the crest
         const double arm = 0.36 - 0.045 * turn;
         return std::abs(r - arm) < 0.085 - 0.006 * turn;
     };

@@ -48,7 +48,7 @@ public:
 private:
     struct Segment {
         Vec3d center;
-        double radius; ///< of a bounding sphere of all its links
+        double radius; ///< radius of a bounding sphere of the segment
         std::size_t first, last;
     };
     Segment segment(std::size_t first, std::size_t last) const;

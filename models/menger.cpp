@@ -8,7 +8,7 @@
 namespace duet::models {
 namespace {
 
-constexpr int kCells = 81; // along a side
+constexpr int kCells = 81; // number of cells along a side
 // Coordinates count half cells, so that the plane cuts edges at whole numbers and passes through no corner.
 using Point = std::array<int, 3>;
 constexpr int kPlane = 3 * kCells; // the sum of the coordinates, on the plane
@@ -27,7 +27,7 @@ int sum(const Point& p) { return p[0] + p[1] + p[2]; }
 class Sponge {
 public:
     void add_cell(const Point& cell) {
-        std::map<Point, Point> section; // from each corner of the section to the next
+        std::map<Point, Point> section; // maps each corner of the section to the next
         for (std::size_t axis = 0; axis < 3; ++axis) {
             for (const int side : {0, 1}) {
                 Point beside = cell;

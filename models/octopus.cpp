@@ -19,9 +19,9 @@ struct Sucker {
 
 /// Describes the course of an arm: it descends from the head to the ground, winds along it, and curls its tip.
 struct ArmPlan {
-    double azimuth_degrees; ///< direction in which it leaves the head; 0 = +x, 90 = +z, the front
+    double azimuth_degrees; ///< direction in which the arm leaves the head; 0 = +x, 90 = +z, the front
     double length;
-    double sway, phase; ///< amplitude (radians) and phase of its bends along the ground
+    double sway, phase; ///< amplitude (radians) and phase of the arm's bends along the ground
     double curl;        ///< turns of the tip, signed: counter-clockwise seen from above
     double uprightness; ///< upward fraction of the curl: 0 is flat, 1 is upright
 };

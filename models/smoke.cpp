@@ -9,7 +9,7 @@
 namespace duet::models {
 namespace {
 
-constexpr int kWidth = 48, kHeight = 112; // points; the depth is the width
+constexpr int kWidth = 48, kHeight = 112; // numbers of points; the depth equals the width
 
 /// Returns the density at a point; height y goes from 0 to 1, and x and z from −0.2 to 0.2.
 double density(Vec3d p) {

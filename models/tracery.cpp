@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kHalf = kWindowHalf, kSpringing = kWindowSpringing;
 constexpr double kBar = 0.075, kDepth = 0.15;  // half the width of a bar, half of its depth
-constexpr double kNose = 0.022, kArris = 0.05; // half of what the chamfers leave of a bar's front, and of its sides
-constexpr double kFillet = 0.05;               // how near to each other lines have a fillet between them
+constexpr double kNose = 0.022, kArris = 0.05; // half the width of a bar's front, half the depth of its sides
+constexpr double kFillet = 0.05;               // distance of lines below which a fillet joins them
 constexpr double kCuspDepth = 0.055;           // half the depth of the cusps' plates
 // The circle touches both lancets, whose arcs have radius kHalf, and the window's arch, whose radius is twice that.
 constexpr double kCircle = kHalf / 2;
@@ -39,7 +39,7 @@ double quatrefoil(double x, double y) {
 /// Returns the signed distance to a chamfered bar, for a point at distance d from the bar's middle line and z from its
 /// middle plane.
 double bar(double d, double z) {
-    constexpr Vec2d kChamfer(kDepth - kArris, kBar - kNose); // its normal, unnormalized
+    constexpr Vec2d kChamfer(kDepth - kArris, kBar - kNose); // normal of the chamfer, unnormalized
     const double chamfer = ((d - kBar) * kChamfer.x + (z - kArris) * kChamfer.y) / std::hypot(kChamfer.x, kChamfer.y);
     return std::max({d - kBar, z - kDepth, chamfer});
 }
@@ -58,7 +58,7 @@ double tracery(Vec3d p) {
     for (const double line : {lancet(p.x, p.y, kHalf), oculus}) lines = smooth_min(lines, std::abs(line), kFillet);
     const double cusps = min(plate(min(left, right), trefoil(std::abs(p.x) - kHalf / 2, p.y), z),
                              plate(oculus, quatrefoil(p.x, head), z));
-    return std::max(min(bar(lines, z), cusps), -0.05 - p.y); // its foot is in the sill
+    return std::max(min(bar(lines, z), cusps), -0.05 - p.y); // the tracery's foot is in the sill
 }
 
 } // namespace

@@ -15,7 +15,7 @@ import json
 import os
 import sys
 
-LARGEST_RESOLUTION = 255  # with the layer around it, a cube of these points is what the programs accept
+LARGEST_RESOLUTION = 255  # with the layer around it, a cube of this side has the most points that the programs accept
 
 
 def fail(text):
@@ -28,7 +28,7 @@ def load_modules():
     try:
         import numpy
         try:
-            import openvdb  # its name from OpenVDB 12 on
+            import openvdb  # the module's name since OpenVDB 12
         except ImportError:
             import pyopenvdb as openvdb
     except ImportError as error:
