@@ -248,9 +248,8 @@ Mismatches compare_results(const HitOracle& oracle, const RayQueries& ray_querie
     parallel_for(different.size(), threads, [&](std::size_t k) {
         const std::size_t i = different[k];
         findings[k].first = verdict_of(oracle, ray_queries, i, ours[i]);
-        // The peer's shadow rays simply end at their t_max.
         findings[k].second = ray_queries.closest() ? oracle.closest(rays[i], peers[i])
-                                                   : oracle.occluded(rays[i], peers[i].hit());
+                                                   : oracle.occluded(rays[i], peers[i].hit()); // the ray ends at t_max
     });
     Mismatches result;
     result.rays = std::ssize(rays);
