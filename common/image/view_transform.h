@@ -19,7 +19,7 @@ namespace duet {
 ///   It mixes the channels before the curve, so that bright colors become paler, as on film, instead of changing hue.
 ///   Middle gray becomes half of the display's code range.
 enum class Tone { kNone, kFilmic, kAgx };
-/// The names of the tone curves in scene files and on command lines, in the order of Tone.
+/// These are the names of the tone curves in scene files and on command lines, in the order of Tone.
 inline constexpr NameTable<Tone, 3> kTones{"tone",
                                            {{{"none", Tone::kNone}, {"filmic", Tone::kFilmic}, {"agx", Tone::kAgx}}}};
 

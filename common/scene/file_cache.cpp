@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Files are dated by a clock that is up to a hundredth of a second behind on Linux, and up to two on other systems.
+/// The clock that dates files lags by up to 10 ms on Linux, and by up to 20 ms on other systems.
 constexpr std::chrono::milliseconds kFileClockTick{20};
 
 } // namespace

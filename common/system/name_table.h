@@ -17,7 +17,7 @@ template <typename Value, std::size_t N> struct NameTable {
 
     /// Returns the value of a name. Throws Error for an unknown name, with the nearest known one or a list.
     Value value(std::string_view name) const { return entries[name_index(what, name, names())].second; }
-    /// Returns all names, in their order.
+    /// Returns all names, in the order of the table.
     std::vector<std::string_view> names() const {
         std::vector<std::string_view> list;
         for (const auto& entry : entries) list.push_back(entry.first);

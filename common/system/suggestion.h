@@ -13,8 +13,8 @@ std::string suggestion(std::string_view name, const std::vector<std::string_view
 std::string listed(const std::vector<std::string_view>& names);
 /// Returns suggestion(), or "; expected one of …" with all known names where none is near.
 std::string suggestion_or_list(std::string_view name, const std::vector<std::string_view>& known);
-/// Returns the index of a name among the known ones. Throws Error for an unknown name, with suggestion_or_list();
-/// `what` says what is named, "integrator", or the option that takes the name.
+/// Returns the index of a name among the known ones. Throws Error for an unknown name, with suggestion_or_list().
+/// `what` is the kind of the name, such as "integrator", or the option that takes it.
 std::size_t name_index(const char* what, std::string_view name, const std::vector<std::string_view>& known);
 
 } // namespace duet

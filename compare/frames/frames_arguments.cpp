@@ -8,8 +8,8 @@ namespace duet::compare {
 
 namespace {
 
-// Returns the values of the names that an option was given. Throws Error for a name that is not among `all`, which are
-// in the order of the values.
+// Returns the values of the names that an option was given. `all` lists the names in the order of the values. Throws
+// Error for a name that is not among them.
 template <typename Value>
 std::vector<Value> parse_names(const char* option, const std::vector<std::string>& names,
                                const std::vector<std::string_view>& all) {

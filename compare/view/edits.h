@@ -11,31 +11,32 @@
 
 namespace duet::compare {
 
-/// Moves an element of "objects", "lights" or "media" by a vector, in meters. A shape without a transform, a light and
-/// a medium get another place, any other object a last translation. What is everywhere stays as it is.
+/// Moves an element of "objects", "lights" or "media" by a vector, in meters. For a shape without a transform, a light
+/// and a medium this changes the position; for any other object it changes the last translation or adds one. An element
+/// that is everywhere stays as it is.
 std::string moved(const std::string& text, const JsonPath& element, Vec3d by);
-/// Applies an affine map to an element of "objects" after its own transform; successive maps become one matrix. Of a
-/// light, it changes the position and the direction, of a medium the corners of its box.
+/// Applies an affine map to an element of "objects" after its own transform; successive maps become one matrix. For a
+/// light, the map changes the position and the direction, and for a medium the corners of its box.
 std::string transformed(const std::string& text, const JsonPath& element, const Mat4d& map);
 
-/// What can be done to an element.
+/// Says by which handles an element can be changed.
 struct Handles {
     bool move = false, turn = false, scale = false;
 };
 /// Returns what can be done to an element of "objects", "lights" or "media".
 Handles handles(const nlohmann::ordered_json& scene, const JsonPath& element);
-/// Returns the box of the points that say where a light or a medium is; empty for one that is everywhere.
+/// Returns the box of the points that determine the position of a light or a medium; empty for one that is everywhere.
 Box3 place(const nlohmann::ordered_json& scene, const JsonPath& element);
 /// Returns an object's own axes after its transform, made orthonormal: the first keeps its direction.
 std::array<Vec3d, 3> local_axes(const nlohmann::ordered_json& scene, const JsonPath& element);
 /// Adds a copy of an element at the end of its list.
 std::string duplicated(const std::string& text, const JsonPath& element);
 
-/// Gives an object, which has a "material", a copy of that under a new name, so that changes of it change this object
-/// alone.
+/// Gives an object, which has a "material", a copy of that material under a new name, so that later changes of the
+/// material change this object alone.
 std::string with_own_material(const std::string& text, const JsonPath& element);
 
-/// What can be added to a scene.
+/// Selects what is added to a scene.
 enum class NewElement { kSphere, kBox, kQuad, kAreaLight, kPointLight, kCloud };
 inline constexpr std::array kNewElementNames{"sphere", "box", "quad", "area light", "point light", "cloud"};
 /// Adds an element of about this size at a point. An area light shines downward. Shapes get the first material of the

@@ -97,7 +97,7 @@ void App::undo(bool back) {
     }
     follow_document();
     if (document_.text() == before) return;
-    selected_ = {}; // its index may stand for another object
+    selected_ = {}; // the index may now belong to another object
     load(true);
 }
 

@@ -40,7 +40,7 @@ struct Comparison {
 /// Returns the title of the window that shows a scene.
 inline std::string window_title(const std::filesystem::path& scene) { return "Duet: " + scene.filename().string(); }
 
-/// The selected element of the scene file.
+/// A Selection is the selected element of the scene file.
 struct Selection {
     std::string list = "objects"; ///< or "lights" or "media"
     int index = -1;               ///< in the list; −1: nothing is selected
@@ -49,10 +49,11 @@ struct Selection {
     JsonPath path() const { return {list, std::to_string(index)}; }
     friend bool operator==(const Selection&, const Selection&) = default;
 };
-/// The lists of a scene file whose elements can be selected.
+/// These are the lists of a scene file whose elements can be selected.
 inline constexpr std::array<const char*, 3> kSelectableLists{"objects", "lights", "media"};
 
-/// The window's state. Each frame, draw() draws everything, and passes on to the live view what is wanted.
+/// Holds the window's state. For each frame, draw() draws everything and passes the requested images on to the live
+/// view.
 class App {
 public:
     App(const ViewOptions& options, Window& window);
@@ -86,7 +87,7 @@ private:
     void draw_markers();
     std::optional<Selection> marker_at(ImVec2 position) const;
     template <typename Visit> void for_each_marker(const Visit& visit) const;
-    // gizmo.cpp
+    // These types and functions are in gizmo.cpp.
     enum class Handle { kNone, kMove, kTurn, kScale };
     void place_gizmo(const Box3& box);
     void draw_gizmo();
@@ -150,9 +151,9 @@ private:
     struct Settings {
         raster::RasterSettings raster;
         raytrace::PathTracerSettings raytrace;
-    } settings_;        // of the whole image
+    } settings_;        // settings of the whole image
     Selection selected_;
-    bool local_axes_ = false; // handles and numbers turn and move along the object's own axes
+    bool local_axes_ = false; // handles and buttons turn and move along the object's own axes
     struct {
         std::shared_ptr<const Scene> scene;
         Selection selected;
@@ -161,7 +162,7 @@ private:
     struct Gizmo {
         Handle handle = Handle::kNone; // handle under the pointer, or dragged
         std::size_t axis = 0;
-        double angle = 0; // of the grabbed point of a ring
+        double angle = 0; // angle of the grabbed point of a ring
         std::array<Vec3d, 3> axes{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};
         Vec3d center;
         double length = 0;  // length of the arrows, in meters

@@ -1,5 +1,5 @@
-// The handles of what is selected: arrows move it along axes, rings turn it about them, and the square in the middle
-// scales it. Markers show lights and media, which cannot be seen themselves.
+// This file draws the handles of the selected element: arrows move it along axes, rings turn it about them, and the
+// square in the middle scales it. Markers show lights and media, which cannot be seen themselves.
 #include "compare/view/camera_control.h"
 #include "compare/view/edits.h"
 #include "compare/view/window/app.h"
@@ -111,7 +111,7 @@ void App::draw_handle(Handle handle, std::size_t axis, const std::vector<Vec3d>&
         list.AddRectFilled({line[0].x - 5, line[0].y - 5}, {line[0].x + 5, line[0].y + 5}, color);
 }
 
-// Calls visit(selection, pixel) for each light and medium that has a place in the image.
+// Calls visit(selection, pixel) for each light and medium that has a position in the image.
 template <typename Visit> void App::for_each_marker(const Visit& visit) const {
     const nlohmann::ordered_json& scene = document_.json();
     for (const char* list : {"lights", "media"}) {

@@ -1,4 +1,4 @@
-// The part of the panel that edits the scene: what is selected, materials, environment and camera.
+// This file draws the part of the panel that edits the scene: the selected element, materials, environment and camera.
 #include "compare/view/edits.h"
 #include "compare/view/window/app.h"
 
@@ -186,7 +186,7 @@ void App::apply(const JsonPath& path, const ordered_json& changed) {
     });
 }
 
-// Selects nothing where the list has no such element any more.
+// Clears the selection if its list no longer has such an element.
 void App::drop_lost_selection() {
     if (!selected_.any()) return;
     const ordered_json& scene = document_.json();
@@ -238,7 +238,7 @@ void App::draw_selected() {
     ImGui::Unindent();
 }
 
-// Turns and scales what is selected about its center.
+// Draws the controls that turn and scale the selected element about its center.
 void App::draw_turns() {
     const Box3 box = selected_bounds();
     const Handles possible = handles(document_.json(), selected_.path());
