@@ -96,15 +96,17 @@ bool BaselineComparison::flagged() const {
 void check_baseline(const json& earlier, const BenchConditions& now) {
     with_json_errors([&] {
         earlier.at("scenes");
-        const auto same = [&](const char* key, const auto& mine) {
-            const auto theirs = earlier.at(key).get<std::decay_t<decltype(mine)>>();
+        const auto same = [&](const char* key, int mine) {
+            const int theirs = earlier.at(key).get<int>();
             if (theirs != mine)
                 throw Error(message("--baseline: measured with ", key, " ", theirs, ", this run with ", mine));
         };
         same("depth", now.depth);
         same("threads", now.threads);
         same("reference_spp", now.reference_spp);
-        same("reference_by", now.reference_by);
+        if (const std::string theirs = earlier.value("reference_by", "path"); theirs != now.reference_by)
+            throw Error(message("--baseline: measured with a reference by ", theirs, ", this run with one by ",
+                                now.reference_by));
     });
 }
 

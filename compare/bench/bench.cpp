@@ -62,6 +62,7 @@ public:
         : options_(options), interrupt_(interrupt), scene_(load_scene(path, SceneOptions{options.size})),
           view_(scene_view(scene_, options.size, bench_scale(scene_))),
           counted_(counted_pixels(options.excluded, view_.width, view_.height)) {
+        check_supported(scene_, options.choice.techniques, options.reference_by);
         result_.scene = path.string();
         result_.scene_hash = hash_scene_files(scene_);
         result_.width = view_.width;
@@ -101,7 +102,7 @@ private:
     void find_references() {
         result_.reference = reference(options_.reference_by, options_.reference_spp);
         if (options_.reference_by != "path") { // only the path tracer's pixels are independent
-            result_.no_naive = "the reference is by " + options_.reference_by;
+            result_.no_naive = "the reference is by " + options_.reference_by + ", and is not checked";
             return;
         }
         result_.no_naive = naive_limitation(scene_);

@@ -5,6 +5,7 @@
 #include "compare/report/text.h"
 #include "compare/timing.h"
 #include "raster/render.h"
+#include "raytrace/bidirectional/bidirectional_pass.h"
 #include "raytrace/render.h"
 
 #include <algorithm>
@@ -21,6 +22,10 @@ constexpr std::string_view kAdaptive = "adaptive";
 constexpr std::string_view kDenoised = "denoised";
 /// This is the path tracer without Russian roulette.
 constexpr std::string_view kNoRoulette = "no-roulette";
+
+bool is_variant_of_path(const std::string& technique) {
+    return technique == kAdaptive || technique == kDenoised || technique == kNoRoulette;
+}
 
 /// Returns one sentence on what keeps a technique from converging to the reference.
 std::string note_of(raytrace::Integrator integrator, const Scene& scene) {
@@ -66,8 +71,7 @@ BenchRenderer path_tracer_bench_renderer(const raytrace::PathTracerScene& prepar
     settings.adaptive = technique == kAdaptive;
     settings.denoise = technique == kDenoised;
     settings.russian_roulette = technique != kNoRoulette;
-    const bool variant = technique == kAdaptive || technique == kDenoised || technique == kNoRoulette;
-    settings.integrator = raytrace::integrator(variant ? "path" : technique);
+    settings.integrator = raytrace::integrator(is_variant_of_path(technique) ? "path" : technique);
     settings.sampler = sampler_kind(sampler);
     const int least_spp = settings.denoise ? 2 : 1;
     std::vector<int> spps = choice.spps;
@@ -121,6 +125,17 @@ void check_renderer_choice(const RendererChoice& choice) {
 
 void check_reference_integrator(const std::string& name) {
     check_names("--reference-by", {name}, kReferenceIntegrators);
+}
+
+void check_supported(const Scene& scene, std::vector<std::string> techniques, const std::string& reference_by) {
+    techniques.push_back(reference_by);
+    for (const std::string& technique : techniques) {
+        if (technique == "raster" || is_variant_of_path(technique)) continue;
+        raytrace::PathTracerSettings settings;
+        settings.integrator = raytrace::integrator(technique);
+        settings.adaptive = false;
+        if (traces_light_paths(settings.integrator)) raytrace::check_bidirectional(scene, settings);
+    }
 }
 
 std::vector<BenchRenderer> duet_renderers(const Scene& scene, const View& view, const RendererChoice& choice) {

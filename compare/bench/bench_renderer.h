@@ -49,6 +49,9 @@ void check_renderer_choice(const RendererChoice& choice);
 /// Throws Error unless an integrator may render references.
 void check_reference_integrator(const std::string& name);
 
+/// Throws Error if a technique, or the integrator of the references, does not support the scene.
+void check_supported(const Scene& scene, std::vector<std::string> techniques, const std::string& reference_by);
+
 /// Prepares both pipelines as needed and returns a renderer for each technique × sampler; "raster" is a single
 /// renderer. The scene must outlive them.
 std::vector<BenchRenderer> duet_renderers(const Scene& scene, const View& view, const RendererChoice& choice);

@@ -238,7 +238,11 @@ private:
                       {"asymmetry", medium.asymmetry},
                       {"box", nullptr},
                       {"density", nullptr}};
-            if (is_finite(medium.box.low)) {
+            const bool bounded = is_finite(medium.box.low) && is_finite(medium.box.high);
+            const Box3 all = Medium::unbounded();
+            if (!bounded && (medium.box.low != all.low || medium.box.high != all.high))
+                fail_unsupported("a medium with bounds on some sides alone");
+            if (bounded) {
                 m["box"] = json::array({vec_json(Vec3d(medium.box.low)), vec_json(Vec3d(medium.box.high))});
                 if (!medium.density) notes_.insert("boxes of media are larger by 1e-4 of their size on each side");
             }

@@ -1,6 +1,7 @@
 #include "compare/view/edits.h"
 
 #include "common/scene/json/read_transform.h"
+#include "common/system/error.h"
 
 #include <nlohmann/json.hpp>
 
@@ -46,7 +47,7 @@ std::vector<std::string> places(const ordered_json& element) {
     if (type == "sphere") return {"center"};
     if (type == "quad") return {"corner"};
     if (type == "point" || type == "spot") return {"position"};
-    if (element.contains("low")) return {"low", "high"}; // a box, or a medium
+    if (element.contains("low") && element.contains("high")) return {"low", "high"}; // a box, or a medium
     return {};
 }
 
@@ -114,10 +115,14 @@ std::string transformed(const std::string& text, const JsonPath& element, const 
     if (!is_object(element)) {
         const ordered_json own = parsed(text, element);
         std::string result = text;
-        for (const std::string& point : places(own))
-            result = with_value(result, element / point, vector(transform_point(map, vector(own.at(point)))));
+        for (const std::string& point : places(own)) {
+            const Vec3d from = vector(own.at(point)), to = transform_point(map, from);
+            const bool stays = length(to - from) <= 1e-6 * length(from); // up to rounding
+            if (!stays) result = with_value(result, element / point, vector(to));
+        }
         if (!own.contains("direction")) return result;
         const Vec3d before = vector(own.at("direction")), after = transform_vector(map, before);
+        if (!(length(after) > 0)) throw Error("a light without a direction cannot be turned");
         return with_value(result, element / "direction", vector(after * (length(before) / length(after))));
     }
     return with_step(text, element, {{"matrix", matrix(map)}}, [&](const ordered_json& last) {
@@ -129,7 +134,7 @@ std::string transformed(const std::string& text, const JsonPath& element, const 
 Handles handles(const ordered_json& scene, const JsonPath& element) {
     if (is_object(element)) return {true, true, true};
     const ordered_json& own = value_at(scene, element);
-    return {.move = !places(own).empty(), .turn = own.contains("direction"), .scale = own.contains("low")};
+    return {.move = !places(own).empty(), .turn = own.contains("direction"), .scale = places(own).size() == 2};
 }
 
 Box3 place(const ordered_json& scene, const JsonPath& element) {

@@ -78,6 +78,7 @@ void LiveView::start(LatestJob& thread, LatestJob::Job job) {
 
 unsigned LiveView::load(const View& view, std::function<Scene()> read, bool edited) {
     const unsigned load = ++loads_;
+    loads_edit_ = edited;
     start(loader_, [=, this](const std::atomic<bool>&) {
         loading_ = true;
         LoadedScene next;
@@ -172,7 +173,7 @@ void LiveView::show_raster(const Wish& wish, const LoadedScene& scene) {
     const bool moving = raster_started_.version != wish.version || raster_started_.load != scene.raster->load;
     // The full-size image waits until the first small one is finished. It also waits while an edit is loaded, which
     // would make it outdated.
-    if (!moving && raster_started_.scale < 1 && (raster_.busy() || loader_.busy())) return;
+    if (!moving && raster_started_.scale < 1 && (raster_.busy() || (loads_edit_ && loader_.busy()))) return;
     Started next = full;
     if (moving && pixel_seconds_ > 0)
         next.scale =

@@ -106,6 +106,7 @@ private:
 
     const int threads_;
     unsigned loads_ = 0;
+    bool loads_edit_ = false; // whether the last load is one of an edited scene
     std::atomic<unsigned> preparations_ = 0;
     const std::function<void()> wake_;
     std::atomic<bool> paused_ = false;

@@ -3,6 +3,7 @@
 #include "common/material/ggx.h"
 #include "common/sampling/hash.h"
 #include "common/sampling/sobol.h"
+#include "common/system/error.h"
 #include "common/system/parallel.h"
 #include "common/vec/frame.h"
 
@@ -70,6 +71,7 @@ RgbT<Floats> filtered(const std::vector<OctahedralMap>& mips, const LobeSamples&
 /// Sets each texel to the mean of the lobe's samples about its direction.
 void filter(const std::vector<OctahedralMap>& mips, const LobeSamples& samples, OctahedralMap& map, int threads) {
     const std::size_t side = static_cast<std::size_t>(map.side());
+    DUET_CHECK_EQ(side * side % kPacketSize, 0u);
     parallel_for(side * side / kPacketSize, threads, [&](std::size_t packet) {
         const auto column = [&](std::size_t i) { return static_cast<int>((packet * kPacketSize + i) % side); };
         const auto row = [&](std::size_t i) { return static_cast<int>((packet * kPacketSize + i) / side); };

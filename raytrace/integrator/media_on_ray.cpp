@@ -25,10 +25,12 @@ float MediumOnRay::passed_by(float from, float column) {
     return density_->passed_by(before + static_cast<double>(column));
 }
 
-float MediumOnRay::column(float t) {
-    const float end = std::min(t, inside_.end);
-    if (!(inside_.begin < end)) return 0;
-    return density_ ? static_cast<float>(density_->column(end)) : end - inside_.begin;
+float MediumOnRay::column(float from, float to) {
+    const float begin = std::max(from, inside_.begin), end = std::min(to, inside_.end);
+    if (!(begin < end)) return 0;
+    if (!density_) return end - begin;
+    const double before = begin > inside_.begin ? density_->column(begin) : 0;
+    return static_cast<float>(density_->column(end) - before);
 }
 
 MediaOnRay::MediaOnRay(std::span<const Medium> media, const Ray& ray, float t_end) : ray_(ray), t_end_(t_end) {

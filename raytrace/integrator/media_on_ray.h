@@ -24,8 +24,10 @@ public:
     /// Returns an upper bound of the distance at which the ray has passed the column. It exceeds the exact distance by
     /// at most one cell of the density grid.
     float passed_by(float from, float column);
-    /// Returns the column up to a distance, in meters. Beyond the interval's end it is that of the whole interval.
-    float column(float t);
+    /// Returns the column between two distances, in meters: that of the part that is inside of the box.
+    float column(float from, float to);
+    /// Returns the column up to a distance, in meters.
+    float column(float t) { return column(inside_.begin, t); }
 
 private:
     const Medium* medium_;

@@ -82,30 +82,33 @@ std::optional<MediumCollision> sample_collision(MediaOnRay& media, float u, Rgb&
     for (std::size_t i = 0; i < media.size(); ++i) emitted += sample_emission(media, i, throughput, random);
     const ChosenChannel channel(throughput, random());
     float t_end = media.t_end(); // distance of the first collision so far
-    const Medium* collided = nullptr;
+    MediumOnRay* collided = nullptr;
+    float passed_column = 0; // column of the medium that collided
     bool first = true; // u is stratified, so the first medium on the ray uses it
     for (MediumOnRay& on_ray : media) {
         const Interval inside = on_ray.inside();
-        if (inside.empty() || inside.begin > t_end) continue;
+        if (inside.empty() || inside.begin >= t_end) continue;
         const float depth = -std::log1p(first ? -u : -random());
         first = false;
         const float sigma = on_ray.medium().scattering[channel.index];
-        const float t = sigma > 0 ? on_ray.follow(inside.begin, depth / sigma).t : kInfinity;
-        if (!(t < t_end)) continue;
-        t_end = t;
-        collided = &on_ray.medium();
+        if (!(sigma > 0)) continue;
+        const PassedColumn passed = on_ray.follow(inside.begin, depth / sigma);
+        if (!(passed.t < t_end)) continue;
+        t_end = passed.t, passed_column = passed.column;
+        collided = &on_ray;
     }
     OpticalDepths depths;
-    for (MediumOnRay& on_ray : media) depths.add(on_ray.medium(), on_ray.column(t_end));
+    for (MediumOnRay& on_ray : media)
+        depths.add(on_ray.medium(), &on_ray == collided ? passed_column : on_ray.column(t_end));
     Rgb value = transmittance(depths.extinction), density = transmittance(depths.scattering);
     if (collided != nullptr) {
-        value *= collided->scattering;
-        density *= collided->scattering;
+        value *= collided->medium().scattering;
+        density *= collided->medium().scattering;
     }
     const float mean = channel.mean(density);
     throughput *= mean == 0 ? Rgb() : value / mean; // an invalid throughput stays invalid
     if (collided == nullptr) return std::nullopt;
-    return MediumCollision{t_end, collided->asymmetry};
+    return MediumCollision{t_end, collided->medium().asymmetry};
 }
 
 Rgb estimate_transmittance(std::span<const Medium> media, const Ray& ray, float t_end, float u) {

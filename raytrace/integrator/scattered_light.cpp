@@ -175,7 +175,7 @@ StoppedDistance::StoppedDistance(MediaOnRay& media, Interval range)
             if (sigma[c] > 0) least = std::min(least, sigma[c]);
         const float passed_by = media_[i].passed_by(in.begin, kDeep / least);
         const bool deep = passed_by < in.end;
-        const float column = deep ? kInfinity : media_[i].column(in.end) - media_[i].column(in.begin);
+        const float column = deep ? kInfinity : media_[i].column(in.begin, in.end);
         for (std::size_t c = 0; c < 3; ++c) {
             shares_[i][c] = sigma[c] == 0 ? 0 : -std::expm1(-sigma[c] * column);
             stopped_ += shares_[i][c];
@@ -209,11 +209,10 @@ PointOnRay StoppedDistance::at(float t) {
     Rgb depth;
     for (std::size_t i = 0; i < media_.size(); ++i) {
         const Medium& medium = media_[i].medium();
-        const float all = media_[i].column(t);
-        depth += optical_depth(medium, all);
+        depth += optical_depth(medium, media_[i].column(t));
         const Interval in = inside(media_[i]);
         if (!(in.begin <= t) || in.end < t) continue; // t is outside the medium
-        const float column = all - media_[i].column(range_.begin);
+        const float column = media_[i].column(range_.begin, t);
         const float density = density_at(medium, media_.ray().at(t));
         for (std::size_t c = 0; c < 3; ++c)
             if (const float sigma = medium.scattering[c] + medium.absorption[c]; shares_[i][c] > 0)

@@ -13,8 +13,8 @@ namespace {
 /// Returns the next line of JSON, or the reason why there is none. Other lines, such as a sanitizer's, go to `output`.
 Subprocess::Read read_result(Subprocess& process, SceneTimeLimits limits, std::string& output) {
     constexpr std::chrono::milliseconds kPoll{50}; // interval at which the processor time is read
-    const auto processor_limit = process.processor_time() + limits.processor;
     auto processor_time = process.processor_time();
+    const auto processor_limit = processor_time + limits.processor;
     auto last_progress = std::chrono::steady_clock::now();
     for (;;) {
         Subprocess::Read read = process.read_line(kPoll);
@@ -22,9 +22,10 @@ Subprocess::Read read_result(Subprocess& process, SceneTimeLimits limits, std::s
         const auto before = std::exchange(processor_time, process.processor_time());
         if (processor_time > before) last_progress = now;
         const bool in_time = processor_time < processor_limit && now - last_progress < limits.waiting;
-        if (read.status == Subprocess::Status::kTimeout && in_time) continue;
-        if (read.status != Subprocess::Status::kLine || read.line.starts_with('{')) return read;
-        output += (output.empty() ? "" : " | ") + read.line;
+        const bool line = read.status == Subprocess::Status::kLine;
+        if (read.status == Subprocess::Status::kEnd || (line && read.line.starts_with('{'))) return read;
+        if (!in_time) return {Subprocess::Status::kTimeout};
+        if (line) output += (output.empty() ? "" : " | ") + read.line;
     }
 }
 

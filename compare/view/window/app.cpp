@@ -207,7 +207,7 @@ void App::handle_keys() {
         if (press.key == GLFW_KEY_SPACE) live_.pause(!live_.paused());
         if (press.key == GLFW_KEY_F) frame_selected();
         if (press.key == GLFW_KEY_DELETE) delete_selected();
-        if (press.key == GLFW_KEY_ESCAPE) selected_ = {};
+        if (press.key == GLFW_KEY_ESCAPE) drag_ = Drag::kNone, selected_ = {};
         if (press.key == GLFW_KEY_L) local_axes_ = !local_axes_;
         if (press.key == GLFW_KEY_P) write_images();
         if (press.key == GLFW_KEY_F12) wants_screenshot_ = true;

@@ -135,12 +135,13 @@ void App::draw_markers() {
 }
 
 std::optional<Selection> App::marker_at(ImVec2 position) const {
-    std::optional<Selection> found;
+    std::optional<Selection> nearest;
+    float least = kMarkerPixels + kGrabPixels / 2;
     for_each_marker([&](const Selection& marked, ImVec2 pixel) {
         const float distance = std::hypot(pixel.x - position.x, pixel.y - position.y);
-        if (distance <= kMarkerPixels + kGrabPixels / 2) found = marked;
+        if (distance <= least) least = distance, nearest = marked;
     });
-    return found;
+    return nearest;
 }
 
 void App::drag_object() {

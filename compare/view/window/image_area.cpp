@@ -239,7 +239,10 @@ Box3 App::selected_bounds() {
 }
 
 std::array<Vec3d, 3> App::selected_axes() const {
-    if (local_axes_) return local_axes(document_.json(), selected_.path());
+    try {
+        if (local_axes_) return local_axes(document_.json(), selected_.path());
+    } catch (const Error&) { // the transform that was typed last cannot be used
+    }
     return {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};
 }
 

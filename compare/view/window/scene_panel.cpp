@@ -296,6 +296,7 @@ void App::draw_mesh_field() {
 
 void App::duplicate_selected() {
     if (!selected_.any() || !document_.editable()) return;
+    drag_ = Drag::kNone;
     attempt([&] {
         edit(duplicated(document_.text(), selected_.path()));
         document_.commit();
@@ -305,6 +306,7 @@ void App::duplicate_selected() {
 
 void App::delete_selected() {
     if (!selected_.any() || !document_.editable()) return;
+    drag_ = Drag::kNone;
     attempt([&] {
         edit(without_value(document_.text(), selected_.path()));
         document_.commit();

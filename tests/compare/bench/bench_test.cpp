@@ -344,6 +344,10 @@ TEST_SUITE("unit") {
         options = small_bench(scratch);
         options.reference_by = "raster";
         CHECK_THROWS_AS(bench(options), Error);
+        options = small_bench(scratch);
+        options.scenes = {fs::path(DUET_SOURCE_DIR) / "models" / "cloud.json"};
+        options.choice.techniques = {"path", "vcm"}; // which does not support media
+        CHECK_THROWS_AS(bench(options), Error);
         CHECK_FALSE(fs::exists(options.references));
     }
 }

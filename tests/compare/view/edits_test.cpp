@@ -2,6 +2,7 @@
 #include "compare/view/edits.h"
 
 #include "common/scene/motion_bounds.h"
+#include "common/system/error.h"
 #include "common/system/file.h"
 
 #include <doctest/doctest.h>
@@ -80,9 +81,10 @@ TEST_SUITE("unit") {
             {"type": "spot", "position": [1, 2, 3], "direction": [0, -2, 0], "intensity": 1},
             {"type": "sun", "direction": [0, -1, 0], "irradiance": 2}],
             "media": [{"type": "fog", "low": [0, 0, 0], "high": [2, 2, 2], "scattering": 1},
-                      {"type": "fog", "scattering": 0.1}]})");
+                      {"type": "fog", "scattering": 0.1}, {"type": "fog", "low": [0, 0, 0], "scattering": 0.1}]})");
         const std::string text = own.dump();
         const JsonPath spot{"lights", "0"}, sun{"lights", "1"}, box{"media", "0"}, everywhere{"media", "1"};
+        const JsonPath above{"media", "2"};
         const auto edited = [](const std::string& changed) { return nlohmann::ordered_json::parse(changed); };
         using Numbers = std::vector<double>;
 
@@ -98,6 +100,8 @@ TEST_SUITE("unit") {
             CHECK(turned["direction"][i].get<double>() == doctest::Approx(i == 0 ? 2 : 0));
         CHECK(edited(transformed(text, sun, turn))["lights"][1]["direction"][0].get<double>() == doctest::Approx(1));
         const auto scaled = edited(transformed(text, box, scaling(Vec3d(3, 3, 3))))["media"][0];
+        const std::string nowhere = with_value(text, {"lights", "1", "direction"}, Numbers{0, 0, 0});
+        CHECK_THROWS_AS(transformed(nowhere, sun, turn), Error);
         CHECK(scaled["low"] == Numbers{0, 0, 0});
         CHECK(scaled["high"] == Numbers{6, 6, 6});
 
@@ -109,6 +113,8 @@ TEST_SUITE("unit") {
         CHECK(able(sun) == std::array{false, true, false});
         CHECK(able(box) == std::array{true, false, true});
         CHECK(able(everywhere) == std::array{false, false, false});
+        CHECK(able(above) == std::array{false, false, false});
+        CHECK(place(own, above).empty());
         CHECK(place(own, spot).low == Vec3(1, 2, 3));
         CHECK(place(own, box).high == Vec3(2, 2, 2));
         CHECK(place(own, sun).empty());
