@@ -1,5 +1,6 @@
 # Makes Blender's volumes of media: boxes of constant density, boxes of a grid of densities, and all of space.
 import os
+import sys
 
 import bpy
 from exported import FOLDER, read_array
@@ -36,6 +37,8 @@ def make_box(name, low, high):
 
 def make_grid(name, low, high, density):
     """Writes the grid as a file of OpenVDB, which is the only kind that Blender reads."""
+    # Blender looks for modules beside the python3 in PATH, which may be another than Debian's.
+    sys.path.append("/usr/lib/python3/dist-packages")
     try:
         import pyopenvdb
     except ModuleNotFoundError as error:
