@@ -86,8 +86,8 @@ RasterObject prepare_object(const Scene& scene, const Object& object) {
     result.uniform_texture = uniform_texture(scene, object);
     const Mesh* mesh = std::get_if<Mesh>(&shape);
     const auto* quads = std::get_if<QuadList>(&shape);
-    result.closed = mesh != nullptr ? mesh->closed : quads == nullptr || encloses(*quads);
-    result.solid = mesh != nullptr && mesh->closed && all_opaque(scene, object);
+    result.closed = mesh != nullptr ? mesh->closed.value() : quads == nullptr || encloses(*quads);
+    result.solid = mesh != nullptr && mesh->closed.value() && all_opaque(scene, object);
     return result;
 }
 
@@ -131,11 +131,27 @@ void prepare_lit(const RasterSettings& settings, RasterSceneData& data, const Ra
     prepare_probes(settings, data, before);
 }
 
+/// Packs the shapes of a scene. Those of meshes that `before` has as well are taken from there.
+SharedList<PackedShape> packed_shapes(const SharedList<Shape>& shapes, const RasterSceneData* before) {
+    SharedList<PackedShape> packed;
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        if (before != nullptr && std::holds_alternative<Mesh>(shapes[i])) {
+            const std::size_t known = before->scene.shapes.index_of(shapes.shared(i), i);
+            if (known < before->shapes.size()) {
+                packed.push_back(before->shapes.shared(known));
+                continue;
+            }
+        }
+        packed.push_back(PackedShape(shapes[i]));
+    }
+    return packed;
+}
+
 /// Implements prepare(). If `before` is not null, its probes are reused.
 RasterScene prepare_after(const RasterSceneData* before, const Scene& scene, const RasterSettings& settings) {
     RasterSceneData data{.scene = scene,
                          .sky_irradiance = environment_irradiance(scene.environment, settings.threads),
-                         .shapes = std::vector<PackedShape>(scene.shapes.begin(), scene.shapes.end()),
+                         .shapes = packed_shapes(scene.shapes, before),
                          .texture_samplers = texture_samplers(scene.textures),
                          .ambient = mean_radiance(scene.environment)};
     for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
@@ -158,8 +174,9 @@ RasterScene prepare_after(const RasterSceneData* before, const Scene& scene, con
         data.unsampled_emitters = data.unsampled_emitters || ((object.moving || stretched) && object_emits);
     }
     std::size_t packed = 0;
-    for (const PackedShape& shape : data.shapes)
-        packed += shape.vertices.size() * sizeof(PackedVertex) + shape.halves.size() * sizeof(PackedShape::Triangle);
+    for (std::size_t i = 0; i < data.shapes.size(); ++i)
+        packed += data.shapes[i].vertices.size() * sizeof(PackedVertex) +
+                  data.shapes[i].halves.size() * sizeof(PackedShape::Triangle);
     data.memory_bytes =
         static_cast<std::int64_t>(packed + sizeof(RasterSceneData) + data.objects.size() * sizeof(RasterObject) +
                                   scene.objects.size() * sizeof(std::uint32_t));

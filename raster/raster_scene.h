@@ -50,7 +50,7 @@ struct RasterSceneData {
     std::vector<std::uint32_t> glass{};
     std::int64_t primitives = 0;          ///< triangles, quads and spheres of all objects
     IrradianceHarmonics sky_irradiance; ///< irradiance from the environment
-    std::vector<PackedShape> shapes{};    ///< parallel to Scene::shapes
+    SharedList<PackedShape> shapes{};     ///< parallel to Scene::shapes
     std::vector<TextureSampler> texture_samplers{}; ///< one per image
     Rgb ambient{};                        ///< mean radiance of the environment, the ambient light of Shading::kPhong
     /// This is true if the scene has emissive surfaces that are not lights: moving objects, or non-uniformly scaled

@@ -13,7 +13,10 @@ namespace duet::raytrace {
 /// Holds the result of prepare(). It refers to the scene, which must outlive it.
 struct PathTracerSceneData {
     /// `threads` is the number of build threads (0 = all).
-    PathTracerSceneData(const Scene& scene_, int threads);
+    PathTracerSceneData(const Scene& scene_, int threads) : PathTracerSceneData(scene_, Accelerator(scene_, threads)) {}
+    /// Takes the hierarchies of meshes that `before` has as well from there (see Accelerator).
+    PathTracerSceneData(const Scene& scene_, int threads, const PathTracerSceneData& before)
+        : PathTracerSceneData(scene_, Accelerator(scene_, threads, before.accelerator)) {}
 
     const Scene& scene;
     Accelerator accelerator;
@@ -24,6 +27,9 @@ struct PathTracerSceneData {
     bool emitters = false;                   ///< whether some object emits, so that hits can find light
     bool environment = false;                ///< whether rays that escape can find light of the environment
     bool scatters_diffusely = false;         ///< whether some material or medium scatters light from light samples
+
+private:
+    PathTracerSceneData(const Scene& scene_, Accelerator built);
 };
 
 } // namespace duet::raytrace

@@ -17,8 +17,8 @@ bool emits(const Material& material) { return emitter(material) != nullptr; }
 
 } // namespace
 
-PathTracerSceneData::PathTracerSceneData(const Scene& scene_, int threads)
-    : scene(scene_), accelerator(scene_, threads), lights(scene_.lights, sampled_irradiance(scene_.environment)),
+PathTracerSceneData::PathTracerSceneData(const Scene& scene_, Accelerator built)
+    : scene(scene_), accelerator(std::move(built)), lights(scene_.lights, sampled_irradiance(scene_.environment)),
       finite_lights(scene_.lights, 0), environment_light({}, sampled_irradiance(scene_.environment)),
       emitters(any_used_material(scene_, emits)), environment(!is_black(scene_.environment)) {
     bsdfs.reserve(scene.materials.size());
@@ -37,6 +37,11 @@ PathTracerSceneData::PathTracerSceneData(const Scene& scene_, int threads)
 
 PathTracerScene prepare(const Scene& scene, const PathTracerSettings& settings) {
     return PathTracerScene(std::make_shared<const PathTracerSceneData>(scene, settings.threads));
+}
+
+PathTracerScene prepare_edited(const Scene& scene, const PathTracerSettings& settings,
+                               const PathTracerScene& before) {
+    return PathTracerScene(std::make_shared<const PathTracerSceneData>(scene, settings.threads, before.data()));
 }
 
 Hit trace(const PathTracerScene& prepared, const Ray& ray) { return prepared.data().accelerator.closest(ray); }

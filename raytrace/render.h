@@ -24,6 +24,10 @@ private:
 
 /// Builds the hierarchies and the light tree of a scene, on PathTracerSettings::threads threads.
 PathTracerScene prepare(const Scene& scene, const PathTracerSettings& settings);
+/// Prepares an edited scene fast, for a preview. Both scenes should be read with Transforms::kKept. Then the
+/// hierarchies of meshes that both share are not built again. Hits may differ by rounding from those of a scene that
+/// was baked.
+PathTracerScene prepare_edited(const Scene& scene, const PathTracerSettings& settings, const PathTracerScene& before);
 /// Renders one image. If `control` stops it, it returns the mean of the samples taken so far. With
 /// PathTracerSettings::film it continues that film, bit-equal to a single run. Throws Error for invalid settings, for a
 /// film of another image, and for a film that cannot be written. With PathTracerSettings::denoise it also returns

@@ -119,8 +119,8 @@ std::optional<Sphere> transformed(const Sphere& sphere, const Mat4& to_world) {
 void bake(Scene& scene, Object& object) {
     const TextureUse textures = texture_use(scene, object);
     if (textures.solid) return;
-    const bool baked =
-        std::visit([&](auto& shape) { return bake(shape, object.to_world, textures.any); }, scene.shapes[object.shape]);
+    const bool baked = std::visit([&](auto& shape) { return bake(shape, object.to_world, textures.any); },
+                                  scene.shapes.edit(object.shape));
     if (!baked) return;
     object.to_world = object.to_world_end = object.to_object = Mat4();
     object.identity = true;

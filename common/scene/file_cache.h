@@ -7,13 +7,14 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
 namespace duet {
 
 /// A FileCache returns values that it has read before, unless one of their files has changed since. It stores every
-/// value until a newer one replaces it. Only one thread may use it at a time.
+/// value until a newer one replaces it. Only one thread may use it at a time; parse_scene() sees to that.
 class FileCache {
 public:
     /// A Read is a value and the files that it was made from.
@@ -42,6 +43,9 @@ public:
         return value;
     }
 
+    /// Returns a lock that the thread holds which uses the cache.
+    std::unique_lock<std::mutex> lock() { return std::unique_lock(mutex_); }
+
 private:
     struct Entry {
         std::shared_ptr<const void> value;
@@ -51,6 +55,7 @@ private:
     std::shared_ptr<const void> find(const std::string& key,
                                      const std::function<Read<std::shared_ptr<const void>>()>& read);
 
+    std::mutex mutex_;
     std::map<std::string, Entry> entries_;
     std::map<std::string, std::weak_ptr<const void>> computed_;
 };
@@ -59,7 +64,10 @@ private:
 /// files. The parsed tree takes up to fifty times the file's size in memory.
 inline constexpr std::size_t kMaxSceneBytes = std::size_t{1} << 26;
 
-/// Reads the text of a scene file as parse_scene(path, text) does, and takes its meshes and images from the cache.
-Scene parse_scene(const std::filesystem::path& path, std::string_view text, FileCache& cache);
+/// Reads the text of a scene file as parse_scene(path, text) does, and takes its meshes and images from the cache. With
+/// Transforms::kKept the scene shares the meshes with the cache. Several threads may read with one cache; they take
+/// turns.
+Scene parse_scene(const std::filesystem::path& path, std::string_view text, FileCache& cache,
+                  Transforms transforms = Transforms::kBaked);
 
 } // namespace duet

@@ -26,6 +26,16 @@ void bake_single_objects(Scene& scene) {
         if (!object.identity && !object.moving && uses[object.shape] == 1) bake(scene, object);
 }
 
+/// Sets Mesh::closed. Meshes that are shared, and have not been baked, know it already.
+void find_closed_meshes(SharedList<Shape>& shapes, Transforms transforms) {
+    parallel_for(shapes.size(), 0, [&](std::size_t i) {
+        const auto* mesh = std::get_if<Mesh>(&shapes[i]);
+        if (mesh == nullptr || (transforms == Transforms::kKept && mesh->closed)) return;
+        const bool closed = is_closed_outwards(*mesh);
+        if (mesh->closed != closed) std::get<Mesh>(shapes.edit(i)).closed = closed;
+    });
+}
+
 void find_bounds(Scene& scene) {
     scene.bounds = Box3();
     for (const Object& object : scene.objects) {
@@ -210,17 +220,15 @@ SceneNeeds find_needs(const Scene& scene) {
 
 } // namespace
 
-void finish_scene(Scene& scene) {
+void finish_scene(Scene& scene, Transforms transforms) {
     scene.maps.resize(scene.materials.size());
     check_scene(scene);
     drop_ineffective(scene);
     build_mipmaps(scene.textures);
-    bake_single_objects(scene);
+    if (transforms == Transforms::kBaked) bake_single_objects(scene);
     find_bounds(scene);
     limit_mean_free_paths(scene);
-    parallel_for(scene.shapes.size(), 0, [&](std::size_t i) {
-        if (auto* mesh = std::get_if<Mesh>(&scene.shapes[i])) mesh->closed = is_closed_outwards(*mesh);
-    });
+    find_closed_meshes(scene.shapes, transforms);
     add_surface_lights(scene);
     check_power(scene);
     scene.needs = find_needs(scene);

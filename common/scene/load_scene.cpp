@@ -79,8 +79,8 @@ void check_reach(const Scene& scene) {
     }
 }
 
-Scene finished(Scene scene) {
-    finish_scene(scene);
+Scene finished(Scene scene, Transforms transforms = Transforms::kBaked) {
+    finish_scene(scene, transforms);
     check_reach(scene);
     return scene;
 }
@@ -103,8 +103,10 @@ Scene parse_scene(const std::filesystem::path& path, std::string_view text) {
     return finished(read_scene(path, text, nullptr));
 }
 
-Scene parse_scene(const std::filesystem::path& path, std::string_view text, FileCache& cache) {
-    return finished(read_scene(path, text, &cache));
+Scene parse_scene(const std::filesystem::path& path, std::string_view text, FileCache& cache,
+                  Transforms transforms) {
+    const auto lock = cache.lock();
+    return finished(read_scene(path, text, &cache), transforms);
 }
 
 } // namespace duet

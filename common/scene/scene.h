@@ -11,6 +11,7 @@
 #include "common/material/material.h"
 #include "common/material/surface_maps.h"
 #include "common/medium/medium.h"
+#include "common/system/shared_list.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -22,7 +23,7 @@ namespace duet {
 
 /// An Object is a shape placed in the world. Groups and instances of a file are flattened to a list of objects.
 /// Static objects whose shape is used once are baked: their shape is in world space and their transform is the
-/// identity.
+/// identity (see Transforms).
 struct Object {
     std::string name{};
     std::uint32_t shape = 0; ///< index into Scene::shapes
@@ -75,7 +76,7 @@ struct Scene {
     std::vector<Material> materials;
     std::vector<std::string> material_names; ///< parallel to materials
     std::vector<SurfaceMaps> maps; ///< parallel to materials, or shorter: the remaining materials have no maps
-    std::vector<Shape> shapes;
+    SharedList<Shape> shapes;
     std::vector<Object> objects;
     /// The lights of the file come first. One SurfaceLight for each emissive primitive of a static object follows.
     std::vector<Light> lights;
@@ -87,10 +88,14 @@ struct Scene {
     SceneNeeds needs;
 };
 
-/// Computes the scene's derived data: surface lights, bounds, needs, and whether meshes are closed. It also bakes
-/// static objects whose shape is used once. This is the last step of every loader, and of programs that build a scene
-/// in code (build_scene.h). Throws Error where the scene's parts do not fit together.
-void finish_scene(Scene& scene);
+/// Says whether finish_scene() bakes static objects whose shape is used once. An editor keeps all transforms, so that
+/// the shapes are the same objects before and after an edit, and what was computed from them can be used again.
+enum class Transforms { kBaked, kKept };
+
+/// Computes the scene's derived data: surface lights, bounds, needs, and whether meshes are closed. This is the last
+/// step of every loader, and of programs that build a scene in code (build_scene.h). Throws Error where the scene's
+/// parts do not fit together.
+void finish_scene(Scene& scene, Transforms transforms = Transforms::kBaked);
 
 /// An ObjectTransform is an object's transform and its inverse at a time in [0, 1] of the motion.
 struct ObjectTransform {

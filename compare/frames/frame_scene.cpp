@@ -14,7 +14,7 @@ Scene frame_scene(const std::filesystem::path& mesh, const std::filesystem::path
     Scene scene;
     scene.path = mesh;
     scene.files = file.files;
-    scene.shapes.emplace_back(std::move(file.mesh));
+    scene.shapes.push_back(std::move(file.mesh));
     scene.materials = {Diffuse{{Rgb(0.7f, 0.65f, 0.6f)}}};
     scene.material_names = {"surface"};
     if (!texture.empty()) {

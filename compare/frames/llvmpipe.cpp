@@ -75,7 +75,7 @@ struct LlvmpipeRenderer::State {
     GLuint phong = 0, depth = 0;
 
     State(const Scene& scene, const View& requested_view, int threads) : gl(threads), view(requested_view) {
-        upload(std::get<Mesh>(scene.shapes.at(0)));
+        upload(std::get<Mesh>(scene.shapes.front()));
         make_target();
         phong = program(replaced(replaced(kFragmentShader, "DIFFUSE", raster::kPhongDiffuse), "SPECULAR",
                                  raster::kPhongSpecular));

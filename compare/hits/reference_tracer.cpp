@@ -104,7 +104,8 @@ Box3d transformed(const Box3d& box, const Mat4d& map) {
 
 std::vector<ReferenceBvh> build_trees(const Scene& scene, std::vector<Box3d>& shape_boxes) {
     std::vector<ReferenceBvh> trees;
-    for (const Shape& shape : scene.shapes) {
+    for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
+        const Shape& shape = scene.shapes[i];
         const std::vector<Box3d> boxes = primitive_boxes(shape);
         Box3d all;
         for (const Box3d& box : boxes) all.extend(box);

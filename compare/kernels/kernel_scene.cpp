@@ -162,7 +162,7 @@ KernelScene kernel_scene(std::string name, Arrangement arrangement, std::vector<
     scene->materials.emplace_back(Diffuse{});
     scene->material_names.emplace_back("clay");
     scene->objects = std::move(objects);
-    for (Mesh& mesh : meshes) scene->shapes.emplace_back(std::move(mesh));
+    for (Mesh& mesh : meshes) scene->shapes.push_back(std::move(mesh));
     finish_scene(*scene);
     result.scene = std::move(scene);
     return result;
@@ -250,7 +250,7 @@ KernelScene load_kernel_scene(const std::filesystem::path& file, Arrangement arr
                 name_of(arrangement)));
         return kernel_scene_of_file(loaded);
     }
-    Mesh& given = std::get<Mesh>(loaded.shapes.front()); // first shape; the ground follows (default_scene_for_mesh)
+    const Mesh& given = std::get<Mesh>(loaded.shapes.front()); // the ground follows (default_scene_for_mesh)
     Mesh mesh;
     append(mesh, given.positions, given.triangles);
     const std::string name = file.stem().string();

@@ -38,7 +38,7 @@ struct KernelScene {
     const Mesh& triangles() const { return mesh_of(0); }
     std::size_t triangle_count() const; ///< over all objects
     /// Returns whether a ray that starts inside must hit something: in a single closed mesh or in a closed room.
-    bool closed() const { return enclosed || (scene->objects.size() == 1 && triangles().closed); }
+    bool closed() const { return enclosed || (scene->objects.size() == 1 && triangles().closed.value()); }
 };
 
 /// Returns whether the file is a bare mesh, which can be arranged. A scene file is used as it is.

@@ -52,8 +52,8 @@ EmbreeDevice::EmbreeDevice(const Scene& scene, int threads, bool avx2) : handle_
         },
         handle_.get());
     handle_->scene = &scene;
-    for (const Shape& shape : scene.shapes) {
-        handle_->positions.push_back(std::get<Mesh>(shape).positions);
+    for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
+        handle_->positions.push_back(std::get<Mesh>(scene.shapes[i]).positions);
         handle_->positions.back().emplace_back(); // padding: Embree reads a vertex as 16 bytes
     }
 }

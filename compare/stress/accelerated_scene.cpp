@@ -15,7 +15,7 @@ Scene finished(std::vector<Shape> shapes, std::vector<Object> objects) {
     Scene scene;
     scene.materials = {Diffuse{}};
     scene.material_names = {"grey"};
-    scene.shapes = std::move(shapes);
+    scene.shapes = SharedList<Shape>(std::move(shapes));
     scene.objects = std::move(objects);
     finish_scene(scene);
     return scene;

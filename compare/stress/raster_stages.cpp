@@ -36,8 +36,7 @@ struct MeshScene {
                                   .polygonal = {0},
                                   .spheres = {},
                                   .sky_irradiance = raster::environment_irradiance(scene.environment, 1),
-                                  .shapes =
-                                      std::vector<raster::PackedShape>(scene.shapes.begin(), scene.shapes.end())} {}
+                                  .shapes = packed(scene.shapes[0])} {}
     MeshScene(const MeshScene&) = delete;
     MeshScene& operator=(const MeshScene&) = delete;
 
@@ -46,6 +45,11 @@ struct MeshScene {
         scene.shapes = {mesh};
         scene.objects.resize(1);
         return scene;
+    }
+    static SharedList<raster::PackedShape> packed(const Shape& shape) {
+        SharedList<raster::PackedShape> list;
+        list.push_back(raster::PackedShape(shape));
+        return list;
     }
 };
 
@@ -81,7 +85,7 @@ void CoverageProbe::draw(GridTriangle t) {
     if (winding(t) == 0) return;
     for (std::size_t i = 0; i < 3; ++i) {
         triangles_.objects[0].vertices[i].p = t[i];
-        std::get<Mesh>(scene_.shapes[0]).positions[i] =
+        std::get<Mesh>(scene_.shapes.edit(0)).positions[i] =
             Vec3(Vec3d(t[i].x, t[i].y, 0) * (1.0 / raster::kSubpixels) + Vec3d(0, 0, 1.0 / count_));
     }
     triangles_.runs[0] = {0, 0, 1, count_, false};

@@ -21,7 +21,7 @@ void SceneDocument::reload() {
     const bool editable_file = lower_case_extension(path_) == ".json" && options_.up == UpAxis::kGuessed;
     const auto cache = std::make_shared<FileCache>(); // a reader on another thread may still use the previous cache
     std::string file = editable_file ? read_file(path_, kMaxSceneBytes) : "";
-    const auto scene = std::make_shared<Scene>(editable_file ? parse_scene(path_, file, *cache)
+    const auto scene = std::make_shared<const Scene>(editable_file ? parse_scene(path_, file, *cache)
                                                              : load_scene(path_, options_)); // a bare mesh; else throws
     cache_ = cache;
     states_.assign(1, State{std::make_shared<const std::string>(std::move(file)), scene->camera});
@@ -83,11 +83,13 @@ void SceneDocument::save() {
     saved_ = std::move(file);
 }
 
-std::function<Scene()> SceneDocument::reader() {
-    const std::shared_ptr<Scene> scene = std::exchange(file_scene_, nullptr);
-    if (scene && current_ == 0) return [scene] { return std::move(*scene); };
-    if (!editable()) return [path = path_, options = options_] { return load_scene(path, options); };
-    return [path = path_, file = now().text, cache = cache_] { return parse_scene(path, *file, *cache); };
+SceneReader SceneDocument::reader() {
+    const std::shared_ptr<const Scene> scene = std::exchange(file_scene_, nullptr);
+    if (scene && current_ == 0) return [scene](Transforms) { return *scene; };
+    if (!editable()) return [path = path_, options = options_](Transforms) { return load_scene(path, options); };
+    return [path = path_, file = now().text, cache = cache_](Transforms transforms) {
+        return parse_scene(path, *file, *cache, transforms);
+    };
 }
 
 std::string with_camera(std::string text, const Camera& before, const Camera& camera) {

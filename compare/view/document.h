@@ -13,6 +13,9 @@
 
 namespace duet::compare {
 
+/// A SceneReader reads a scene. With Transforms::kKept, scenes before and after an edit share their meshes.
+using SceneReader = std::function<Scene(Transforms)>;
+
 /// Holds a scene file while it is edited. Edits change the text, so that the rest of it is saved as it was typed. A
 /// bare mesh has no text: its camera can be moved, and nothing can be saved.
 class SceneDocument {
@@ -47,9 +50,8 @@ public:
     void save();
     /// Loads the file again, and clears the history.
     void reload();
-    /// Returns a function that builds the scene of the current text. The function may be called once, on any thread.
-    /// Only one such function may run at a time, because they share a cache of meshes and images.
-    std::function<Scene()> reader();
+    /// Returns a function that builds the scene of the current text. It may be called repeatedly, on any thread.
+    SceneReader reader();
     /// Returns the scene of another text for this file, and changes nothing. Throws Error if it is no valid scene.
     Scene parsed(const std::string& text) { return parse_scene(path_, text, *cache_); }
 
@@ -72,7 +74,7 @@ private:
     ImageSize image_size_{};
     ViewTransform view_transform_;
     std::shared_ptr<FileCache> cache_;
-    std::shared_ptr<Scene> file_scene_; // the scene as reload() has read it; null once reader() has taken it
+    std::shared_ptr<const Scene> file_scene_; // the scene as reload() has read it; null once reader() has returned it
 };
 
 /// Returns the text of a scene file, whose camera is `before`, with another camera. Numbers that are equal stay as they

@@ -28,11 +28,11 @@ constexpr double kRestSeconds = 0.2;
 /// A pass adds at most this many samples per pixel, as passes of raytrace do.
 constexpr std::uint32_t kPassSamples = 16;
 
-Scene seen_in(const View& view, Scene scene) {
+std::shared_ptr<const Scene> seen_in(const View& view, Scene scene) {
     scene.camera = view.camera;
     scene.width = view.width;
     scene.height = view.height;
-    return scene;
+    return std::make_shared<const Scene>(std::move(scene));
 }
 
 // Waits until no edit has come for kRestSeconds. Returns false if the next one comes before.
@@ -76,19 +76,16 @@ void LiveView::start(LatestJob& thread, LatestJob::Job job) {
     });
 }
 
-unsigned LiveView::load(const View& view, std::function<Scene()> read, bool edited) {
+unsigned LiveView::load(const View& view, SceneReader read, bool edited) {
     const unsigned load = ++loads_;
     loads_edit_ = edited;
     start(loader_, [=, this](const std::atomic<bool>&) {
         loading_ = true;
         LoadedScene next;
-        next.scene = std::make_shared<const Scene>(seen_in(view, read()));
+        next.scene = seen_in(view, read(edited ? Transforms::kKept : Transforms::kBaked));
         next.load = load;
-        const Stopwatch watch;
-        raytrace::PathTracerScene traced = prepare(*next.scene, with_threads<raytrace::PathTracerSettings>());
-        next.raytrace = std::make_shared<const PreparedScene<raytrace::PathTracerScene>>(
-            PreparedScene<raytrace::PathTracerScene>{++preparations_, load, next.scene, std::move(traced),
-                                                     watch.seconds()});
+        next.raytrace = edited ? prepare_edited_traced(load, next.scene) : prepare_traced(load, next.scene);
+        edited_ = edited ? next.raytrace : nullptr;
         LoadedScene before; // freed outside of the lock
         publish([&] {
             next.raster = loaded_.raster;
@@ -97,10 +94,52 @@ unsigned LiveView::load(const View& view, std::function<Scene()> read, bool edit
         });
         const bool seen = edited && prepare_edited_raster(load, next.scene);
         start(preparer_, [=, this, scene = next.scene](const std::atomic<bool>& stop) {
-            if (!seen || rests(stop)) prepare_raster(load, scene);
+            if (seen && !rests(stop)) return;
+            if (edited)
+                prepare_whole(load, seen_in(view, read(Transforms::kBaked)));
+            else
+                prepare_raster(load, scene);
         });
     });
     return load;
+}
+
+void LiveView::expect_edits(const View& view, SceneReader read) {
+    if (expected_ == loads_ || loader_.busy()) return;
+    expected_ = loads_;
+    start(loader_, [=, this, load = loads_](const std::atomic<bool>&) {
+        if (!edited_) edited_ = prepare_edited_traced(load, seen_in(view, read(Transforms::kKept)));
+    });
+}
+
+std::shared_ptr<const LiveView::Traced> LiveView::prepare_traced(unsigned load,
+                                                                 const std::shared_ptr<const Scene>& scene) {
+    const Stopwatch watch;
+    raytrace::PathTracerScene traced = prepare(*scene, with_threads<raytrace::PathTracerSettings>());
+    return std::make_shared<const Traced>(Traced{++preparations_, load, scene, std::move(traced), watch.seconds()});
+}
+
+// Prepares an edited scene for the path tracer with the hierarchies that the scene before the edit had.
+std::shared_ptr<const LiveView::Traced> LiveView::prepare_edited_traced(unsigned load,
+                                                                        const std::shared_ptr<const Scene>& scene) {
+    const auto before = edited_ ? edited_ : loaded().raytrace;
+    if (!before) return prepare_traced(load, scene);
+    const Stopwatch watch;
+    raytrace::PathTracerScene traced =
+        prepare_edited(*scene, with_threads<raytrace::PathTracerSettings>(), before->prepared);
+    return std::make_shared<const Traced>(
+        Traced{++preparations_, load, scene, std::move(traced), watch.seconds(), false});
+}
+
+// Prepares an edited scene as the programs do, for both pipelines.
+void LiveView::prepare_whole(unsigned load, const std::shared_ptr<const Scene>& scene) {
+    const std::shared_ptr<const Traced> traced = prepare_traced(load, scene);
+    publish([&] {
+        if (loaded_.load != load) return;
+        loaded_.scene = scene;
+        loaded_.raytrace = traced;
+    });
+    prepare_raster(load, scene);
 }
 
 void LiveView::prepare_raster(unsigned load, const std::shared_ptr<const Scene>& scene) {
@@ -130,7 +169,7 @@ void LiveView::set_raster(PreparedScene<raster::RasterScene> next) {
 
 void LiveView::prepare_for(const View& view, const LoadedScene& loaded) {
     start(preparer_, [=, this](const std::atomic<bool>&) {
-        prepare_raster(loaded.load, std::make_shared<const Scene>(seen_in(view, *loaded.scene)));
+        prepare_raster(loaded.load, seen_in(view, *loaded.scene));
     });
 }
 
@@ -220,11 +259,16 @@ void LiveView::render_traced(const Wish& wish, const LoadedScene& scene, const s
     try {
         wait([&] { return paused_.load(); });
         Control to_the_end, stoppable{.stop = &stop, .progress = {}};
+        // After an edit, the scene is prepared once more. The image that is shown stays until the new one has as many
+        // samples.
+        const auto shown = tracer_frame();
+        const bool same = shown && shown->version == wish.version && shown->load == scene.load && !shown->preview;
+        const std::uint32_t least_samples = same ? shown->samples : kPreviewSamples;
         raytrace::ProgressiveRender preview(scene.raytrace->prepared, scaled(wish.view, kPreviewScale), wish.raytrace);
         const auto limit = static_cast<std::uint32_t>(wish.raytrace.samples_per_pixel);
         frame.preview = true;
         for (const std::uint32_t end : {1u, std::min(kPreviewSamples, limit)}) {
-            if (end <= frame.samples) break;
+            if (same || end <= frame.samples) break;
             if (!preview.add_samples(end - frame.samples, frame.samples == 0 ? to_the_end : stoppable)) return;
             frame.samples = end;
             frame.image = preview.film().image();
@@ -250,7 +294,7 @@ void LiveView::render_traced(const Wish& wish, const LoadedScene& scene, const s
             frame.estimated_relmse = render.film().estimated_relmse();
             frame.seconds = seconds();
             if (frame.estimated_relmse > 0) frame.curve.emplace_back(frame.seconds, frame.estimated_relmse);
-            if (frame.samples >= std::min(kPreviewSamples, limit)) publish_frame();
+            if (frame.samples >= std::min(least_samples, limit)) publish_frame();
         }
     } catch (const std::exception& error) {
         frame.error = error.what();
@@ -262,8 +306,9 @@ void LiveView::render_traced(const Wish& wish, const LoadedScene& scene, const s
 bool LiveView::finished(const Wish& wish) const {
     if (loader_.busy() || preparer_.busy()) return false;
     const std::lock_guard lock(mutex_);
-    if (!loaded_.raster || !loaded_.raster->whole || loaded_.raster->load != loaded_.load || !raster_frame_ ||
-        !tracer_frame_ || !(wish.view == scene_view(*loaded_.raster->scene)))
+    if (!loaded_.raster || !loaded_.raster->whole || !loaded_.raytrace->whole ||
+        loaded_.raster->load != loaded_.load || !raster_frame_ || !tracer_frame_ ||
+        !(wish.view == scene_view(*loaded_.raster->scene)))
         return false;
     const bool raster = raster_frame_->version == wish.version && raster_frame_->prepared == loaded_.raster->id &&
                         raster_frame_->scale == 1;

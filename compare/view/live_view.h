@@ -3,6 +3,7 @@
 #pragma once
 
 #include "compare/renderer.h"
+#include "compare/view/document.h"
 #include "compare/view/latest_job.h"
 #include "raytrace/progressive_render.h"
 
@@ -20,7 +21,9 @@ template <typename Prepared> struct PreparedScene {
     std::shared_ptr<const Scene> scene;
     Prepared prepared;
     double seconds; ///< time of the preparation
-    bool whole = true; ///< false after an edit, while the rasterizer's scene has the previous one's probes
+    /// This is false after an edit until no edit has come for a moment. Then the rasterizer's scene has the previous
+    /// one's probes, and the path tracer's has all transforms.
+    bool whole = true;
 };
 
 /// Describes the scene that was loaded last.
@@ -72,10 +75,13 @@ public:
     LiveView(int threads, std::function<void()> wake);
 
     /// Loads a scene in the background, for this view. The previous scene stays until the new one is prepared, and if
-    /// `read` throws. With `edited`, the new scene is an edit of the previous one: the rasterizer shows it with the
-    /// previous scene's probes until no edit has come for a moment. Returns a number that is different for every call
-    /// (LoadedScene::load).
-    unsigned load(const View& view, std::function<Scene()> read, bool edited = false);
+    /// `read` throws. With `edited`, the new scene is an edit of the previous one. It is prepared fast, with what can
+    /// be used again of the previous scene. When no edit has come for a moment, it is prepared once more as programs
+    /// do. Returns a number that is different for every call (LoadedScene::load).
+    unsigned load(const View& view, SceneReader read, bool edited = false);
+    /// Prepares in the background for edits of the scene that was loaded last, which then show sooner. `read` reads
+    /// that scene. A second call for the same scene does nothing.
+    void expect_edits(const View& view, SceneReader read);
     LoadedScene loaded() const;
 
     /// Renders the requested images, unless this happens already. Call it for every frame of the window. A frame of the
@@ -93,9 +99,13 @@ public:
     bool finished(const Wish& wish) const;
 
 private:
+    using Traced = PreparedScene<raytrace::PathTracerScene>;
     void publish(const std::function<void()>& change); // calls change() under the lock, then wake_
     template <typename Settings> Settings with_threads() const;
     void start(LatestJob& thread, LatestJob::Job job);
+    std::shared_ptr<const Traced> prepare_traced(unsigned load, const std::shared_ptr<const Scene>& scene);
+    std::shared_ptr<const Traced> prepare_edited_traced(unsigned load, const std::shared_ptr<const Scene>& scene);
+    void prepare_whole(unsigned load, const std::shared_ptr<const Scene>& scene);
     void prepare_raster(unsigned load, const std::shared_ptr<const Scene>& scene);
     bool prepare_edited_raster(unsigned load, const std::shared_ptr<const Scene>& scene);
     void set_raster(PreparedScene<raster::RasterScene> next);
@@ -105,12 +115,13 @@ private:
     void render_traced(const Wish& wish, const LoadedScene& scene, const std::atomic<bool>& stop);
 
     const int threads_;
-    unsigned loads_ = 0;
+    unsigned loads_ = 0, expected_ = 0; // expected_: the load that expect_edits() was called for
     bool loads_edit_ = false; // whether the last load is one of an edited scene
     std::atomic<unsigned> preparations_ = 0;
     const std::function<void()> wake_;
     std::atomic<bool> paused_ = false;
     std::atomic<bool> loading_ = false; // true while a scene is read and prepared for the path tracer
+    std::shared_ptr<const Traced> edited_; // of the last edit, with hierarchies that the next one uses; of loader_
     mutable std::mutex mutex_; // guards the results
     LoadedScene loaded_;
     std::shared_ptr<const RasterFrame> raster_frame_;

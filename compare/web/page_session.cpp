@@ -41,7 +41,7 @@ std::unique_ptr<PageSession::Prepared> PageSession::unprepared(Scene scene) cons
 }
 
 PageSession::Prepared& PageSession::prepared() {
-    if (!prepared_) prepared_ = unprepared(document().reader()());
+    if (!prepared_) prepared_ = unprepared(document().reader()(Transforms::kBaked));
     return *prepared_;
 }
 

@@ -15,31 +15,43 @@ namespace duet::raytrace {
 namespace {
 
 bool is_untransformed(const Object& object) { return object.identity && !object.moving; }
+bool is_mesh(const Shape& shape) { return std::holds_alternative<Mesh>(shape); }
 
 } // namespace
 
-Accelerator::Accelerator(const Scene& scene, int threads)
-    : scene_(scene), shapes_(scene.shapes.size()), has_alpha_masks_(scene.needs.alpha) {
-    std::vector<bool> seen_through(scene.shapes.size()); // whether rays may pass through some object of the shape
+Accelerator::Accelerator(const Scene& scene, int threads, const Accelerator* before)
+    : scene_(scene), seen_through_(scene.shapes.size()), shapes_(scene.shapes.size()),
+      has_alpha_masks_(scene.needs.alpha) {
     for (const Object& object : scene.objects)
-        if (can_be_seen_through(scene, object)) seen_through[object.shape] = true;
+        if (can_be_seen_through(scene, object)) seen_through_[object.shape] = true;
     BvhInput world(threads);
     for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
         const Object& object = scene.objects[i];
         const Shape& shape = scene.shapes[object.shape];
         primitives_ += primitive_count(shape);
-        if (is_untransformed(object)) {
-            world.add_shape(shape, i, seen_through[object.shape]);
+        if (is_untransformed(object) && !(before != nullptr && is_mesh(shape))) {
+            world.add_shape(shape, i, seen_through_[object.shape]);
             continue;
         }
         world.add_instance(object, i, shape);
-        if (!shapes_[object.shape].empty()) continue;
-        BvhInput own(threads);
-        own.add_shape(shape, kNoObject, seen_through[object.shape]);
-        shapes_[object.shape] = own.build();
+        std::shared_ptr<const Bvh>& own = shapes_[object.shape];
+        const bool seen_through = seen_through_[object.shape];
+        if (!own && before != nullptr) own = before->hierarchy_of(scene.shapes, object.shape, seen_through);
+        if (own) continue;
+        BvhInput input(threads);
+        input.add_shape(shape, kNoObject, seen_through);
+        own = std::make_shared<const Bvh>(input.build());
     }
     world_ = world.build();
     few_primitives_ = !world_.use_tree() && world_.instances.empty() && !has_alpha_masks_;
+}
+
+// Returns the hierarchy of a mesh of another scene, or null if this scene does not have that mesh.
+std::shared_ptr<const Bvh> Accelerator::hierarchy_of(const SharedList<Shape>& shapes, std::uint32_t shape,
+                                                     bool seen_through) const {
+    if (!is_mesh(shapes[shape])) return nullptr;
+    const std::size_t own = scene_.shapes.index_of(shapes.shared(shape), shape);
+    return own < shapes_.size() && seen_through_[own] == seen_through ? shapes_[own] : nullptr;
 }
 
 // Transforms the ray to the instance's object space at the ray's time.
@@ -56,7 +68,7 @@ template <bool kAny> auto Accelerator::instance_test(const Ray& ray, const Alpha
         const auto no_instance = [](const BvhInstance&, Hit&) { return false; };
         const Ray local = to_instance_space(instance, ray);
         if (!traceable(local)) return false;
-        const Bvh& shape = shapes_[instance.shape];
+        const Bvh& shape = *shapes_[instance.shape];
         return traverse<kAny>(shape, local, instance.object, so_far, no_instance, alpha);
     };
 }
@@ -70,7 +82,7 @@ struct Accelerator::PacketInstances {
     auto operator()(const Ray& ray) const { return scene.instance_test<false>(ray, nullptr); }
 
     void operator()(const BvhInstance& instance, unsigned active, PacketHits& best) const {
-        const Bvh& shape = scene.shapes_[instance.shape];
+        const Bvh& shape = *scene.shapes_[instance.shape];
         std::array<Ray, kSize> local;
         // Lanes that are not active get the ray of the first active one.
         local.fill(scene.to_instance_space(instance, rays[static_cast<std::size_t>(std::countr_zero(active))]));
@@ -207,13 +219,15 @@ BvhStatistics Accelerator::statistics() const {
         result.references += static_cast<std::int64_t>(bvh.references);
     };
     add(world_);
-    for (const Bvh& shape : shapes_) add(shape);
+    for (const auto& shape : shapes_)
+        if (shape) add(*shape);
     return result;
 }
 
 std::int64_t Accelerator::memory_bytes() const {
     std::int64_t sum = world_.memory_bytes();
-    for (const Bvh& shape : shapes_) sum += shape.memory_bytes();
+    for (const auto& shape : shapes_)
+        if (shape) sum += shape->memory_bytes();
     return sum;
 }
 

@@ -5,6 +5,7 @@
 #include "common/scene/scene.h"
 #include "raytrace/acceleration/bvh.h"
 
+#include <memory>
 #include <span>
 
 namespace duet::raytrace {
@@ -17,7 +18,11 @@ struct AlphaFilter;
 class Accelerator {
 public:
     /// Builds all hierarchies. `threads` is the number of build threads (0 = all); the result does not depend on it.
-    Accelerator(const Scene& scene, int threads);
+    Accelerator(const Scene& scene, int threads) : Accelerator(scene, threads, nullptr) {}
+    /// Builds the hierarchies of an edited scene. Each mesh has a bottom-level BVH, so that it can be used again after
+    /// the next edit. Those of meshes that `before` has as well are taken from there (see Transforms::kKept). Rays are
+    /// a little slower than with the other constructor.
+    Accelerator(const Scene& scene, int threads, const Accelerator& before) : Accelerator(scene, threads, &before) {}
 
     /// Returns the closest hit with t in (t_min, t_max]; t_min must not be negative. The hit is invalid if the ray
     /// misses, or if it is not `traceable`: its components are out of range or it has no direction. At equal t the
@@ -42,8 +47,13 @@ public:
     std::int64_t memory_bytes() const;
     BvhStatistics statistics() const;
     const Bvh& world() const { return world_; }
+    /// Returns the bottom-level BVH of a shape; null if it has none.
+    std::shared_ptr<const Bvh> hierarchy(std::uint32_t shape) const { return shapes_[shape]; }
 
 private:
+    Accelerator(const Scene& scene, int threads, const Accelerator* before);
+    std::shared_ptr<const Bvh> hierarchy_of(const SharedList<Shape>& shapes, std::uint32_t shape,
+                                            bool seen_through) const;
     void closest_sorted_by_class(std::span<const Ray> rays, std::span<const std::uint32_t> indices,
                                  std::span<Hit> hits) const;
     void closest_in_list(std::span<const Ray> rays, std::span<const std::uint32_t> indices, std::span<Hit> hits) const;
@@ -54,7 +64,8 @@ private:
 
     const Scene& scene_;
     Bvh world_;
-    std::vector<Bvh> shapes_; ///< by shape; empty if no instance uses the shape
+    std::vector<bool> seen_through_; ///< by shape: whether rays may pass through some object of the shape
+    std::vector<std::shared_ptr<const Bvh>> shapes_; ///< by shape; null if no instance uses the shape
     std::int64_t primitives_ = 0;
     bool has_alpha_masks_; ///< whether any material has an alpha mask
     bool few_primitives_ = false;

@@ -162,7 +162,7 @@ TEST_SUITE("unit") {
         CHECK(a.scene.objects.size() == 20);
         CHECK(a.view.camera.eye == b.view.camera.eye);
         CHECK(std::get<Mesh>(a.scene.shapes[0]).positions == std::get<Mesh>(b.scene.shapes[0]).positions);
-        CHECK(std::get<Mesh>(a.scene.shapes[1]).closed);
+        CHECK(std::get<Mesh>(a.scene.shapes[1]).closed.value());
         int within = 0;
         for (int i = 0; i < 100; ++i) {
             const TrialScene c = random_scene(first, all, {.offset = {1e5f, 0, 0}, .scale = 1}, 32, 24);

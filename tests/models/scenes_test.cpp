@@ -55,7 +55,7 @@ void check_box(const Scene& scene, const std::string& name, const Footprint& foo
     }
     CHECK(std::ranges::count(seen, true) == 8);
     CHECK(mesh.triangles.size() == 12);
-    CHECK(mesh.closed);
+    CHECK(mesh.closed.value());
     CHECK(mesh.normals.empty());
 }
 
@@ -214,7 +214,7 @@ TEST_SUITE("unit") {
         const Mesh& mesh = std::get<Mesh>(scene.shapes.front());
         CHECK(mesh.triangles.size() > 100'000);
         CHECK(mesh.triangles.size() < 300'000);
-        CHECK_FALSE(mesh.closed);
+        CHECK_FALSE(mesh.closed.value());
         int flat = 0;
         for (const auto& [a, b, c] : mesh.triangles) {
             const Vec3d p(mesh.positions[a]), q(mesh.positions[b]), r(mesh.positions[c]);

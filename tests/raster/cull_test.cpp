@@ -79,7 +79,7 @@ TEST_SUITE("unit") {
         Scene scene;
         add(scene, torus(40, 20));
         finish_scene(scene);
-        CHECK(std::get<Mesh>(scene.shapes[0]).closed);
+        CHECK(std::get<Mesh>(scene.shapes[0]).closed.value());
         const View view{look({1.0, 0.05, 0.02}, {0.9, 0.0, -1}, 90), 64, 48};
         const Rendering rendering = render(scene, view, hits_only());
         CHECK(skipped(rendering, "backfaces") == 0);
@@ -119,7 +119,7 @@ TEST_SUITE("unit") {
                 CAPTURE(agreement.first);
                 CHECK(agreement.unexplained == 0);
                 CHECK((skipped(rendering, "backfaces") > 0) ==
-                      (std::get<Mesh>(scene.shapes[scene.objects[0].shape]).closed));
+                      (std::get<Mesh>(scene.shapes[scene.objects[0].shape]).closed.value()));
             }
     }
 

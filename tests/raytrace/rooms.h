@@ -157,7 +157,7 @@ inline Scene wild_room(int seed, const Placement& place) {
         for (Vec3& normal : mesh.normals) normal = random() < 0.3f ? normalize(normal + 0.7f * direction()) : normal;
         const std::uint32_t object = builder.add(mesh, any(i));
         if (i % 5 != 0) continue;
-        auto& slots = std::get<Mesh>(builder.scene.shapes[builder.scene.objects[object].shape]).material_slots;
+        auto& slots = std::get<Mesh>(builder.scene.shapes.edit(builder.scene.objects[object].shape)).material_slots;
         for (std::size_t k = 0; k < mesh.triangles.size(); ++k) slots.push_back(static_cast<std::uint16_t>(k % 3));
         builder.scene.objects[object].materials = {any(i), any(i + 1), white};
     }

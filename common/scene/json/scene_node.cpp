@@ -30,14 +30,26 @@ Shape read_box(const JsonValue& value) {
     return box_quads(box.low, box.high);
 }
 
-ObjFile read_obj(const std::filesystem::path& file, const ObjOptions& options, FileCache* cache) {
-    if (!cache) return load_obj(file, options);
+/// Holds a mesh file. Its mesh is a shape, which scenes share.
+struct MeshFile {
+    ObjFile obj; ///< without the mesh
+    std::shared_ptr<const Shape> shape;
+};
+
+MeshFile with_shape(ObjFile obj) {
+    auto shape = std::make_shared<Shape>(std::exchange(obj.mesh, {}));
+    return {std::move(obj), std::move(shape)};
+}
+
+MeshFile read_mesh_file(const std::filesystem::path& file, const ObjOptions& options, FileCache* cache) {
+    if (!cache) return with_shape(load_obj(file, options));
     const std::string key = message("mesh ", canonical_key(file), '\n', static_cast<int>(options.normals), ' ',
                                     options.materials);
-    return *cache->get<ObjFile>(key, [&] {
+    return *cache->get<MeshFile>(key, [&] {
         ObjFile obj = load_obj(file, options);
+        obj.mesh.closed = is_closed_outwards(obj.mesh); // here, because a scene cannot change a shape that others share
         std::vector<std::filesystem::path> files = obj.files;
-        return FileCache::Read<ObjFile>{std::move(obj), std::move(files)};
+        return FileCache::Read<MeshFile>{with_shape(std::move(obj)), std::move(files)};
     });
 }
 
@@ -112,11 +124,11 @@ const SceneNodeReader::LoadedMesh& SceneNodeReader::load_mesh(const JsonValue& v
     const auto found = meshes_.find(key);
     if (found != meshes_.end()) return found->second;
     try {
-        ObjFile obj = read_obj(file, {kKinds[kind], !own_material}, images_->files());
+        const auto [obj, shape] = read_mesh_file(file, {kKinds[kind], !own_material}, images_->files());
         scene_->files.insert(scene_->files.end(), obj.files.begin(), obj.files.end());
         LoadedMesh mesh{static_cast<std::uint32_t>(scene_->shapes.size()), {}, obj.materials.size()};
         if (!own_material) mesh.materials = add_obj_materials(file, obj, *images_, *scene_);
-        scene_->shapes.push_back(std::move(obj.mesh));
+        scene_->shapes.push_back(shape);
         return meshes_.emplace(key, std::move(mesh)).first->second;
     } catch (const Error& error) {
         // The meshes of models/generated/ are not part of the repository.

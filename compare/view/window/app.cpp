@@ -55,6 +55,7 @@ bool App::draw() {
     handle_keys(); // after the mouse, so that keys apply to the result of a drag that has just ended
 
     if (requested_load_ == 0) load(); // the first frame: the size of the images is known now
+    if (selected_.any() && document_.editable()) live_.expect_edits(wish_.view, document_.reader());
     live_.show(wish_);
     return fly_by_keys();
 }

@@ -37,6 +37,31 @@ TEST_SUITE("unit") {
         }
     }
 
+    TEST_CASE("scenes that keep all transforms share their meshes, and a bake changes none of them") {
+        const ScratchFolder folder;
+        const std::filesystem::path path = folder.path() / "scene.json";
+        write_file(folder.path() / "mesh.obj", triangle(2));
+        const auto text = [](double x) {
+            return message(R"({"camera": {"eye": [0, 0, 5], "look_at": [0, 0, 0]},
+        "materials": {"white": {"type": "diffuse", "albedo": 0.7}}, "objects": [{"type": "mesh", "file": "mesh.obj",
+        "material": "white", "transform": [{"translate": [)", x, ", 0, 0]}]}]}");
+        };
+        std::filesystem::last_write_time(folder.path() / "mesh.obj",
+                                         std::filesystem::file_time_type::clock::now() - std::chrono::seconds(2));
+        FileCache cache;
+        const Scene one = parse_scene(path, text(1), cache, Transforms::kKept);
+        const Scene baked = parse_scene(path, text(2), cache);
+        const Scene three = parse_scene(path, text(3), cache, Transforms::kKept);
+        CHECK(&one.shapes[0] == &three.shapes[0]);
+        CHECK(&one.shapes[0] != &baked.shapes[0]);
+        CHECK_FALSE(std::get<Mesh>(one.shapes[0]).closed.value());
+        CHECK(std::get<Mesh>(one.shapes[0]).positions.front() == Vec3{0, 0, 0});
+        CHECK(std::get<Mesh>(baked.shapes[0]).positions.front() == Vec3{2, 0, 0});
+        CHECK(baked.objects[0].identity);
+        CHECK_FALSE(three.objects[0].identity);
+        CHECK(three.bounds.low.x == doctest::Approx(3));
+    }
+
     TEST_CASE("a mesh that has changed, or is gone, is read anew") {
         const ScratchFolder folder;
         const std::filesystem::path path = folder.path() / "scene.json", mesh = folder.path() / "mesh.obj";

@@ -130,7 +130,7 @@ TEST_SUITE("unit") {
             change(scene);
             return error_of([&] { finish_scene(scene); });
         };
-        const auto mesh = [](Scene& scene) -> Mesh& { return std::get<Mesh>(scene.shapes[0]); };
+        const auto mesh = [](Scene& scene) -> Mesh& { return std::get<Mesh>(scene.shapes.edit(0)); };
         constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
         const std::vector<std::pair<std::function<void(Scene&)>, const char*>> cases{
             {[](Scene&) {}, "no error"},
@@ -151,7 +151,7 @@ TEST_SUITE("unit") {
             {[](Scene& s) { s.lights = {SunLight{{0, -2, 0}, Rgb(1.0f)}}; }, "a sun's direction has the length 2"},
             {[](Scene& s) { s.lights = {SpotLight{{}, {0, -1, 0}, Rgb(1.0f), 0.5f, 0.6f}}; },
              "a spot light's cos_inner must be above its cos_outer"},
-            {[](Scene& s) { s.shapes[0] = Sphere{{}, 0}; }, "\"patch\": found the radius 0, expected one above 0"},
+            {[](Scene& s) { s.shapes.edit(0) = Sphere{{}, 0}; }, "\"patch\": found the radius 0, expected one above 0"},
         };
         for (const auto& [change, expected] : cases) CHECK(says(error_after(change), expected));
     }
@@ -395,11 +395,11 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("Meshes are found closed, also after a mirroring bake") {
-        CHECK(std::get<Mesh>(finished(scene_of(tetrahedron(), Mat4d())).shapes[0]).closed);
-        CHECK(std::get<Mesh>(finished(scene_of(tetrahedron(), scaling(Vec3d(1, 1, -1)))).shapes[0]).closed);
+        CHECK(std::get<Mesh>(finished(scene_of(tetrahedron(), Mat4d())).shapes[0]).closed.value());
+        CHECK(std::get<Mesh>(finished(scene_of(tetrahedron(), scaling(Vec3d(1, 1, -1)))).shapes[0]).closed.value());
         Mesh open = tetrahedron();
         open.triangles.pop_back();
-        CHECK_FALSE(std::get<Mesh>(finished(scene_of(open, Mat4d())).shapes[0]).closed);
+        CHECK_FALSE(std::get<Mesh>(finished(scene_of(open, Mat4d())).shapes[0]).closed.value());
     }
 
     TEST_CASE("An empty scene has finite bounds; one that reaches too far is refused") {

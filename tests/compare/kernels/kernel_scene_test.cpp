@@ -57,7 +57,7 @@ TEST_SUITE("unit") {
         }
         const auto is_quad = [](const Shape& shape) { return std::holds_alternative<QuadList>(shape); };
         const Scene loaded = load_scene(bowl);
-        REQUIRE(is_quad(loaded.shapes.back()));
+        REQUIRE(is_quad(loaded.shapes[loaded.shapes.size() - 1]));
         CHECK(primitive_count(loaded.shapes.front()) == triangles);
     }
 

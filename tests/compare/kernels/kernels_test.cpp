@@ -106,7 +106,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("points inside lie inside; a closed mesh lets no ray out, one with a hole does") {
         const KernelScene scene = lump(Arrangement::kAlone);
-        REQUIRE(scene.triangles().closed);
+        REQUIRE(scene.triangles().closed.value());
         const HitOracle oracle(*scene.scene);
         for (const Vec3& p : points_inside(scene, oracle, 200, 1)) REQUIRE(length(p) < 1.1f);
         const raytrace::Accelerator accelerator(*scene.scene, 1);

@@ -85,12 +85,12 @@ TEST_SUITE("unit") {
         const std::filesystem::path path = folder.path() / "scene.json";
         write_file(path, kText);
         SceneDocument document(path, {});
-        CHECK(document.reader()().objects.size() == 1);
-        CHECK(document.reader()().objects.size() == 1); // not only the scene that was read first
+        CHECK(document.reader()(Transforms::kBaked).objects.size() == 1);
+        CHECK(document.reader()(Transforms::kBaked).objects.size() == 1); // not only the scene that was read first
         document.set_text(without_value(document.text(), {"objects", "0"}));
-        CHECK(document.reader()().objects.empty());
+        CHECK(document.reader()(Transforms::kBaked).objects.empty());
         document.set_text(with_value(kText, {"objects", "0", "radius"}, -1));
-        CHECK_THROWS_AS(document.reader()(), Error);
+        CHECK_THROWS_AS(document.reader()(Transforms::kBaked), Error);
         write_file(path, "{");
         CHECK_THROWS_AS(document.reload(), Error);
         CHECK_THROWS_AS(SceneDocument(folder.path() / "none.json", {}), Error);
@@ -105,6 +105,6 @@ TEST_SUITE("unit") {
         document.set_camera({.eye = {1, 2, 3}});
         CHECK_FALSE(document.changed());
         CHECK_THROWS_AS(document.save(), Error);
-        CHECK(document.reader()().objects.size() == 2);
+        CHECK(document.reader()(Transforms::kBaked).objects.size() == 2);
     }
 }

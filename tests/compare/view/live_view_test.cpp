@@ -1,9 +1,13 @@
 // These tests check the images behind the window: in the end they are those of the programs, bit for bit.
 #include "compare/view/live_view.h"
 
+#include "common/scene/file_cache.h"
 #include "common/system/error.h"
+#include "common/system/file.h"
+#include "raytrace/path_tracer_scene.h"
 
 #include <doctest/doctest.h>
+#include <nlohmann/json.hpp>
 
 #include <chrono>
 
@@ -54,7 +58,7 @@ TEST_SUITE("unit") {
         std::atomic<int> news = 0;
         LiveView live(0, [&] { ++news; });
         CHECK_FALSE(live.finished(wish));
-        live.load(wish.view, [&] { return scene; });
+        live.load(wish.view, [&](Transforms) { return scene; });
         wait_for(live, wish);
         check_images(live, scene, wish);
         CHECK(live.tracer_frame()->samples == 5);
@@ -73,16 +77,16 @@ TEST_SUITE("unit") {
         const Scene scene = load_scene(kCornell);
         const Wish wish = small_wish(scene);
         LiveView live(0, [] {});
-        live.load(wish.view, [&] { return scene; });
+        live.load(wish.view, [&](Transforms) { return scene; });
         wait_for(live, wish);
-        live.load(wish.view, []() -> Scene { throw Error("no such scene"); });
+        live.load(wish.view, [](Transforms) -> Scene { throw Error("no such scene"); });
         while (live.loaded().error.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
         CHECK(live.loaded().error == "no such scene");
         check_images(live, scene, wish);
         Scene edited = scene;
         edited.environment = ConstantEnvironment{Rgb(0.5f)};
         finish_scene(edited);
-        live.load(wish.view, [&] { return edited; });
+        live.load(wish.view, [&](Transforms) { return edited; });
         while (!live.loaded().error.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
         wait_for(live, wish);
         check_images(live, edited, wish);
@@ -92,14 +96,14 @@ TEST_SUITE("unit") {
         const Scene scene = load_scene(kCornell);
         const Wish wish = small_wish(scene);
         LiveView live(0, [] {});
-        live.load(wish.view, [&] { return scene; });
+        live.load(wish.view, [&](Transforms) { return scene; });
         wait_for(live, wish);
         Scene edited = scene;
         bool seen_with_old_probes = false;
         for (int step = 1; step <= 10; ++step) {
             edited.objects.front().place(Mat4(translation(Vec3d(0.01 * step, 0, 0))));
             finish_scene(edited);
-            const unsigned load = live.load(wish.view, [&] { return edited; }, true);
+            const unsigned load = live.load(wish.view, [&](Transforms) { return edited; }, true);
             while (live.loaded().load != load || live.loaded().raster->load != load) {
                 live.show(wish);
                 std::this_thread::sleep_for(std::chrono::milliseconds(2));
@@ -113,12 +117,47 @@ TEST_SUITE("unit") {
         check_images(live, edited, wish);
     }
 
+    TEST_CASE("a dragged mesh keeps its hierarchy, and is at last as the programs show it") {
+        const std::filesystem::path file = std::filesystem::path(DUET_SOURCE_DIR) / "models" / "amphora.json";
+        const nlohmann::ordered_json json = nlohmann::ordered_json::parse(read_file(file));
+        FileCache cache;
+        const auto read = [&](double x) {
+            nlohmann::ordered_json moved = json;
+            moved["objects"][3]["transform"] = {{{"translate", {x, 0, 0}}}};
+            return [&cache, &file, text = moved.dump()](Transforms t) { return parse_scene(file, text, cache, t); };
+        };
+        const auto hierarchy = [](const LiveView& live) {
+            const LoadedScene loaded = live.loaded();
+            const std::uint32_t amphora = loaded.scene->objects[3].shape;
+            REQUIRE(std::holds_alternative<Mesh>(loaded.scene->shapes[amphora]));
+            return loaded.raytrace->prepared.data().accelerator.hierarchy(amphora);
+        };
+        const Wish wish = small_wish(read(0)(Transforms::kBaked));
+        LiveView live(0, [] {});
+        live.load(wish.view, read(0));
+        wait_for(live, wish);
+        CHECK_FALSE(hierarchy(live)); // all triangles are in the hierarchy of the world
+        live.expect_edits(wish.view, read(0));
+        std::shared_ptr<const raytrace::Bvh> own;
+        for (int step = 1; step <= 5; ++step) {
+            const unsigned load = live.load(wish.view, read(0.01 * step), true);
+            while (live.loaded().load != load) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            if (live.loaded().raytrace->whole) continue; // this machine is slow
+            if (own) CHECK(hierarchy(live) == own);
+            own = hierarchy(live);
+        }
+        CHECK(own);
+        wait_for(live, wish);
+        CHECK_FALSE(hierarchy(live));
+        check_images(live, read(0.05)(Transforms::kBaked), wish);
+    }
+
     TEST_CASE("a paused path tracer renders nothing, and goes on where it was") {
         const Scene scene = load_scene(kCornell);
         Wish wish = small_wish(scene);
         LiveView live(0, [] {});
         live.pause(true);
-        live.load(wish.view, [&] { return scene; });
+        live.load(wish.view, [&](Transforms) { return scene; });
         while (!live.raster_frame()) {
             live.show(wish);
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -135,7 +174,7 @@ TEST_SUITE("unit") {
         wish.raytrace.samples_per_pixel = 1;
         wish.raytrace.sampler = SamplerKind::kStratified;
         LiveView live(0, [] {});
-        live.load(wish.view, [&] { return scene; });
+        live.load(wish.view, [&](Transforms) { return scene; });
         wait_for(live, wish);
         CHECK(live.tracer_frame()->error.find("progressive") != std::string::npos);
         CHECK(live.raster_frame()->error.empty());
