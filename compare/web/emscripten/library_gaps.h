@@ -69,6 +69,25 @@ template <typename Range, typename Is> constexpr bool none_of(const Range& range
 template <typename Range, typename T> constexpr auto count(const Range& range, const T& value) {
     return std::count(begin(range), end(range), value);
 }
+template <typename Range, typename Is> constexpr auto count_if(const Range& range, Is is) {
+    return std::count_if(begin(range), end(range), is);
+}
+template <typename Range, typename Is> constexpr auto find_if_not(const Range& range, Is is) {
+    return std::find_if_not(begin(range), end(range), is);
+}
+template <typename Range, typename Value, typename Less = std::less<>, typename Projection = identity>
+constexpr auto lower_bound(const Range& range, const Value& value, Less less = {}, Projection projection = {}) {
+    return std::lower_bound(begin(range), end(range), value,
+                            [&](const auto& x, const Value& v) { return invoke(less, invoke(projection, x), v); });
+}
+template <typename Range, typename Value, typename Less = std::less<>, typename Projection = identity>
+constexpr auto upper_bound(const Range& range, const Value& value, Less less = {}, Projection projection = {}) {
+    return std::upper_bound(begin(range), end(range), value,
+                            [&](const Value& v, const auto& x) { return invoke(less, v, invoke(projection, x)); });
+}
+template <typename Range, typename T> constexpr bool binary_search(const Range& range, const T& value) {
+    return std::binary_search(begin(range), end(range), value);
+}
 template <typename Range, typename Value, typename Projection = identity>
 constexpr auto find(Range&& range, const Value& value, Projection projection = {}) {
     return std::find_if(begin(range), end(range), [&](const auto& x) { return invoke(projection, x) == value; });
