@@ -14,6 +14,7 @@
 
 #include "common/scene/alpha_mask.h"
 #include "common/scene/motion_bounds.h"
+#include "common/scene/shared_mesh.h"
 #include "common/scene/used_materials.h"
 #include "common/system/error.h"
 
@@ -132,26 +133,23 @@ void prepare_lit(const RasterSettings& settings, RasterSceneData& data, const Ra
 }
 
 /// Packs the shapes of a scene. Those of meshes that `before` has as well are taken from there.
-SharedList<PackedShape> packed_shapes(const SharedList<Shape>& shapes, const RasterSceneData* before) {
+SharedList<PackedShape> packed_shapes(const Scene& scene, const RasterSceneData* before) {
     SharedList<PackedShape> packed;
-    for (std::size_t i = 0; i < shapes.size(); ++i) {
-        if (before != nullptr && std::holds_alternative<Mesh>(shapes[i])) {
-            const std::size_t known = before->scene.shapes.index_of(shapes.shared(i), i);
-            if (known < before->shapes.size()) {
-                packed.push_back(before->shapes.shared(known));
-                continue;
-            }
-        }
-        packed.push_back(PackedShape(shapes[i]));
+    for (std::size_t i = 0; i < scene.shapes.size(); ++i) {
+        const auto known = before != nullptr ? shared_mesh(before->scene, scene, i) : std::nullopt;
+        if (known)
+            packed.push_back(before->shapes.shared(*known));
+        else
+            packed.push_back(PackedShape(scene.shapes[i]));
     }
     return packed;
 }
 
-/// Implements prepare(). If `before` is not null, its probes are reused.
+/// Implements prepare(). If `before` is not null, its probes and the packed meshes that both scenes share are reused.
 RasterScene prepare_after(const RasterSceneData* before, const Scene& scene, const RasterSettings& settings) {
     RasterSceneData data{.scene = scene,
                          .sky_irradiance = environment_irradiance(scene.environment, settings.threads),
-                         .shapes = packed_shapes(scene.shapes, before),
+                         .shapes = packed_shapes(scene, before),
                          .texture_samplers = texture_samplers(scene.textures),
                          .ambient = mean_radiance(scene.environment)};
     for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {

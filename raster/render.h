@@ -29,9 +29,10 @@ private:
 /// Prepares a scene. Throws Error if the shadow settings are out of range.
 RasterScene prepare(const Scene& scene, const RasterSettings& settings);
 /// Prepares an edited scene fast, for a preview. It reuses the probes of the scene before the edit, so indirect light
-/// and reflections lag behind. Everything else is computed anew, which takes a small part of the time. Returns nothing
-/// if the probes do not fit: the number of objects differs, or objects reflect in only one of the two scenes, or only
-/// one of them has the probes that the settings request.
+/// and reflections lag behind, and the packed meshes that both scenes share (see Transforms). Everything else is
+/// computed anew, which takes a small part of the time. Returns nothing if the probes do not fit: the number of objects
+/// differs, or objects reflect in only one of the two scenes, or only one of them has the probes that the settings
+/// request.
 std::optional<RasterScene> prepare_edited(const Scene& scene, const RasterSettings& settings,
                                           const RasterScene& before);
 /// Returns one sentence for each approximation in which images with these settings differ from the path tracer's. Only

@@ -44,7 +44,7 @@ struct Mesh {
     std::vector<std::uint16_t> material_slots{};           ///< one slot per triangle, or empty: all 0
     /// A closed mesh fulfills two conditions. First, each edge, identified by the positions of its ends, is shared by
     /// two triangles that traverse it in opposite directions. Second, each connected component encloses a positive
-    /// volume, so its triangles face outward. finish_scene() sets this; before, it is empty.
+    /// volume, so its triangles face outward. finish_scene() sets this; before, it may be empty.
     std::optional<bool> closed{};
 };
 

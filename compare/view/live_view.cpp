@@ -84,7 +84,7 @@ unsigned LiveView::load(const View& view, SceneReader read, bool edited) {
         LoadedScene next;
         next.scene = seen_in(view, read(edited ? Transforms::kKept : Transforms::kBaked));
         next.load = load;
-        next.raytrace = edited ? prepare_edited_traced(load, next.scene) : prepare_traced(load, next.scene);
+        next.raytrace = prepare_traced(load, next.scene, edited ? hierarchies() : nullptr);
         edited_ = edited ? next.raytrace : nullptr;
         LoadedScene before; // freed outside of the lock
         publish([&] {
@@ -108,32 +108,25 @@ void LiveView::expect_edits(const View& view, SceneReader read) {
     if (expected_ == loads_ || loader_.busy()) return;
     expected_ = loads_;
     start(loader_, [=, this, load = loads_](const std::atomic<bool>&) {
-        if (!edited_) edited_ = prepare_edited_traced(load, seen_in(view, read(Transforms::kKept)));
+        if (!edited_) edited_ = prepare_traced(load, seen_in(view, read(Transforms::kKept)), hierarchies());
     });
 }
 
+// Prepares a scene for the path tracer. If `before` is not null, the scene is an edit of it, and takes its hierarchies.
 std::shared_ptr<const LiveView::Traced> LiveView::prepare_traced(unsigned load,
-                                                                 const std::shared_ptr<const Scene>& scene) {
+                                                                 const std::shared_ptr<const Scene>& scene,
+                                                                 const std::shared_ptr<const Traced>& before) {
     const Stopwatch watch;
-    raytrace::PathTracerScene traced = prepare(*scene, with_threads<raytrace::PathTracerSettings>());
-    return std::make_shared<const Traced>(Traced{++preparations_, load, scene, std::move(traced), watch.seconds()});
-}
-
-// Prepares an edited scene for the path tracer with the hierarchies that the scene before the edit had.
-std::shared_ptr<const LiveView::Traced> LiveView::prepare_edited_traced(unsigned load,
-                                                                        const std::shared_ptr<const Scene>& scene) {
-    const auto before = edited_ ? edited_ : loaded().raytrace;
-    if (!before) return prepare_traced(load, scene);
-    const Stopwatch watch;
+    const auto settings = with_threads<raytrace::PathTracerSettings>();
     raytrace::PathTracerScene traced =
-        prepare_edited(*scene, with_threads<raytrace::PathTracerSettings>(), before->prepared);
+        before ? prepare_edited(*scene, settings, before->prepared) : prepare(*scene, settings);
     return std::make_shared<const Traced>(
-        Traced{++preparations_, load, scene, std::move(traced), watch.seconds(), false});
+        Traced{++preparations_, load, scene, std::move(traced), watch.seconds(), before == nullptr});
 }
 
 // Prepares an edited scene as the programs do, for both pipelines.
 void LiveView::prepare_whole(unsigned load, const std::shared_ptr<const Scene>& scene) {
-    const std::shared_ptr<const Traced> traced = prepare_traced(load, scene);
+    const std::shared_ptr<const Traced> traced = prepare_traced(load, scene, nullptr);
     publish([&] {
         if (loaded_.load != load) return;
         loaded_.scene = scene;

@@ -68,8 +68,9 @@ struct TracerFrame {
     std::string error{};                            ///< why there is no image
 };
 
-/// A LiveView owns four threads. One loads and prepares scenes, one renders the rasterizer's probes, which takes
-/// longer, and one for each pipeline renders images. They call `wake` whenever there is a new result.
+/// A LiveView owns four threads. One loads and prepares scenes. One does what takes longer: it renders the rasterizer's
+/// probes, and prepares edited scenes as the programs do. One for each pipeline renders images. They call `wake`
+/// whenever there is a new result.
 class LiveView {
 public:
     LiveView(int threads, std::function<void()> wake);
@@ -103,8 +104,9 @@ private:
     void publish(const std::function<void()>& change); // calls change() under the lock, then wake_
     template <typename Settings> Settings with_threads() const;
     void start(LatestJob& thread, LatestJob::Job job);
-    std::shared_ptr<const Traced> prepare_traced(unsigned load, const std::shared_ptr<const Scene>& scene);
-    std::shared_ptr<const Traced> prepare_edited_traced(unsigned load, const std::shared_ptr<const Scene>& scene);
+    std::shared_ptr<const Traced> hierarchies() const { return edited_ ? edited_ : loaded().raytrace; } // on loader_
+    std::shared_ptr<const Traced> prepare_traced(unsigned load, const std::shared_ptr<const Scene>& scene,
+                                                 const std::shared_ptr<const Traced>& before);
     void prepare_whole(unsigned load, const std::shared_ptr<const Scene>& scene);
     void prepare_raster(unsigned load, const std::shared_ptr<const Scene>& scene);
     bool prepare_edited_raster(unsigned load, const std::shared_ptr<const Scene>& scene);

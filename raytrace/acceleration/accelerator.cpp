@@ -1,5 +1,6 @@
 #include "raytrace/acceleration/accelerator.h"
 
+#include "common/scene/shared_mesh.h"
 #include "common/system/error.h"
 #include "raytrace/acceleration/bvh_input.h"
 #include "raytrace/acceleration/bvh_packet.h"
@@ -15,7 +16,6 @@ namespace duet::raytrace {
 namespace {
 
 bool is_untransformed(const Object& object) { return object.identity && !object.moving; }
-bool is_mesh(const Shape& shape) { return std::holds_alternative<Mesh>(shape); }
 
 } // namespace
 
@@ -29,14 +29,14 @@ Accelerator::Accelerator(const Scene& scene, int threads, const Accelerator* bef
         const Object& object = scene.objects[i];
         const Shape& shape = scene.shapes[object.shape];
         primitives_ += primitive_count(shape);
-        if (is_untransformed(object) && !(before != nullptr && is_mesh(shape))) {
+        if (is_untransformed(object) && !(before != nullptr && std::holds_alternative<Mesh>(shape))) {
             world.add_shape(shape, i, seen_through_[object.shape]);
             continue;
         }
         world.add_instance(object, i, shape);
         std::shared_ptr<const Bvh>& own = shapes_[object.shape];
         const bool seen_through = seen_through_[object.shape];
-        if (!own && before != nullptr) own = before->hierarchy_of(scene.shapes, object.shape, seen_through);
+        if (!own && before != nullptr) own = before->hierarchy_for(scene, object.shape, seen_through);
         if (own) continue;
         BvhInput input(threads);
         input.add_shape(shape, kNoObject, seen_through);
@@ -46,12 +46,11 @@ Accelerator::Accelerator(const Scene& scene, int threads, const Accelerator* bef
     few_primitives_ = !world_.use_tree() && world_.instances.empty() && !has_alpha_masks_;
 }
 
-// Returns the hierarchy of a mesh of another scene, or null if this scene does not have that mesh.
-std::shared_ptr<const Bvh> Accelerator::hierarchy_of(const SharedList<Shape>& shapes, std::uint32_t shape,
-                                                     bool seen_through) const {
-    if (!is_mesh(shapes[shape])) return nullptr;
-    const std::size_t own = scene_.shapes.index_of(shapes.shared(shape), shape);
-    return own < shapes_.size() && seen_through_[own] == seen_through ? shapes_[own] : nullptr;
+// Returns the hierarchy of a shape of another scene, or null if this scene has none for it.
+std::shared_ptr<const Bvh> Accelerator::hierarchy_for(const Scene& scene, std::uint32_t shape,
+                                                      bool seen_through) const {
+    const auto own = shared_mesh(scene_, scene, shape);
+    return own && seen_through_[*own] == seen_through ? shapes_[*own] : nullptr;
 }
 
 // Transforms the ray to the instance's object space at the ray's time.

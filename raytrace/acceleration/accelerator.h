@@ -52,8 +52,7 @@ public:
 
 private:
     Accelerator(const Scene& scene, int threads, const Accelerator* before);
-    std::shared_ptr<const Bvh> hierarchy_of(const SharedList<Shape>& shapes, std::uint32_t shape,
-                                            bool seen_through) const;
+    std::shared_ptr<const Bvh> hierarchy_for(const Scene& scene, std::uint32_t shape, bool seen_through) const;
     void closest_sorted_by_class(std::span<const Ray> rays, std::span<const std::uint32_t> indices,
                                  std::span<Hit> hits) const;
     void closest_in_list(std::span<const Ray> rays, std::span<const std::uint32_t> indices, std::span<Hit> hits) const;

@@ -126,8 +126,7 @@ TEST_SUITE("unit") {
             moved["objects"][3]["transform"] = {{{"translate", {x, 0, 0}}}};
             return [&cache, &file, text = moved.dump()](Transforms t) { return parse_scene(file, text, cache, t); };
         };
-        const auto hierarchy = [](const LiveView& live) {
-            const LoadedScene loaded = live.loaded();
+        const auto hierarchy = [](const LoadedScene& loaded) {
             const std::uint32_t amphora = loaded.scene->objects[3].shape;
             REQUIRE(std::holds_alternative<Mesh>(loaded.scene->shapes[amphora]));
             return loaded.raytrace->prepared.data().accelerator.hierarchy(amphora);
@@ -136,19 +135,20 @@ TEST_SUITE("unit") {
         LiveView live(0, [] {});
         live.load(wish.view, read(0));
         wait_for(live, wish);
-        CHECK_FALSE(hierarchy(live)); // all triangles are in the hierarchy of the world
+        CHECK_FALSE(hierarchy(live.loaded())); // all triangles are in the hierarchy of the world
         live.expect_edits(wish.view, read(0));
         std::shared_ptr<const raytrace::Bvh> own;
         for (int step = 1; step <= 5; ++step) {
             const unsigned load = live.load(wish.view, read(0.01 * step), true);
             while (live.loaded().load != load) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-            if (live.loaded().raytrace->whole) continue; // this machine is slow
-            if (own) CHECK(hierarchy(live) == own);
-            own = hierarchy(live);
+            const LoadedScene loaded = live.loaded();
+            if (loaded.raytrace->whole) continue; // this machine is slow
+            if (own) CHECK(hierarchy(loaded) == own);
+            own = hierarchy(loaded);
         }
         CHECK(own);
         wait_for(live, wish);
-        CHECK_FALSE(hierarchy(live));
+        CHECK_FALSE(hierarchy(live.loaded()));
         check_images(live, read(0.05)(Transforms::kBaked), wish);
     }
 
