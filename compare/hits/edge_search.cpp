@@ -28,15 +28,18 @@ struct EdgeSearcher {
         farthest = max(farthest, nearest.t);
         result.found_a = result.found_a || nearest.same_as(a);
         result.found_b = result.found_b || nearest.same_as(b);
-        result.tied_a = result.tied_a || ties_with(ray, nearest, a);
-        result.tied_b = result.tied_b || ties_with(ray, nearest, b);
+        result.tied_a |= ties_with(ray, nearest, a, result.range_a);
+        result.tied_b |= ties_with(ray, nearest, b, result.range_b);
         return nearest;
     }
-    /// Returns whether the ray hits the primitive of a pipeline's hit at the same distance as its closest hit.
-    bool ties_with(const Rayd& ray, const ReferenceHit& nearest, const Hit& hit) const {
-        if (!nearest.valid() || !hit.valid()) return false;
+    /// Returns whether the ray hits the primitive of a pipeline's hit at the same distance as its closest hit. Extends
+    /// the range by that primitive's distance.
+    bool ties_with(const Rayd& ray, const ReferenceHit& nearest, const Hit& hit, DistanceRange& range) const {
+        if (!hit.valid()) return false;
         const ReferenceHit other = tracer.intersect(ray, hit.object, hit.primitive);
-        return other.valid() && relative_distance(tracer, ray, nearest, other) <= kTieTolerance;
+        if (!other.valid()) return false;
+        range.extend(other.t);
+        return nearest.valid() && relative_distance(tracer, ray, nearest, other) <= kTieTolerance;
     }
 };
 
@@ -132,17 +135,18 @@ bool try_primitive(EdgeSearcher& search, const Hit& hit) {
     return try_border(search, polygon);
 }
 
-/// Returns whether the rasterizer may show a primitive that no ray hits, because the pixel's ray is parallel to its
-/// plane and within reach. The primitive then projects to a line, to which snapping may give some area. Some displaced
-/// ray must reach as far as the hit.
+/// Returns whether the rasterizer may show a primitive that no ray hits, because it projects to a line within reach of
+/// the pixel: its plane contains the eye, or is parallel to all rays. Snapping may give the line some area. Some
+/// displaced ray must reach as far as the hit.
 bool edge_on(const EdgeSearcher& search, const Hit& hit) {
-    constexpr double kRounding = 1e-12; // bound on the rounding error in double
+    constexpr double kRounding = 1e-12; // bound on the relative rounding error in double
     if (!hit.valid() || hit.t > search.farthest) return false;
     const Rayd ray = search.pinhole.ray(search.pixel);
     const double reach = search.radius * pixel_width(search.pinhole, search.pixel, hit.t);
     const std::vector<Vec3d> corners = search.tracer.corners(hit.object, hit.primitive);
-    return search.tracer.cosine(ray, hit.object, hit.primitive, hit.t) < kRounding &&
-           plane_distance(corners, ray.at(hit.t)) <= reach;
+    const bool line = plane_distance(corners, ray.origin) <= kRounding * (length(ray.origin) + hit.t) ||
+                      search.tracer.cosine(ray, hit.object, hit.primitive, hit.t) < kRounding;
+    return line && plane_distance(corners, ray.at(hit.t)) <= reach;
 }
 
 /// Returns whether any displaced ray could hit the primitive. It is false if the whole primitive projects

@@ -4,6 +4,8 @@
 #include "common/camera/camera.h"
 #include "compare/hits/reference_tracer.h"
 
+#include <limits>
+
 namespace duet::compare {
 
 /// This is the displacement of a ray, in pixels, that accounts for the rasterizer's edges. The rasterizer snaps
@@ -16,14 +18,28 @@ inline constexpr double kEdgeRadius = 1.0 / 128;
 /// visible if |Δt|·|cos θ| / t is at most this tolerance, which is about ten float roundings.
 inline constexpr double kTieTolerance = 1e-6;
 
+/// Holds the distances at which displaced rays hit a primitive.
+struct DistanceRange {
+    double low = std::numeric_limits<double>::infinity(), high = 0;
+    void extend(double t) { low = min(low, t), high = max(high, t); }
+};
+/// Returns whether rays hit both primitives, and one distance is in both ranges.
+inline bool overlap(const DistanceRange& a, const DistanceRange& b) { return a.low <= b.high && b.low <= a.high; }
+
 /// Says which of two pipelines' hits are found by double-precision rays within kEdgeRadius of the pixel center.
 struct EdgeSearch {
     bool found_a = false, found_b = false; ///< whether a ray has the pipeline's hit as its closest hit
     bool tied_a = false, tied_b = false;   ///< whether a ray hits the primitive within kTieTolerance of its closest hit
+    /// These are the distances at which rays hit the two primitives, even behind others. The rasterizer may take a
+    /// primitive's distance at any of these rays for the pixel's: it clamps a hit to the triangle before snapping. For
+    /// two steep surfaces that nearly coincide, that is farther apart than they are.
+    DistanceRange range_a, range_b;
     ReferenceHit center;                   ///< closest hit of the undisplaced ray
 
     bool both() const { return found_a && found_b; }
-    bool both_or_tied() const { return (found_a || tied_a) && (found_b || tied_b); }
+    bool both_or_tied() const {
+        return ((found_a || tied_a) && (found_b || tied_b)) || overlap(range_a, range_b);
+    }
 };
 
 /// Returns the width of a pixel at distance t, in meters.

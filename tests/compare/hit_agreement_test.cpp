@@ -239,6 +239,46 @@ TEST_SUITE("unit") {
         check_counts(judged(32, 31, 11), 0, 0, 1); // behind what all rays see
     }
 
+    TEST_CASE("a face whose plane contains the eye counts on the line that it projects to, and nowhere else") {
+        View view = plain_view();
+        view.camera.projection = Camera::Projection::kPerspective;
+        view.camera.fov_degrees = 90; // 64 pixels cover 20 units at z = 0
+        view.camera.eye = {0, 0, 10};
+        const auto judged = [&](float right, int y, float t) {
+            Scene scene = test::empty_scene();
+            test::add(scene, QuadList{{facing(-9, right, -9, 9, 0)}});
+            // The plane x = 0 projects to the boundary of columns 31 and 32. The shear moves that to 1/256 pixel from
+            // the center of column 32.
+            const float shear = (0.5f + 1 / 256.0f) * 20 / 64 / 10;
+            test::add(scene, QuadList{{Quad{{shear * 10, -5, 0}, {0, 10, 0}, {-shear * 2, 0, 2}}}});
+            const Image<Hit> exact = perfect_hits(scene, view);
+            Image<Hit> hits = exact;
+            set(hits, 32, y, 1, 0, t);
+            return compare_hits(scene, view, hits, exact);
+        };
+        const float at_wall = 10, beyond = 10.5f;
+        check_counts(judged(9, 31, 9), 1, 0, 0);
+        check_counts(judged(9, 31, beyond), 0, 0, 1);             // behind what all rays see
+        check_counts(judged(9, 2, 9), 0, 0, 1);                   // beyond its end
+        check_counts(judged(0.15f, 31, at_wall + 0.001f), 1, 0, 0); // rays see past the wall's edge
+    }
+
+    TEST_CASE("of two steep surfaces that nearly coincide, either may be seen") {
+        // Snapping may move either by 1/512 pixel, or 1/256 for a slope of 2. The tie's tolerance is 1e-4.
+        for (const float gap : {0.005f, 0.05f}) {
+            Scene scene = test::empty_scene();
+            const Vec3 along{20, 0, -40};
+            test::add(scene, QuadList{{Quad{{-9.5f, -9.5f, 0}, along, {0, 20, 0}}}});
+            test::add(scene, QuadList{{Quad{{-9.5f, -9.5f, -gap}, along, {0, 20, 0}}}});
+            const Image<Hit> raytrace = perfect_hits(scene, plain_view());
+            Image<Hit> raster = raytrace;
+            set(raster, 30, 31, 1);
+            CAPTURE(gap);
+            const bool tie = gap < 0.01f;
+            check_counts(compare_hits(scene, plain_view(), raster, raytrace), 0, tie, !tie);
+        }
+    }
+
     TEST_CASE("moving objects are judged as the shutter opens, instances where they stand") {
         Scene scene = test::empty_scene();
         const Mat4 start = translation(Vec3(-10, 0, 0)), end = translation(Vec3(10, 0, 0));
