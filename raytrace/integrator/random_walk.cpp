@@ -55,6 +55,13 @@ private:
     std::vector<std::uint32_t> objects_;
 };
 
+// Returns whether a walk is farther from the scene's objects than they are large. It has left an open mesh through its
+// hole, and rarely comes back.
+bool is_lost(Vec3 p, const Box3& bounds) {
+    const Vec3 outside = max(bounds.low - p, p - bounds.high);
+    return max_component(outside) > max_component(bounds.diagonal());
+}
+
 // Reflects the path diffusely.
 void reflect(const SurfacePoint& point, Ray& ray, RandomSequence& random) {
     const Vec3 n = dot(point.ng, ray.direction) > 0 ? -point.ng : point.ng;
@@ -82,6 +89,7 @@ std::optional<SolidExit> random_walk(const RenderPlan& plan, const EnteredSolid&
         if (const auto t = next_collision(plan, solid.interior, ray, hit, rays == 0, random, path)) {
             ++collisions;
             ray.origin = ray.at(*t);
+            if (is_lost(ray.origin, plan.scene.bounds)) return std::nullopt;
             const Vec2 direction{random(), random()};
             ray.direction = uniform_sphere(direction);
         } else {

@@ -31,7 +31,7 @@ struct EnteredSolid {
 /// path has entered first. Other surfaces inside, such as the eyes in a head, reflect light diffusely by their base
 /// color; `emitted` is increased by their emission times the throughput. Paths of little throughput end by Russian
 /// roulette, and all paths end after 30,000 rays: in a white solid that is hundreds of mean free paths deep, 1 % of the
-/// light is lost.
+/// light is lost. Paths that leave an open mesh through its hole end as far from the scene as the scene is large.
 std::optional<SolidExit> random_walk(const RenderPlan& plan, const EnteredSolid& solid, Ray ray, Hit hit, float u,
                                      PathThroughputT<float>& path, Rgb& emitted, RayCounts& counts);
 

@@ -276,6 +276,20 @@ TEST_SUITE("statistical") {
         }
     }
 
+    // In a white medium that fills all space, nearly all walks would go on to the limit of 30,000 rays.
+    TEST_CASE("a walk that has left an open mesh through its hole ends") {
+        SceneBuilder builder;
+        builder.add(QuadList{{Quad{{-1, -1, 0}, {2, 0, 0}, {0, 2, 0}}}},
+                    builder.material(index_matched(Rgb(1.0f), Rgb(1.0f))));
+        builder.scene.environment = ConstantEnvironment{Rgb(1.0f)};
+        builder.scene.camera.eye = {0, 0, 1};
+        PathTracerSettings settings;
+        settings.samples_per_pixel = 16;
+        const Rendering image = render_scene(builder.finish(), 16, settings);
+        CHECK(image.statistics.indirect_rays < 100 * 16 * 16 * 16);
+        CHECK(mean_of(image.radiance).g > 0.1f);
+    }
+
     // The standard errors are below 0.001.
     TEST_CASE("a solid of short mean free paths looks like a coated diffuse surface") {
         for (const float roughness : {0.1f, 0.6f}) {
