@@ -11,15 +11,16 @@ grep -rnoE '#include "[^"]+"' common raster raytrace compare models tests --incl
     awk -F: -v common="$common" -v raster="$raster" -v raytrace="$raytrace" '
     function floors_of(room, list) { n = split(list, names, " "); for (i = 1; i <= n; ++i) floor[room, names[i]] = i }
     BEGIN { floors_of("common", common); floors_of("raster", raster); floors_of("raytrace", raytrace) }
-    # A lesson includes the small stable floor and the headers of its own folder and of earlier lessons of its room;
-    # its lab has the contract that the grader calls, too. A lesson of compare/ comes after those of both other rooms.
-    # The assignments, and what else stands in compare/lessons/, may include all.
+    # A lesson includes the small stable floor, the header of its parameters, and the headers of its own folder and of
+    # earlier lessons of its room; its lab has the contract that the grader calls, too. A lesson of compare/ comes after
+    # those of both other rooms. The assignments, and what else stands in compare/lessons/, may include all.
     function lesson() {
         if (from[1] == "compare" && from[3] !~ /^[0-9][0-9]-/) return
         if (to[1] == "tests" && to[2] == "grading" && $1 ~ /\/lab(_test|_starter)?\.(h|cpp)$/) return
         if (to[1] == "common" && (to[2] == "vec" || to[2] == "image")) return
+        if (target == "common/system/parameters.h") return
         if ((to[1] != from[1] && from[1] != "compare") || to[2] != "lessons") \
-            fault("a lesson includes common/vec, common/image and earlier lessons alone")
+            fault("a lesson includes common/vec, common/image, its parameters and earlier lessons alone")
         else if (substr(to[3], 1, 2) > substr(from[3], 1, 2)) fault("a lesson includes no later lesson")
         else if ($1 ~ /\/lab(_starter)?\.(h|cpp)$/ && to[3] == from[3] && to[4] != "lab.h") \
             fault("this header holds the answer of the lab")

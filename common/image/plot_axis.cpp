@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
+#include <iomanip>
+#include <locale>
+#include <sstream>
 
 namespace duet {
 
@@ -88,10 +90,10 @@ Axis make_axis(const AxisRequest& request) {
 }
 
 std::string format_significant(double value, int digits) {
-    std::array<char, 40> text{};
-    const auto end =
-        std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, digits).ptr;
-    return {text.data(), end};
+    std::ostringstream text; // not std::to_chars, which the library of the web page's build lacks for double
+    text.imbue(std::locale::classic());
+    text << std::setprecision(digits) << value;
+    return text.str();
 }
 
 } // namespace duet

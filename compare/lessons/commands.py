@@ -108,6 +108,9 @@ class Commands:
         program = re.fullmatch(r"(?:\./)?build/([\w-]+)/bin/([\w-]+)", name)
         if program or name in PROGRAMS:
             return self.of_program(program, name, rest) + self.of_files(rest)
+        lesson = re.fullmatch(r"(?:\.\./)?build/[\w-]+/lessons/bin/lesson_(\w+-\d\d)_program", name)
+        if lesson:
+            return self.of_lesson(lesson.group(1), rest)
         if name in COMMON:
             return self.of_files(rest) if name not in ("cp", "mv", "mkdir") else []
         return [f"'{name}' is no program of the project (compare/lessons/commands.py lists the system's)"]
@@ -153,6 +156,14 @@ class Commands:
         elif short == "compare" and words and not words[0].startswith("-"):
             return [f"'{short} {words[0]}': no such subcommand"]
         return self.of_options([short, *subcommand], help_of(path, *subcommand) + help_of(path), words)
+
+    def of_lesson(self, lesson_id, words):
+        """A lesson has this program and, where it is built, these options (common/system/parameters.h)."""
+        if f"lesson-{lesson_id}" not in targets(self.source):
+            return [f"'{lesson_id}': no such lesson"]
+        program = f"lesson_{lesson_id}_program"
+        path = self.programs and self.programs.parent / "lessons" / "bin" / program
+        return self.of_options([program], help_of(str(path)) if path else "", words)
 
     def of_options(self, command, text, words):
         known = set(OPTION.findall(text)) | {"--help", "-h"}

@@ -6,6 +6,13 @@ SOURCE = pathlib.Path(__file__).resolve().parents[2]
 ROOMS = {"raytrace": "Ray tracing", "raster": "Rasterization", "compare": "Both ways"}
 
 
+def code_lines(path):
+    """The number of a source file's lines of code. Blank lines and lines of nothing but a comment don't count, so that
+    nobody leaves them out to stay below the limit."""
+    lines = (line.strip() for line in path.read_text(encoding="utf-8").splitlines())
+    return sum(bool(line) and not line.startswith("//") for line in lines)
+
+
 class Lesson:
     """A folder such as raytrace/lessons/02-sphere, whose id is raytrace-02."""
 
@@ -22,7 +29,7 @@ class Lesson:
                       if path.suffix in (".cpp", ".h") and not path.name.startswith("lab"))
 
     def program_lines(self):
-        return sum(len(path.read_text(encoding="utf-8").splitlines()) for path in self.program_files())
+        return sum(code_lines(path) for path in self.program_files())
 
     def figures(self):
         return sorted((self.folder / "figures").glob("*.*"))

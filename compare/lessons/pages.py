@@ -28,9 +28,9 @@ def program_faults(lesson, text):
     faults = []
     quoted = quotes.fill(lesson.page, text)[1]
     if lesson.program_lines() > MAX_LINES:
-        sizes = ", ".join(f"{path.name} {len(path.read_text().splitlines())}" for path in lesson.program_files())
+        sizes = ", ".join(f"{path.name} {course.code_lines(path)}" for path in lesson.program_files())
         faults.append((lesson.folder, 0,
-                       f"the program has {lesson.program_lines()} lines ({sizes}), at most {MAX_LINES}"))
+                       f"the program has {lesson.program_lines()} lines of code ({sizes}), at most {MAX_LINES}"))
     for path in lesson.program_files():
         for i, line in enumerate(path.read_text(encoding="utf-8").split("\n")):
             if len(line) > MAX_COLUMNS:

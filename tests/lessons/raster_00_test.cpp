@@ -1,5 +1,6 @@
 // The walk from line to line of lesson raster-00 ends at the wall that the library's path tracer finds.
 #include "common/image/image_file.h"
+#include "common/system/parameters.h"
 #include "raytrace/acceleration/accelerator.h"
 #include "tests/raytrace/scene_builder.h"
 

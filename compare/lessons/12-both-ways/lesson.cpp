@@ -1,11 +1,10 @@
 // Lesson 12: one mesh by both pipelines. Writes what differs, why, and what each way costs.
 #include "common/image/image_file.h"
 #include "common/image/plot.h"
+#include "common/system/parameters.h"
 #include "compare/lessons/12-both-ways/both.h"
 #include "raster/lessons/01-lines/figures.h"
-
 #include <ctime>
-
 using namespace duet;
 using namespace duet::lesson;
 
@@ -45,7 +44,9 @@ int count_lines(const std::string& room) {
     return lines;
 }
 
-int main() {
+int main(int argc, char** argv) {
+    int count = 32, texels = 512;
+    read_parameters(argc, argv, {{"rays", count, 1, 256}, {"map size", texels, 32, 2048, "texels"}});
     Mesh world = read_obj(DUET_MODELS "meshes/amphora.obj");
     const std::array<Vec3, 4> edge{Vec3{3, 0, 0}, {0, 2, 0}, {0, 0, 2.4f}, {3, 0, 0}}; // of two walls and the floor
     for (std::size_t k = 0; k < 3; ++k)
@@ -55,7 +56,7 @@ int main() {
     for (std::size_t i = 0; i < world.size(); i += 3)
         objects.push_back(triangle_object(world[i].p, world[i + 1].p, world[i + 2].p, i / 3));
     const Bvh tree = build(objects);
-    const ShadowMap map = draw_shadow_map(world, sun_matrix(kToSun, {0.3f, 0.4f, 0.4f}, 2.2f), 4.4f, 512);
+    const ShadowMap map = draw_shadow_map(world, sun_matrix(kToSun, {0.3f, 0.4f, 0.4f}, 2.2f), 4.4f, texels);
     const auto lit = [&](const Hit& at) { return lit_fraction(map, at.p, slope_bias(map, kToSun, at.n, 0), 0); };
     Random random(1);
     const auto by_rays = [&](int n) { return [&, n](const Hit& at) { return shade_by_rays(tree, at, n, random); }; };
@@ -65,7 +66,7 @@ int main() {
     const ImageRgb raster = way1([&](const Hit& at) { return shade(at, lit(at), kSky); });
     const ImageRgb rays = way2(by_rays(0)), index1 = way1(index), index2 = way2(index);
     write_image("evidence.png", beside({raster, rays, signed_difference(raster, rays, 0.5f)}));
-    ImageRgb full = way2(by_rays(32)), noisy = way2(by_rays(1)), causes(kWidth, kHeight, Rgb(0.9f));
+    ImageRgb full = way2(by_rays(count)), noisy = way2(by_rays(1)), causes(kWidth, kHeight, Rgb(0.9f));
     const auto differ = [](Rgb a, Rgb b) { return std::abs(luminance(a - b)) > 0.03f; };
     for (std::size_t i = 0; i < causes.size(); ++i)
         causes[i] += Rgb(index1[i] != index2[i], differ(raster[i], rays[i]), 0.6f * differ(rays[i], full[i])) * -0.8f;

@@ -1,6 +1,7 @@
 // Lesson 00: a maze. Writes what a viewer in the maze sees, a map with the rays, and pictures of mistakes.
 #include "common/image/image_file.h"
 
+#include "common/system/parameters.h"
 using namespace duet;
 
 /// The maze from above. Dots are free, and letters are walls: b, g, r are colors, s has a sign, capitals have torches.
@@ -128,20 +129,24 @@ void draw_map(ImageRgb& image, int left, int width, Vec2 corner, float scale, Ve
         }
 }
 
-int main() {
-    const Viewer viewer{{8.8f, 11.2f}, {std::sin(-0.12f), -std::cos(0.12f)}};
+int main(int argc, char** argv) {
+    Viewer viewer{{8.8f, 11.2f}, {}};
+    float turn = 0.12f;
+    read_parameters(argc, argv, {{"turn", turn, -3.1f, 3.1f, "radians"}, {"side", viewer.side, 0.1f, 2}});
+    viewer.forward = {-std::sin(turn), -std::cos(turn)};
     std::vector<Hit> hits;
     for (float place = -1; place <= 1; place += 0.125f) hits.push_back(cast(viewer.eye, viewer.ray(place)));
     ImageRgb evidence(760, 256, Rgb(1)), walk(648, 240, Rgb(1)); // white shows between two parts
     draw_view(evidence, 0, 480, viewer), draw_map(evidence, 488, 272, {0, 0}, 16, viewer.eye, hits);
-    write_image("evidence.png", evidence);
     const Vec2 eye{7.5f, 11.07f}, ray{1, -0.75f};
+    write_image("evidence.png", evidence);
     draw_map(walk, 0, 320, {7.2f, 6.6f}, 50, eye, {cast(eye, ray)});
     draw_map(walk, 328, 320, {7.2f, 6.6f}, 50, eye, {cast_by_steps(eye, ray, 0.58f)});
     write_image("walk.png", walk);
     const auto pair = [](const char* name, const Viewer& v, Mistake mistake) {
         ImageRgb image(648, 180, Rgb(1));
-        draw_view(image, 0, 320, v), draw_view(image, 328, 320, v, mistake);
+        draw_view(image, 0, 320, v);
+        draw_view(image, 328, 320, v, mistake);
         write_image(name, image);
     };
     pair("fish-eye.png", {{8.5f, 13.6f}, {0, 1}, 1.3f}, Mistake::kFishEye);

@@ -1,5 +1,6 @@
 // Lesson 01: lines. Writes vases made of lines, figures of single pixels, and the classic mistakes.
 #include "common/image/image_file.h"
+#include "common/system/parameters.h"
 #include "raster/lessons/01-lines/figures.h"
 
 using namespace duet;
@@ -31,10 +32,10 @@ void draw_columns(ImageRgb& image, int x0, int y0, int x1, int y1, Rgb color) {
 }
 
 /// Lines in all directions, drawn by a function like draw_line.
-template <typename Draw> ImageRgb rose(const Draw& draw) {
+template <typename Draw> ImageRgb rose(const Draw& draw, int lines) {
     ImageRgb image(100, 100, kDark);
-    for (int i = 0; i < 40; ++i) {
-        const float turn = (static_cast<float>(i) + 0.5f) / 40;
+    for (int i = 0; i < lines; ++i) {
+        const float turn = (static_cast<float>(i) + 0.5f) / static_cast<float>(lines);
         const auto x = [turn](float r) { return static_cast<int>(std::lround(50 + r * std::cos(2 * kPi * turn))); };
         const auto y = [turn](float r) { return static_cast<int>(std::lround(50 + r * std::sin(2 * kPi * turn))); };
         draw(image, x(12), y(12), x(47), y(47), rainbow(turn));
@@ -52,18 +53,21 @@ ImageRgb end_of_line() {
     return magnify(window, 30);
 }
 
-int main() {
-    ImageRgb vases(480, 320, kDark);
+int main(int argc, char** argv) {
+    float belly = 0.6f;
+    int row = 6, lines = 40;
+    read_parameters(argc, argv, {{"belly", belly, 0, 1}, {"end row", row, 0, 8, "pixels"}, {"lines", lines, 4, 200}});
+    ImageRgb vases(480, 320, kDark), pixels(16, 9, kDark);
     draw_vase(vases, {92, 280}, 62, 180, 0.35f, 0.45f), draw_vase(vases, {388, 280}, 66, 160, 0.5f, 0.75f);
-    draw_vase(vases, {240, 296}, 78, 262, 0.6f, 0.0f);
+    draw_vase(vases, {240, 296}, 78, 262, belly, 0.0f);
     write_image("evidence.png", vases);
-    ImageRgb pixels(16, 9, kDark);
-    draw_line(pixels, 1, 1, 14, 6, rainbow(0.55f)), draw_line(pixels, 2, 7, 5, 2, rainbow(0));
+    draw_line(pixels, 1, 1, 14, row, rainbow(0.55f));
+    draw_line(pixels, 2, 7, 5, 2, rainbow(0));
     pixels = magnify(pixels, 30);
-    draw_path(pixels, {{1.5f, 1.5f}, {14.5f, 6.5f}}, 30, Rgb(1));
+    draw_path(pixels, {{1.5f, 1.5f}, {14.5f, static_cast<float>(row) + 0.5f}}, 30, Rgb(1));
     draw_path(pixels, {{2.5f, 7.5f}, {5.5f, 2.5f}}, 30, Rgb(1));
     write_image("pixels.png", pixels);
-    write_image("rose.png", beside({rose(draw_columns), rose(draw_line)}));
+    write_image("rose.png", beside({rose(draw_columns, lines), rose(draw_line, lines)}));
     write_image("drift.png", end_of_line());
     ImageRgb there(17, 7), back(17, 7);
     draw_line(there, 0, 1, 16, 5, {0.9f, 0.3f, 0.02f}), draw_line(back, 16, 5, 0, 1, {0.02f, 0.35f, 0.9f});

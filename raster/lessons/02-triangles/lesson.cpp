@@ -1,5 +1,6 @@
 // Lesson 02: triangles. Writes a star of colored triangles, and figures of the rule that gives each pixel to one.
 #include "common/image/image_file.h"
+#include "common/system/parameters.h"
 #include "raster/lessons/01-lines/figures.h"
 #include "raster/lessons/02-triangles/triangle.h"
 
@@ -71,15 +72,17 @@ template <typename Inside> ImageRgb count_map(const std::vector<Triangle>& trian
     return magnify(image, 10);
 }
 
-int main() {
+int main(int argc, char** argv) {
+    float inner = 0.55f, x = 14;
+    read_parameters(argc, argv, {{"inner radius", inner, 0.1f, 1, "of the outer one"}, {"corner", x, 6, 15, "pixels"}});
     ImageRgb picture(480, 270);
     for (const Triangle& t : star({{240, 135}, {0.03f, 0.05f, 0.12f}}, 12, 400, 0.9f, 0.12f)) fill(picture, t);
-    for (const Triangle& t : star({{240, 135}, {1, 0.95f, 0.8f}}, 12, 130, 0.55f, 1)) fill(picture, t);
+    for (const Triangle& t : star({{240, 135}, {1, 0.95f, 0.8f}}, 12, 130, inner, 1)) fill(picture, t);
     write_image("evidence.png", picture);
     const std::array<Vec2, 3> t{Vec2{20, 15}, Vec2{300, 70}, Vec2{60, 170}};
     write_image("half-planes.png", half_planes(t, false));
     write_image("overflow.png", half_planes(t, true));
-    const Corner a{{2.5f, 1.5f}, rainbow(0.6f)}, b{{12.5f, 6.5f}, a.color}, c{{2, 7}, a.color}, d{{14, 1}, {1, .3f, 0}};
+    const Corner a{{2.5f, 1.5f}, rainbow(0.6f)}, b{{12.5f, 6.5f}, a.color}, c{{2, 7}, a.color}, d{{x, 1}, {1, .3f, 0}};
     write_image("pixels.png", enlarged({{a, b, c}, {Corner{a.p, d.color}, d, {b.p, d.color}}}));
     const auto both = [](std::int64_t w, FixedPoint, FixedPoint) { return w >= 0; };
     const auto neither = [](std::int64_t w, FixedPoint, FixedPoint) { return w > 0; };

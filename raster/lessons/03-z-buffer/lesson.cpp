@@ -1,5 +1,6 @@
 // Lesson 03: the z-buffer. Writes interlocked rings with their depths, and figures of what goes wrong.
 #include "common/image/image_file.h"
+#include "common/system/parameters.h"
 #include "raster/lessons/01-lines/figures.h"
 #include "raster/lessons/03-z-buffer/framebuffer.h"
 
@@ -60,14 +61,14 @@ void add_sphere(Triangles& triangles, Rgb color, float radius) {
 }
 
 /// Three rings that hold each other, and a sphere that pierces them.
-Triangles rings() {
+Triangles rings(float radius, float thickness) {
     const auto axis = [](float angle) { return Vec3{0.8165f * std::cos(angle), 0.8165f * std::sin(angle), -0.5774f}; };
     const Vec3 u = axis(0.3f), v = axis(0.3f + 2 * kPi / 3), w = axis(0.3f + 4 * kPi / 3); // at right angles
     Triangles triangles;
-    add_sphere(triangles, Rgb(0.75f), 205);
-    add_ring(triangles, kRed, u * 440.0f, v * 230.0f, 48);
-    add_ring(triangles, kGold, v * 440.0f, w * 230.0f, 48);
-    add_ring(triangles, kBlue, w * 440.0f, u * 230.0f, 48);
+    add_sphere(triangles, Rgb(0.75f), radius);
+    add_ring(triangles, kRed, u * 440.0f, v * 230.0f, thickness);
+    add_ring(triangles, kGold, v * 440.0f, w * 230.0f, thickness);
+    add_ring(triangles, kBlue, w * 440.0f, u * 230.0f, thickness);
     return triangles;
 }
 
@@ -92,9 +93,12 @@ Triangles hard_to_sort() {
             triangle(kBlue, {519, 439, 0}, {206, 77, 100}, {340, 10, 100})};
 }
 
-int main() {
+int main(int argc, char** argv) {
+    float radius = 205, thickness = 48, coarse = 255;
+    read_parameters(argc, argv, {{"sphere radius", radius, 1, 460, "pixels"},
+                                 {"ring thickness", thickness, 4, 150, "pixels"}, {"depth levels", coarse, 15, 4095}});
     Framebuffer large(960, 960, kDark);
-    draw(large, rings());
+    draw(large, rings(radius, thickness));
     ImageRgb depths(960, 960, kDark);
     for (std::size_t i = 0; i < depths.size(); ++i)
         if (large.depth[i] < kInfinity) depths[i] = Rgb(sqr(1 - large.depth[i] / 960));
@@ -103,14 +107,14 @@ int main() {
     paint(painted, hard_to_sort()), draw(tested, hard_to_sort());
     write_image("painter.png", beside({shrink(painted.color, 2), shrink(tested.color, 2)}));
     std::vector<ImageRgb> images;
-    for (const float levels : {255.0f, 1023.0f, 65535.0f}) {
+    for (const float levels : {coarse, 1023.0f, 65535.0f}) {
         Framebuffer target(960, 960, kDark);
         draw(target, banded_sphere(), levels);
         images.push_back(shrink(target.color, 4));
     }
     write_image("fighting.png", beside(images));
     large.color = ImageRgb(960, 960, kDark); // for the next image; but nobody clears the depths
-    Triangles moved = rings();
+    Triangles moved = rings(radius, thickness);
     for (Triangle& t : moved)
         for (Corner& c : t) c.p = c.p * 0.9f + Vec3{84, 48, 48};
     draw(large, moved);

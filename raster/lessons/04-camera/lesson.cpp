@@ -1,6 +1,7 @@
 // Lesson 04: the camera. Writes rows of amphorae from three places, and figures of what the matrices do.
 #include "common/image/image_file.h"
 #include "common/image/plot.h"
+#include "common/system/parameters.h"
 #include "raster/lessons/01-lines/figures.h"
 #include "raster/lessons/03-z-buffer/framebuffer.h"
 #include "raster/lessons/04-camera/mesh.h"
@@ -48,9 +49,12 @@ ImageRgb map(const Mesh& mesh, const Mat4& camera_from_world, const Mat4& matrix
 
 Mat4 camera(Vec3 eye, Vec3 to, float fov) { return perspective(fov, 1.5f, 0.1f, 40) * look_at(eye, to, {0, 1, 0}); }
 
-int main() {
+int main(int argc, char** argv) {
     const Mesh mesh = read_obj(DUET_MODELS "meshes/amphora.obj");
-    Mat4 front = camera({0, 1.6f, 3.6f}, {0, 0.1f, -1.5f}, 0.6f);
+    float fov = 0.6f, y = 1.6f, z = 3.6f;
+    read_parameters(argc, argv, {{"field of view", fov, 0.1f, 2.2f, "radians"}, {"eye height", y, 0.3f, 8, "meters"},
+                                 {"eye distance", z, 1.5f, 10, "meters"}});
+    Mat4 front = camera({0, y, z}, {0, 0.1f, -1.5f}, fov);
     write_image("evidence.png", beside({view(mesh, front), view(mesh, camera({5, 5, 3}, {0, 0.2f, -2.2f}, 0.6f)),
                                         view(mesh, camera({0.4f, 0.25f, 0.9f}, {0.4f, 0.42f, -1}, 1.2f))}));
     const Mat4 eye = look_at({0.8f, 0.4f, 3}, {0, 0.4f, -2.4f}, {0, 1, 0});
@@ -59,11 +63,11 @@ int main() {
                                       map(mesh, eye, perspective(0.5f, 1.5f, 2, 9), {0.93f, 1.8f, -0.9f})}));
     Plot plot{.title = "Two similar triangles", .x_label = "meters in front of the eye", .y_label = "meters up"};
     plot.series = {{"line of sight", {{0, 0}, {4, 2}}}, {"image", {{1, 0}, {1, 0.5}}}, {"object", {{4, 0}, {4, 2}}}};
-    write_plot("similar.svg", plot);
     write_image("mirrored.png", view(mesh, scaling(Vec3{-1, 1, 1}) * front)); // as if the camera's x pointed left
     write_image("order.png", view(mesh, front, true));
     write_image("transposed.png", view(mesh, transpose(front)));
     write_image("aspect.png", view(mesh, scaling(Vec3{1.5f, 1, 1}) * front)); // as if the aspect were 1
     front[3] = {0, 0, 0, 1}; // now w is 1, and the division changes nothing
     write_image("undivided.png", view(mesh, front));
+    write_plot("similar.svg", plot);
 }

@@ -1,6 +1,7 @@
 // Lesson 05: clipping. Writes a lane that goes on behind the eye, with and without clipping.
 #include "common/image/image_file.h"
 #include "common/image/plot.h"
+#include "common/system/parameters.h"
 #include "raster/lessons/01-lines/figures.h"
 #include "raster/lessons/03-z-buffer/framebuffer.h"
 #include "raster/lessons/05-clipping/fragments.h"
@@ -37,8 +38,7 @@ ImageRgb lane(const Mesh& amphora, const Mat4& camera, Clip& clip) {
                     z = 0.5f * static_cast<float>(i / 8 % 3 * 2 - i % 8 * 5 + 11);
         const auto corner = [&](float dx, float dz) { return MeshVertex{{x + dx, wear, z + dz}, {}, {}}; };
         const MeshVertex a = corner(0, 0), b = corner(0.4f, 0), c = corner(0.4f, -2.5f), d = corner(0, -2.5f);
-        const Rgb wood = Rgb(0.3f, 0.16f, 0.07f) * (0.5f + 400 * wear);
-        draw(large, in_clip_space({a, b, c, a, c, d}, camera), clip, wood);
+        draw(large, in_clip_space({a, b, c, a, c, d}, camera), clip, Rgb(0.3f, 0.16f, 0.07f) * (0.5f + 400 * wear));
     }
     for (int i = 0; i < 18; ++i) {
         const Mat4 place = translation(Vec3{i % 2 ? 0.8f : -0.8f, 0, 3.2f - 1.2f * static_cast<float>(i / 2)});
@@ -65,10 +65,13 @@ ImageRgb cuts() {
     return image;
 }
 
-int main() {
+int main(int argc, char** argv) {
     const Mesh amphora = read_obj(DUET_MODELS "meshes/amphora.obj");
-    const Mat4 view = look_at({0.15f, 0.8f, 1.3f}, {0, 0.35f, -0.6f}, {0, 1, 0});
-    const Mat4 camera = perspective(1.25f, 1.32f, 0.05f, 30) * view, far = perspective(1.25f, 1.32f, 1.6f, 30) * view;
+    float fov = 1.25f, near = 0.05f, y = 0.8f;
+    read_parameters(argc, argv, {{"field of view", fov, 0.3f, 2.4f, "radians"},
+                                 {"near plane", near, 0.01f, 3, "meters"}, {"eye height", y, 0.2f, 3, "meters"}});
+    const Mat4 view = look_at({0.15f, y, 1.3f}, {0, 0.35f, -0.6f}, {0, 1, 0});
+    const Mat4 camera = perspective(fov, 1.32f, near, 30) * view, far = perspective(fov, 1.32f, 1.6f, 30) * view;
     write_image("evidence.png", beside({lane(amphora, camera, clip_near), lane(amphora, camera, no_clipping)}));
     write_image("mistakes.png", beside({lane(amphora, camera, drop_whole), lane(amphora, far, clip_near)}));
     write_image("divided.png", lane(amphora, camera, divide_first));

@@ -1,6 +1,7 @@
 // Lesson 06: shading. Writes an amphora and a ring in flat, Gouraud and Phong shading, and what goes wrong.
 #include "common/image/image_file.h"
 #include "common/image/plot.h"
+#include "common/system/parameters.h"
 #include "raster/lessons/01-lines/figures.h"
 #include "raster/lessons/03-z-buffer/framebuffer.h"
 #include "raster/lessons/05-clipping/fragments.h"
@@ -23,7 +24,7 @@ Rgb lit(Vec3 p, Vec3 n, const Surface& surface, float sign = 1) {
 
 void draw(Framebuffer& target, const std::vector<Triangle>& triangles, Shading shading, const Surface& surface) {
     for (const Triangle& triangle : triangles) {
-        const auto& [a, b, c] = triangle;
+        const Vertex &a = triangle[0], &b = triangle[1], &c = triangle[2];
         const Vec3 facet = normalize(cross(b.p - a.p, c.p - a.p));
         const Rgb flat = lit((a.p + b.p + c.p) / 3.0f, facet, surface);
         const Rgb at_a = lit(a.p, a.n, surface), at_b = lit(b.p, b.n, surface), at_c = lit(c.p, c.n, surface);
@@ -75,8 +76,9 @@ ImageRgb view(const std::vector<Object>& objects, Shading shading = Shading::kPh
     return shrink(large.color, 4);
 }
 
-int main() {
-    const Surface clay{{0.6f, 0.2f, 0.08f}, 0.7f, 60}, glaze{{0.04f, 0.32f, 0.4f}, 0.8f, 60};
+int main(int argc, char** argv) {
+    Surface clay{{0.6f, 0.2f, 0.08f}, 0.7f, 60}, glaze{{0.04f, 0.32f, 0.4f}, 0.8f, 60};
+    read_parameters(argc, argv, {{"specular", clay.specular, 0, 2}, {"shininess", clay.shininess, 1, 500}});
     const auto amphora = place_mesh(read_obj(DUET_MODELS "meshes/amphora.obj"), Mat4(), kCamera);
     const std::vector<Object> scene{{amphora, clay}, {place_mesh(grid(16, 8, ring), Mat4(), kCamera), glaze}};
     write_image("evidence.png", beside({view(scene, Shading::kFlat), view(scene, Shading::kGouraud), view(scene)}));

@@ -2,6 +2,7 @@
 #include "common/image/image_file.h"
 #include "common/image/plot.h"
 #include "common/image/srgb.h"
+#include "common/system/parameters.h"
 #include "raster/lessons/01-lines/figures.h"
 #include "raster/lessons/07-textures/pipeline.h"
 #include "raster/lessons/07-textures/texture.h"
@@ -30,7 +31,10 @@ Mat4 camera(Vec3 eye, Vec3 target, float fov) {
     return perspective(fov, 32 / 23.0f, 0.1f, 100) * look_at(eye, target, {0, 1, 0});
 }
 
-int main() {
+int main(int argc, char** argv) {
+    float fov = 0.62f, detail = 0.035f;
+    read_parameters(argc, argv, {{"field of view", fov, 0.1f, 1.5f, "radians"},
+                                 {"field of view of the detail", detail, 0.005f, 0.2f, "radians"}});
     ImageRgb paint = read_image(DUET_MODELS "textures/amphora.png"), tiles(64, 64);
     for (int i = 0; i < 64 * 64; ++i)
         tiles(i % 64, i / 64) = i / 32 % 2 == i / 64 / 32 ? Rgb(0.7f, 0.65f, 0.55f) : Rgb(0.12f, 0.2f, 0.22f);
@@ -41,22 +45,20 @@ int main() {
     };
     const Mesh amphora = read_obj(DUET_MODELS "meshes/amphora.obj");
     const Vec3 eye{0.3f, 0.9f, 2.1f};
-    const Mat4 front = camera(eye, {0.02f, 0.4f, 0}, 0.62f);
+    const Mat4 front = camera(eye, {0.02f, 0.4f, 0}, fov);
     std::vector<Object> scene{{place_mesh(square(20, 3), Mat4(), front), tiles}};
     for (const Vec3 p : {Vec3{0, 0, 0}, {-0.75f, 0, -1}, {0.75f, 0, -1.6f}, {0.25f, 0, -2.6f}})
         scene.push_back({place_mesh(amphora, translation(p), front), paint});
     write_image("evidence.png", view(scene, eye, bilinear<Rgb>, 4, 416));
 
-    const Mat4 above = camera({0.3f, 1.5f, 2.1f}, {0.05f, 0, -0.55f}, 0.72f);
-    Object floor{place_mesh(square(1.2f, 0.6f), Mat4(), above), tiles};
+    Object floor{place_mesh(square(1.2f, 0.6f), Mat4(), camera({0.3f, 1.5f, 2.1f}, {0.05f, 0, -0.55f}, 0.72f)), tiles};
     const ImageRgb right = view({floor}, eye, bilinear<Rgb>, 4, 256);
     const auto cut = [](const ImageRgb& i, Vec2 uv) { return texel(i, 32 * int(uv.x * 2), 32 * int(uv.y * 2)); };
     write_image("negative.png", view({floor}, eye, cut, 4, 256));
     for (Triangle& t : floor.triangles)
         for (Vertex& v : t) v.clip = v.clip * (1 / v.clip.w); // w is 1 now: the pipeline has forgotten the distance
     write_image("affine.png", beside({view({floor}, eye, bilinear<Rgb>, 4, 256), right}));
-    const Mat4 close = camera(eye, {0.03f, 0.41f, 0.2f}, 0.035f);
-    const std::vector<Object> near{{place_mesh(amphora, Mat4(), close), paint}};
+    const std::vector<Object> near{{place_mesh(amphora, Mat4(), camera(eye, {0.03f, 0.41f, 0.2f}, detail)), paint}};
     write_image("filter.png", beside({view(near, eye, nearest<Rgb>), view(near, eye, bilinear<Rgb>)}));
     const std::vector<Object> plain{scene[0]}, vases{scene.begin() + 1, scene.end()};
     const ImageRgb one_sample = view(plain, eye, bilinear<Rgb>, 1, 240);

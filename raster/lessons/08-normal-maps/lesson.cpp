@@ -1,6 +1,7 @@
 // Lesson 08: normal maps. Writes a smooth and a hammered amphora under two lights, and what goes wrong.
 #include "common/image/image_file.h"
 #include "common/image/srgb.h"
+#include "common/system/parameters.h"
 #include "raster/lessons/01-lines/figures.h"
 #include "raster/lessons/07-textures/pipeline.h"
 #include "raster/lessons/08-normal-maps/normal_map.h"
@@ -50,14 +51,13 @@ struct Object {
 enum class Frames { kRight, kRightHanded, kTooLong };
 ImageRgb view(const std::vector<Object>& objects, Vec3 eye, Vec3 light, Vec2T<int> size, Frames frames = {}) {
     Framebuffer large(4 * size.x, 4 * size.y, Rgb(0.02f, 0.024f, 0.035f));
-    for (const Object& object : objects)
-        draw_triangles(large, object.triangles, [&](const Fragment& f) {
+    for (const Object& o : objects)
+        draw_triangles(large, o.triangles, [&](const Fragment& f) {
             TangentFrame frame = tangent_frame(f.triangle, f.n);
             if (frames == Frames::kRightHanded) frame.b = cross(f.n, frame.t);
             if (frames == Frames::kTooLong) frame = {frame.t * 2.0f, frame.b * 2.0f};
-            const Vec3 n = perturb(f.n, frame, decode_normal(bilinear(object.map, f.uv * object.repeat)));
-            return object.surface.diffuse * 0.05f +
-                   blinn_phong(n, normalize(light - f.p), normalize(eye - f.p), object.surface);
+            const Vec3 n = perturb(f.n, frame, decode_normal(bilinear(o.map, f.uv * o.repeat)));
+            return o.surface.diffuse * 0.05f + blinn_phong(n, normalize(light - f.p), normalize(eye - f.p), o.surface);
         });
     return shrink(large.color, 4);
 }
@@ -76,17 +76,20 @@ ImageRgb both_images(const ImageFloat& relief, const ImageRgb& map) {
     return beside({gray, decoded(map)});
 }
 
-int main() {
-    const Surface copper{{0.55f, 0.2f, 0.09f}, 0.9f, 40}, bronze{{0.42f, 0.27f, 0.07f}, 0.6f, 30};
+int main(int argc, char** argv) {
+    float n = 3, lx = -2.5f;
+    Surface copper{{0.55f, 0.2f, 0.09f}, 0.9f, 40}, bronze{{0.42f, 0.27f, 0.07f}, 0.6f, 30};
+    read_parameters(argc, argv, {{"repeat", n, 1, 12}, {"light x", lx, -5, 5, "meters"},
+                                 {"shininess", copper.shininess, 1, 300}});
     const ImageFloat dents = heights(128, hammered), studs = heights(128, shield);
-    const ImageRgb dented = normal_map(dents), studded = normal_map(studs), flat(1, 1, Rgb(0.5f, 0.5f, 1));
+    ImageRgb dented = normal_map(dents), studded = normal_map(studs), flipped = studded, flat(1, 1, Rgb(0.5f, 0.5f, 1));
     write_image("maps.png", beside({both_images(dents, dented), both_images(studs, studded)}));
     const Mesh amphora = read_obj(DUET_MODELS "meshes/amphora.obj");
     const Vec3 eye{0, 0.8f, 3};
     const Mat4 camera = perspective(0.36f, 1.32f, 0.1f, 20) * look_at(eye, {0, 0.45f, 0}, {0, 1, 0});
     const std::vector<Object> pair{{place_mesh(amphora, translation(Vec3{-0.32f, 0, 0}), camera), flat, 1, copper},
-                                   {place_mesh(amphora, translation(Vec3{0.32f, 0, 0}), camera), dented, 3, copper}};
-    const ImageRgb from_left = view(pair, eye, {-2.5f, 2, 2}, {316, 240});
+                                   {place_mesh(amphora, translation(Vec3{0.32f, 0, 0}), camera), dented, n, copper}};
+    const ImageRgb from_left = view(pair, eye, {lx, 2, 2}, {316, 240});
     write_image("evidence.png", beside({from_left, view(pair, eye, {2.5f, 1, 1}, {316, 240})}));
     const Mat4 front = perspective(0.66f, 1, 0.1f, 20) * look_at({0, 1, 3}, {0, 1, 0}, {0, 1, 0});
     const auto plate = [&](const ImageRgb& map, float u_left, Frames frames = {}) { // two squares side by side
@@ -96,7 +99,6 @@ int main() {
         const auto triangles = place_mesh({a, b, c, a, c, d, b, e, f, b, f, c}, Mat4(), front);
         return view({{triangles, map, 1, bronze}}, {0, 1, 3}, {-1, 3.5f, 2}, {164, 164}, frames);
     };
-    ImageRgb flipped = studded;
     for (Rgb& c : flipped.pixels()) c.g = 1 - c.g;
     write_image("wrong.png", beside({plate(studded, 0), plate(decoded(studded), 0), plate(flipped, 0)}));
     const ImageRgb mirrored = plate(studded, 1, Frames::kRightHanded), steep = plate(studded, 0, Frames::kTooLong);

@@ -1,6 +1,7 @@
 // Lesson 09: shadow maps. Writes amphorae in the sun, what the sun sees of them, and what goes wrong with shadows.
 #include "common/image/image_file.h"
 #include "common/image/plot.h"
+#include "common/system/parameters.h"
 #include "raster/lessons/01-lines/figures.h"
 #include "raster/lessons/07-textures/texture.h"
 #include "raster/lessons/09-shadow-maps/shadow.h"
@@ -68,27 +69,28 @@ Vec2d errors(const ImageRgb& found, const ImageRgb& truth) {
     return wrong * (100 / static_cast<double>(truth.size()));
 }
 
-int main() {
+int main(int argc, char** argv) {
+    int texels = 256, r = 2;
+    read_parameters(argc, argv, {{"map size", texels, 16, 1024, "texels"}, {"filter reach", r, 0, 8, "texels"}});
     const Mesh world = make_scene();
+    const auto map = [&](const Mat4& m, int side) { return draw_shadow_map(world, m, 2 * kRadius, side); };
     const auto whole = [&](int height, const auto& lit) { return view(world, 0.56f, {-0.14f, 0.36f, 0}, height, lit); };
     const auto close = [&](const auto& lit) { return shrink(view(world, 0.3f, {-0.5f, 0.3f, 0}, 3 * 168, lit), 3); };
     const Mat4 matrix = sun_matrix(kToSun, kCenter, kRadius);
-    const ShadowMap fine = draw_shadow_map(world, matrix, 2 * kRadius, 1024);
-    const ShadowMap coarse = draw_shadow_map(world, matrix, 2 * kRadius, 256);
+    const ShadowMap fine = map(matrix, 1024), coarse = map(matrix, texels);
     ImageRgb depths(1024, 1024);
     for (std::size_t i = 0; i < depths.size(); ++i) depths[i] = Rgb(sqr(max(1 - 0.8f * fine.depth[i], 0.0f)));
-    write_image("evidence.png", beside({shrink(whole(3 * 256, by_map(fine, 2)), 3), shrink(depths, 4)}));
+    write_image("evidence.png", beside({shrink(whole(3 * 256, by_map(fine, r)), 3), shrink(depths, 4)}));
     write_image("bias.png", beside({close(by_map(coarse, 0, 0)), close(by_map(coarse, 0, 0.25f))}));
-    write_image("edges.png", beside({close(by_map(coarse, 0)), close(by_map(coarse, 2)), close(by_map(fine, 2))}));
+    write_image("edges.png", beside({close(by_map(coarse, 0)), close(by_map(coarse, r)), close(by_map(fine, r))}));
     const ShadowMap small = draw_shadow_map(world, sun_matrix(kToSun, kCenter, 0.75f), 1.5f, 256);
     const auto beyond_dark = [&](Vec3 p, Vec3 n) {
         return max_component(abs(transform_point(small.clip_from_world, p))) < 1 ? by_map(small, 0)(p, n) : 0;
     };
     const Mat4 turned = look_at(kCenter + kToSun * kRadius, kCenter, {0, 1, 0}) * scaling(Vec3{1, 1, -0.5f} / kRadius);
-    const ShadowMap wrong = draw_shadow_map(world, turned, 2 * kRadius, 1024);
     const Mat4 mirror = inverse_affine(matrix) * scaling(Vec3{1, -1, 1}) * matrix; // upside down in the map
     const auto upside_down = [&](Vec3 p, Vec3 n) { return by_map(fine, 0)(transform_point(mirror, p), n); };
-    write_image("wrong.png", beside({close(beyond_dark), close(by_map(wrong, 0)), close(upside_down)}));
+    write_image("wrong.png", beside({close(beyond_dark), close(by_map(map(turned, 1024), 0)), close(upside_down)}));
     const ImageRgb truth = whole(110, [&](Vec3 p, Vec3 n) { return by_ray(world, p, n); });
     Plot plot{"Wrong pixels", "bias in meters", "percent", true, true, {{"acne", {}}, {"light leaks", {}}}};
     for (float bias = 5e-4f; bias < 0.5f; bias *= 1.4f) {

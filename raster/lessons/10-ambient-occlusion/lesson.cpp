@@ -1,6 +1,7 @@
 // Lesson 10: ambient occlusion. Writes the corner of a room in the light of the sky, and the same by rays.
 #include "common/image/image_file.h"
 #include "common/image/plot.h"
+#include "common/system/parameters.h"
 #include "raster/lessons/01-lines/figures.h"
 #include "raster/lessons/10-ambient-occlusion/occlusion.h"
 
@@ -41,27 +42,29 @@ float traced(const Mesh& world, Vec3 p, Vec3 n, int count, float radius) {
     return 1 - static_cast<float>(free.size()) / static_cast<float>(count);
 }
 
-int main() {
+int main(int argc, char** argv) {
+    Search s;
+    read_parameters(argc, argv, {{"directions", s.directions, 1, 64}, {"radius", s.radius, 0.02f, 2, "meters"}});
     const Mesh world = make_scene();
     const auto draw = [&](float fov, Vec3 target, int height) {
         const Mat4 camera = perspective(fov, 1.4f, 0.1f, 30) * look_at({0.6f, 1.35f, 2.9f}, target, {0, 1, 0});
         return draw_gbuffer(world, camera, height * 7 / 5, height);
     };
     const GBuffer seen = draw(0.5f, {0.02f, 0.36f, -0.3f}, 480), small = draw(0.5f, {0.02f, 0.36f, -0.3f}, 60);
-    ImageRgb with = sky_light(seen, {}), without = with, truth(84, 60);
-    for (std::size_t i = 0; i < truth.size(); ++i) truth[i] = Rgb(1 - traced(world, small.p[i], small.n[i], 100, 0.4f));
-    write_image("truth.png", beside({shrink(with, 2), magnify(truth, 4)}));
+    const ImageRgb light = sky_light(seen, s);
+    ImageRgb with = light, without = light, truth(84, 60);
     for (std::size_t i = 0; i < with.size(); ++i)
         with[i] *= without[i] = lerp(Rgb(0.62f, 0.36f, 0.22f), Rgb(0.62f, 0.66f, 0.72f), 0.5f + 0.5f * seen.n[i].y);
     write_image("evidence.png", beside({shrink(without, 2), shrink(with, 2)}));
-    Plot plot{.title = "Error", .x_label = "directions", .y_label = "root mean square", .log_x = true, .log_y = true};
-    plot.series = {{"as found", {}}, {"blurred", {}}};
+    for (std::size_t i = 0; i < 84 * 60; ++i) truth[i] = Rgb(1 - traced(world, small.p[i], small.n[i], 100, s.radius));
+    write_image("truth.png", beside({shrink(light, 2), magnify(truth, 4)}));
+    Plot plot{"Error", "directions", "root mean square", true, true, {{"as found", {}}, {"blurred", {}}}};
     for (int n = 1; n <= 64; n *= 2)
-        for (std::size_t s = 0; s < 2; ++s) {
-            const ImageRgb image = sky_light(small, {.directions = n, .blur = s == 0 ? 1 : 4});
+        for (std::size_t k = 0; k < 2; ++k) {
+            const ImageRgb image = sky_light(small, {.directions = n, .blur = k == 0 ? 1 : 4});
             double sum = 0;
             for (std::size_t i = 0; i < truth.size(); ++i) sum += static_cast<double>(sqr(image[i].r - truth[i].r));
-            plot.series[s].points.push_back({1.0 * n, std::sqrt(sum / (84 * 60))});
+            plot.series[k].points.push_back({1.0 * n, std::sqrt(sum / (84 * 60))});
         }
     write_plot("errors.svg", plot);
     const GBuffer close = draw(0.25f, {-0.15f, 0.3f, 0}, 200), coarse = draw(0.25f, {-0.15f, 0.3f, 0}, 50);

@@ -1,6 +1,7 @@
 // Lesson 11: tiles and SIMD. Draws one image in six ways, each faster than the one before, and all the same.
 #include "common/image/image_file.h"
 #include "common/image/plot.h"
+#include "common/system/parameters.h"
 #include "raster/lessons/01-lines/figures.h"
 #include "raster/lessons/03-z-buffer/framebuffer.h"
 #include "raster/lessons/04-camera/mesh.h"
@@ -53,7 +54,7 @@ template <int kTested> void tiles(Target& target, const Prepared& t) {
 template <int kWay> void eights(Target& target, const Prepared& t) {
     using Int8 [[gnu::vector_size(32)]] = int; // eight numbers in one register
     using Float8 [[gnu::vector_size(32)]] = float;
-    const auto& [e0, e1, e2] = t.edges;
+    const Edge &e0 = t.edges[0], &e1 = t.edges[1], &e2 = t.edges[2];
     const auto row = [](const Edge& e, int x, int y) { return e.at(x, y) + e.a * Int8{0, 1, 2, 3, 4, 5, 6, 7}; };
     for_each_tile(t, [&](int x, int y0) {
         float& farthest = target.farthest(x / kTile, y0 / kTile);
@@ -72,10 +73,13 @@ template <int kWay> void eights(Target& target, const Prepared& t) {
     });
 }
 
-int main() {
+int main(int argc, char** argv) {
+    float zoom = 800, z = -1;
+    read_parameters(argc, argv, {{"zoom", zoom, 50, 800, "pixels per meter"},
+                                 {"large triangles z", z, -1, 1, "meters"}});
     std::vector<Prepared> scene(1); // number 0 is the black background: it covers no pixel
     const auto add = [&](Vec3 corner0, Vec3 corner1, Vec3 corner2, Rgb color) { // y points up, counter-clockwise
-        const auto place = [](Vec3 p) { return Vec3{384 + 800 * p.x, 752 - 800 * p.y, -p.z}; };
+        const auto place = [zoom](Vec3 p) { return Vec3{384 + zoom * p.x, 752 - zoom * p.y, -p.z}; };
         const Vec3 a = place(corner0), b = place(corner2), c = place(corner1);
         const FixedPoint p = snap({a.x, a.y}), q = snap({b.x, b.y}), r = snap({c.x, c.y});
         const std::array<Edge, 3> edges{make_edge(p, q), make_edge(q, r), make_edge(r, p)};
@@ -86,9 +90,10 @@ int main() {
     const Mesh mesh = read_obj(DUET_MODELS "meshes/amphora.obj");
     for (std::size_t i = 0; i < mesh.size(); i += 3)
         add(mesh[i].p, mesh[i + 1].p, mesh[i + 2].p, Rgb(1, 0.38f, 0.12f) * (0.55f + 0.45f * mesh[i].n.x));
-    const std::array<float, 8> side{0, 1, 1, 1, 0, -1, -1, -1}; // behind it, eight large triangles fill the image
-    const auto at = [&](std::size_t k) { return Vec3{0.48f * side[k % 8], 0.46f + 0.48f * side[(k + 2) % 8], -1}; };
-    for (std::size_t i = 0; i < 8; ++i) add({0, 0.46f, -1}, at(i + 1), at(i), rainbow(float(i) / 8) * 0.5f);
+    const std::array<float, 8> side{0, 1,  1,  1,
+                                    0, -1, -1, -1}; // of eight large triangles that fill the image behind it
+    const auto at = [&](std::size_t k) { return Vec3{0.48f * side[k % 8], 0.46f + 0.48f * side[(k + 2) % 8], z}; };
+    for (std::size_t i = 0; i < 8; ++i) add({0, 0.46f, z}, at(i + 1), at(i), rainbow(float(i) / 8) * 0.5f);
     const std::array ways{naive, steps, tiles<kTile>, eights<4>, eights<5>, eights<6>, tiles<1>}; // the last is wrong
     const std::array names{"lesson 02", "32-bit steps", "tiles", "eight at once", "depth of tiles", "rows by steps"};
     std::array<ImageRgb, 7> images;

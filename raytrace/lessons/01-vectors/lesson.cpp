@@ -1,6 +1,7 @@
 // Lesson 01: vectors, colors and a file. Writes a gradient as P3, P6 and PNG, and pictures of what vectors compute.
 #include "common/image/image_file.h"
 #include "common/image/srgb.h"
+#include "common/system/parameters.h"
 #include "common/vec/vec.h"
 
 #include <cstdio>
@@ -37,14 +38,14 @@ std::string ppm_binary(const ImageRgb& image) {
 void save(const char* path, const std::string& bytes) { std::ofstream(path, std::ios::binary) << bytes; }
 
 /// The lesson's picture: red grows to the right and green to the top. They grow as squares, since the eye tells dark
-/// colors apart better than bright ones. Blue is a quarter everywhere.
-ImageRgb gradient() {
+/// colors apart better than bright ones. Blue is the same everywhere.
+ImageRgb gradient(float blue) {
     ImageRgb image(480, 270);
     for (int row = 0; row < image.height(); ++row)
         for (int column = 0; column < image.width(); ++column) {
             const float x = static_cast<float>(column) / static_cast<float>(image.width() - 1);
             const float y = 1 - static_cast<float>(row) / static_cast<float>(image.height() - 1);
-            image(column, row) = Rgb(x * x, y * y, 0.25f);
+            image(column, row) = Rgb(x * x, y * y, blue);
         }
     return image;
 }
@@ -66,11 +67,10 @@ std::string written_as_text(const std::string& file) {
 }
 
 /// Colors beyond 1 whose numbers are not clamped: a byte holds no 256, so it begins at 0 again.
-ImageRgb overflowing() {
-    ImageRgb image = gradient();
+ImageRgb overflowing(ImageRgb image, float factor) {
     for (Rgb& pixel : image.pixels())
         for (std::size_t channel = 0; channel < 3; ++channel) {
-            const long number = std::lround(255 * srgb_encode(1.6f * pixel[channel]));
+            const long number = std::lround(255 * srgb_encode(factor * pixel[channel]));
             pixel[channel] = srgb_decode_8bit(static_cast<std::uint8_t>(number));
         }
     return image;
@@ -97,15 +97,15 @@ ImageRgb fields() {
     return image;
 }
 
-/// A spotlight at the origin that points along a lights each point whose direction makes an angle of less than 25
-/// degrees with a. On the left the direction is p / |p|, on the right it is p itself: the mistake.
-ImageRgb spotlights() {
+/// A spotlight at the origin that points along a lights each point whose direction makes a smaller angle with a than
+/// that of the cone. On the left the direction is p / |p|, on the right it is p itself: the mistake.
+ImageRgb spotlights(float degrees) {
     ImageRgb image(472, 200);
     for (int row = 0; row < 200; ++row)
         for (int column = 0; column < 472; ++column) {
             const Vec3 p{static_cast<float>(column % 240 - 10) / 100, static_cast<float>(10 - row) / 100, 0};
             const float cosine = dot(Vec3{0.8f, -0.6f, 0}, column < 240 ? normalize(p) : p);
-            const Rgb color = cosine > std::cos(radians(25.0f)) ? Rgb(1, 0.7f, 0.25f) : Rgb(0.01f, 0.02f, 0.06f);
+            const Rgb color = cosine > std::cos(radians(degrees)) ? Rgb(1, 0.7f, 0.25f) : Rgb(0.01f, 0.02f, 0.06f);
             image(column, row) = column % 240 < 232 ? color : Rgb(1);
         }
     return image;
@@ -130,20 +130,24 @@ ImageRgb grays() {
     return image;
 }
 
-int main() {
+int main(int argc, char** argv) {
+    float blue = 0.25f, factor = 1.6f, angle = 25;
+    read_parameters(argc, argv, {{"blue", blue, 0, 1}, {"factor", factor, 0, 4},
+                                 {"cone angle", angle, 1, 89, "degrees"}});
     const Vec3 a{1, 2, 3}, b{4, -5, 6}, c = cross(a, b), u = normalize(Vec3{3, 4, 0});
     std::printf("a·b = %g, a×b = (%g, %g, %g), unit = (%g, %g, %g)\n", dot(a, b), c.x, c.y, c.z, u.x, u.y, u.z);
-    const std::string text = ppm_text(gradient()), binary = ppm_binary(gradient());
+    const ImageRgb image = gradient(blue);
+    const std::string text = ppm_text(image), binary = ppm_binary(image);
     save("gradient-p3.ppm", text);
     save("gradient-p6.ppm", binary);
     const bool same = read_image("gradient-p3.ppm").pixels() == read_image("gradient-p6.ppm").pixels();
     std::printf("P3: %zu bytes, P6: %zu bytes\n", text.size(), binary.size());
-    write_image("evidence.png", gradient());
+    write_image("evidence.png", image);
     write_image("fields.png", fields());
     write_image("grays.png", grays());
-    write_image("spotlights.png", spotlights());
+    write_image("spotlights.png", spotlights(angle));
     write_image("digits.png", misread(text, 15));
     write_image("text-mode.png", misread(written_as_text(binary), 17));
-    write_image("overflow.png", overflowing());
+    write_image("overflow.png", overflowing(image, factor));
     return same ? 0 : 1;
 }

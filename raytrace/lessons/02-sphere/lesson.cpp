@@ -1,6 +1,7 @@
 // Lesson 02: a ray meets a sphere. Writes a sphere colored by its normal, under a blue-white sky.
 #include "common/image/image_file.h"
 #include "common/image/srgb.h"
+#include "common/system/parameters.h"
 #include "raytrace/lessons/02-sphere/sky.h"
 #include "raytrace/lessons/02-sphere/sphere.h"
 
@@ -34,22 +35,22 @@ Rgb normal_color(Vec3 n) {
     return {channel(n.x), channel(n.y), channel(n.z)};
 }
 
-const Sphere kSphere{{0, 0, -1}, 0.5f};
+Sphere sphere{{0, 0, -1}, 0.5f};
 
 /// The first picture: red where the ray meets the sphere, sky where it doesn't.
-Rgb disk_color(const Ray& ray) { return hit_sphere(kSphere, ray) ? Rgb(0.8f, 0.1f, 0.1f) : sky_color(ray.direction); }
+Rgb disk_color(const Ray& ray) { return hit_sphere(sphere, ray) ? Rgb(0.8f, 0.1f, 0.1f) : sky_color(ray.direction); }
 
 /// The lesson's picture: the normal at the point that the ray meets.
 Rgb sphere_color(const Ray& ray) {
-    const auto t = hit_sphere(kSphere, ray);
+    const auto t = hit_sphere(sphere, ray);
     if (!t) return sky_color(ray.direction);
-    return normal_color((ray.at(*t) - kSphere.center) / kSphere.radius);
+    return normal_color((ray.at(*t) - sphere.center) / sphere.radius);
 }
 
 /// The classic mistake: the vector from the center to the point is used as it is. It is as long as the radius.
 Rgb unnormalized_color(const Ray& ray) {
-    const auto t = hit_sphere(kSphere, ray);
-    return t ? normal_color(ray.at(*t) - kSphere.center) : sky_color(ray.direction);
+    const auto t = hit_sphere(sphere, ray);
+    return t ? normal_color(ray.at(*t) - sphere.center) : sky_color(ray.direction);
 }
 
 /// Another: points with negative t count. The only sphere stands behind the eye, to its left and above it.
@@ -65,21 +66,23 @@ Rgb behind_color(Ray ray) {
 Rgb depth_color(const Ray& ray, bool unit_length) {
     Ray used = ray;
     if (unit_length) used.direction = normalize(ray.direction);
-    const auto t = hit_sphere(kSphere, used);
+    const auto t = hit_sphere(sphere, used);
     return t ? Rgb(clamp((*t - 0.5f) / 0.37f, 0.0f, 1.0f)) : Rgb(0.1f, 0.1f, 0.3f);
 }
 
 /// How far the ray's way through the sphere is, from its first point on the sphere to its second.
 Rgb chord_color(Ray ray) {
-    const auto first = hit_sphere(kSphere, ray);
+    const auto first = hit_sphere(sphere, ray);
     if (!first) return {0.1f, 0.1f, 0.3f};
     ray.t_min = *first; // what is left of the ray has the second point
-    const auto second = hit_sphere(kSphere, ray);
+    const auto second = hit_sphere(sphere, ray);
     const float chord = second ? (*second - *first) * length(ray.direction) : 0; // 0 for a tangent
-    return lerp(Rgb(0.9f, 0.5f, 0.1f), Rgb(1, 1, 0.8f), chord / (2 * kSphere.radius));
+    return lerp(Rgb(0.9f, 0.5f, 0.1f), Rgb(1, 1, 0.8f), chord / (2 * sphere.radius));
 }
 
-int main() {
+int main(int argc, char** argv) {
+    read_parameters(argc, argv, {{"center x", sphere.center.x, -2, 2}, {"center z", sphere.center.z, -4, 1},
+                                 {"radius", sphere.radius, 0.05f, 2}});
     write_image("disk.png", draw(disk_color));
     write_image("evidence.png", draw(sphere_color));
     write_image("chord.png", draw(chord_color));
@@ -90,7 +93,6 @@ int main() {
     int hits = 0;
     for (int y = 0; y < kHeight; ++y)
         for (int x = 0; x < kWidth; ++x)
-            hits +=
-                hit_sphere(kSphere, eye_ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f)).has_value();
+            hits += hit_sphere(sphere, eye_ray(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f)).has_value();
     std::printf("%d of %d rays meet the sphere\n", hits, kWidth * kHeight);
 }

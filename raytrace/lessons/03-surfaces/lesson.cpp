@@ -1,6 +1,7 @@
 // Lesson 03: the nearest of many surfaces. Writes spheres on a large sphere that serves as ground.
 #include "common/image/image_file.h"
 #include "common/image/srgb.h"
+#include "common/system/parameters.h"
 #include "raytrace/lessons/02-sphere/sky.h"
 #include "raytrace/lessons/03-surfaces/surfaces.h"
 
@@ -59,8 +60,10 @@ Rgb index_color(const Hit& hit) {
 Rgb turned(const Hit& hit) { return normal_color(hit.n); }
 Rgb outward(const Hit& hit) { return normal_color(hit.front ? hit.n : -hit.n); }
 
-int main() {
-    const Vec3 eye{0, 0, 0}, inside{0, 0, -1.3f};
+int main(int argc, char** argv) {
+    Vec3 eye{0, 0, 0}, inside{0, 0, -1.3f};
+    read_parameters(argc, argv, {{"eye x", eye.x, -1.5f, 1.5f}, {"eye y", eye.y, -0.4f, 2}, {"eye z", eye.z, -2, 3},
+                                 {"inner eye z", inside.z, -1.95f, -1.05f}});
     write_image("evidence.png", draw(eye, closest_hit, turned));
     write_image("index.png", draw(eye, closest_hit, index_color));
     write_image("last.png", draw(eye, last_hit, turned));

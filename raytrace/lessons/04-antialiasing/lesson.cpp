@@ -2,6 +2,7 @@
 #include "common/image/image_file.h"
 #include "common/image/plot.h"
 #include "common/image/srgb.h"
+#include "common/system/parameters.h"
 #include "raytrace/lessons/02-sphere/sky.h"
 #include "raytrace/lessons/03-surfaces/surfaces.h"
 #include "raytrace/lessons/04-antialiasing/sampling.h"
@@ -81,11 +82,13 @@ Plot error_plot() {
     return plot;
 }
 
-int main() {
-    const ImageRgb jagged = render(270, 1, center), smooth = render(270, 64, in_cells);
+int main(int argc, char** argv) {
+    int cells = 8, count = 4;
+    read_parameters(argc, argv, {{"cells", cells, 1, 16, "per side of a pixel"}, {"random samples", count, 1, 64}});
+    const ImageRgb jagged = render(270, 1, center), smooth = render(270, cells * cells, in_cells);
     write_image("evidence.png", beside({jagged, smooth}, 0, 0, 270, 1));
-    write_image("zoom.png", beside({jagged, render(270, 4, random_offset), smooth}, 180, 140, 48, 4));
-    const ImageRgb fixed = rings(4, same_points), random = rings(4, random_offset), many = rings(64, in_cells);
+    write_image("zoom.png", beside({jagged, render(270, count, random_offset), smooth}, 180, 140, 48, 4));
+    const ImageRgb fixed = rings(count, same_points), random = rings(count, random_offset), many = rings(64, in_cells);
     write_image("rings.png", beside({rings(1, center), fixed, random, many}, 0, 0, 160, 1));
     // Two mistakes: the numbers of the file are averaged, and each is divided by the 36 samples before they are added.
     const auto byte = [](float x, float y, Random&) {
@@ -95,6 +98,6 @@ int main() {
     for (Rgb& pixel : dark.pixels()) pixel = decoded(pixel);
     for (Rgb& pixel : steps.pixels()) pixel = decoded(pixel * (36 / 255.0f));
     write_image("numbers.png", beside({dark, steps}, 0, 0, 160, 1));
-    write_image("corners.png", beside({render(24, 1, center), render(24, 1, corner)}, 0, 0, 24, 8));
     write_plot("error.svg", error_plot());
+    write_image("corners.png", beside({render(24, 1, center), render(24, 1, corner)}, 0, 0, 24, 8));
 }

@@ -2,6 +2,7 @@
 #include "common/image/image_file.h"
 #include "common/image/plot.h"
 #include "common/image/srgb.h"
+#include "common/system/parameters.h"
 #include "raytrace/lessons/02-sphere/sky.h"
 #include "raytrace/lessons/05-diffuse/diffuse.h"
 
@@ -32,6 +33,7 @@ struct Scene {
 
 // How the ray that goes on keeps away from the surface that it leaves.
 enum class RayStart { kExact, kEpsilon, kErrorBound };
+float epsilon = 1e-3f; // of kEpsilon, in meters; main reads it
 
 // The light that comes along a ray: that of the sky, dimmed by each surface it came by.
 Rgb matte_color(const Scene& scene, Ray ray, RayStart start, Random& random) {
@@ -41,7 +43,7 @@ Rgb matte_color(const Scene& scene, Ray ray, RayStart start, Random& random) {
         if (!hit) return weight * sky_color(ray.direction);
         weight *= scene.albedos[hit->index];
         const Vec3 origin = start == RayStart::kErrorBound ? offset_point(scene.spheres[hit->index], *hit) : hit->p;
-        ray = {origin, random_diffuse_direction(hit->n, random), start == RayStart::kEpsilon ? 1e-3f : 0};
+        ray = {origin, random_diffuse_direction(hit->n, random), start == RayStart::kEpsilon ? epsilon : 0};
     }
     return Rgb(0);
 }
@@ -98,11 +100,13 @@ Plot angles_of_directions() {
             .series = {counted, lambert, even}};
 }
 
-int main() {
-    write_image("evidence.png", render(kWhole, 256, RayStart::kErrorBound));
+int main(int argc, char** argv) {
+    int samples = 256;
+    read_parameters(argc, argv, {{"samples", samples, 1, 1024}, {"epsilon", epsilon, 0, 0.1f, "meters"}});
+    write_image("evidence.png", render(kWhole, samples, RayStart::kErrorBound));
     write_image("gamma.png", without_and_with_gamma(render(kHalf, 128, RayStart::kErrorBound)));
-    write_plot("angles.svg", angles_of_directions());
     write_image("zero.png", render(kClose, 128, RayStart::kExact));
+    write_plot("angles.svg", angles_of_directions());
     write_image("error.png", render(kClose, 128, RayStart::kErrorBound));
     // A power of two as scale changes no digit of a float: pictures differ only where the program mixes in meters.
     for (const auto& [name, scale] : {std::pair{"small", 0x1p-10f}, {"middle", 1.0f}, {"large", 0x1p10f}}) {

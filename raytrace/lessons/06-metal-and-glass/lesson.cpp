@@ -1,6 +1,7 @@
 // Metal, glass and matte spheres side by side, four mistakes with glass, and light between mirrors.
 #include "common/image/image_file.h"
 #include "common/image/plot.h"
+#include "common/system/parameters.h"
 #include "raytrace/lessons/06-metal-and-glass/materials.h"
 
 using namespace duet;
@@ -46,19 +47,22 @@ ImageRgb render(const World& world, int width, int height, int samples, int boun
     });
 }
 
-int main() {
-    const Material clear = glass(1.5f), bubble = glass(1 / 1.5f);
-    World world = row_of({matte({0.7f, 0.12f, 0.1f}), clear, metal({0.95f, 0.72f, 0.35f}, 0.05f), clear});
-    world.add(world.spheres[4].center, 0.9f, bubble); // the fourth is hollow
-    write_image("evidence.png", render(world, 380, 138, 128));
+int main(int argc, char** argv) {
+    float index = 1.5f, fuzz = 0.05f;
+    int samples = 128;
+    read_parameters(argc, argv, {{"index of refraction", index, 1, 2.5f}, {"fuzz", fuzz, 0, 1},
+                                 {"samples", samples, 1, 512}});
+    const Material clear = glass(index), bubble = glass(1 / index); // a bubble makes the fourth sphere hollow
+    World world = row_of({matte({0.7f, 0.12f, 0.1f}), clear, metal({0.95f, 0.72f, 0.35f}, fuzz), clear}), mirrors;
+    world.add(world.spheres[4].center, 0.9f, bubble);
+    write_image("evidence.png", render(world, 380, 138, samples));
     world.mistaken = 25, write_image("nan.png", render(world, 176, 64, 16)), world.mistaken = 99;
     for (const int n : {1, 2, 5}) write_image("limit-" + std::to_string(n) + ".png", render(world, 176, 60, 48, n));
-    const auto steel = [](float fuzz) { return metal(Rgb(0.9f), fuzz); };
+    const auto steel = [](float f) { return metal(Rgb(0.9f), f); };
     write_image("fuzz.png", render(row_of({steel(0), steel(0.1f), steel(0.3f), steel(1)}), 300, 100, 80));
     write_image("glass.png", render(row_of({glass(1.33f), clear, glass(2.42f), bubble}), 300, 100, 80));
     write_image("mistakes.png", render(row_of({clear, clear, clear, clear}, 2), 300, 100, 80));
-    World mirrors; // four that touch one another, one behind the gap between three
-    mirrors.add({0, -0.671f, -5.593f}, 1, metal({0.9f, 0.9f, 0.95f}));
+    mirrors.add({0, -0.671f, -5.593f}, 1, metal({0.9f, 0.9f, 0.95f})); // touches the others, behind their gap
     mirrors.add({0, 0.67f, -4.109f}, 1, metal({0.95f, 0.8f, 0.5f}));
     mirrors.add({-1, -1.05f, -3.903f}, 1, metal({0.9f, 0.6f, 0.5f}));
     mirrors.add({1, -1.05f, -3.903f}, 1, metal({0.55f, 0.75f, 0.9f}));

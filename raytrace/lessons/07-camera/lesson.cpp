@@ -1,5 +1,6 @@
 // One scene from three places, at three angles of view, through a lens, and with the classic mistakes.
 #include "common/image/image_file.h"
+#include "common/system/parameters.h"
 #include "raytrace/lessons/06-metal-and-glass/materials.h"
 #include "raytrace/lessons/07-camera/camera.h"
 
@@ -18,10 +19,9 @@ struct World {
         for (int row = 0; row < 5; ++row)
             for (int column = 0; column < 11; ++column) {
                 if (rows[row][column] != '#') continue;
-                const int letter = column / 4;
                 const float x = static_cast<float>(column) - 5, y = 4.5f - static_cast<float>(row);
-                spheres.push_back({{0.5f * x, 0.5f * y, 1 - static_cast<float>(letter)}, 0.25f});
-                materials.push_back(letters[letter]);
+                spheres.push_back({{0.5f * x, 0.5f * y, 1 - static_cast<float>(column / 4)}, 0.25f});
+                materials.push_back(letters[column / 4]);
             }
     }
 };
@@ -45,7 +45,8 @@ template <typename Lens> ImageRgb lights(const Lens& lens) {
     Random place(5);
     for (int i = 0; i < 12; ++i) {
         spheres.push_back({{12 * place.next() - 6, 7 * place.next() - 3.5f, -20 - 4 * place.next()}, 0.25f});
-        colors.push_back(Rgb(1, 0.15f + 0.6f * place.next(), 0.5f * place.next()) * 7.0f);
+        const float blue = 0.5f * place.next(); // before the green: compilers order arguments as they like
+        colors.push_back(Rgb(1, 0.15f + 0.6f * place.next(), blue) * 7.0f);
     }
     const Camera camera({.fov_degrees = 24, .aperture_radius = 0.25f, .focus_distance = 5}, kWidth, kHeight);
     return average_samples(kWidth, kHeight, 400, [&](float x, float y, Random& random) {
@@ -70,8 +71,10 @@ ImageRgb beside(const std::vector<ImageRgb>& images) {
     return row;
 }
 
-int main() {
-    View front{.eye = {0, 1.6f, 10}, .look_at = {0, 1.2f, 0}, .fov_degrees = 26}, left = front, above = front;
+int main(int argc, char** argv) {
+    float field = 26, radius = 0.25f;
+    read_parameters(argc, argv, {{"field of view", field, 5, 120, "degrees"}, {"lens radius", radius, 0, 1}});
+    View front{.eye = {0, 1.6f, 10}, .look_at = {0, 1.2f, 0}, .fov_degrees = field}, left = front, above = front;
     left.eye = {-7, 0.6f, 7.5f}, above.eye = {3, 8, 7.5f};
     write_image("evidence.png",
                 beside({render(front, 176, 116, 100), render(left, 176, 116, 100), render(above, 176, 116, 100)}));
@@ -80,9 +83,8 @@ int main() {
         const float distance = 2.2f / std::tan(static_cast<float>(radians(fov)) / 2); // 4.4 high at the middle letter
         zooms.push_back(render({.eye = {0, 1.4f, distance}, .look_at = {0, 1.4f, 0}, .fov_degrees = fov}));
     }
-    const Vec3 aside{-3.2f, 1.5f, 7}, middle{0, 1.2f, 0};
-    for (const Vec2 lens : {Vec2(0, 1), Vec2(0.25f, 6), Vec2(0.25f, 9)}) // its radius, and the distance that is sharp
-        focused.push_back(render({aside, middle, {0, 1, 0}, 31, lens.x, lens.y}));
+    for (const Vec2 lens : {Vec2(0, 1), Vec2(radius, 6), Vec2(radius, 9)}) // its radius, and the distance that is sharp
+        focused.push_back(render({{-3.2f, 1.5f, 7}, {0, 1.2f, 0}, {0, 1, 0}, 31, lens.x, lens.y}));
     write_image("zoom.png", beside(zooms)), write_image("focus.png", beside(focused));
     write_image("axes.png", beside({render(front), render(front, kWidth, kHeight, 64, {-1, 1}),
                                     render(front, kWidth, kHeight, 64, {-1, -1})}));

@@ -1,6 +1,7 @@
 // Lesson 08: a tree of boxes. Writes 500 spheres around an amphora, and what the tree saves.
 #include "common/image/image_file.h"
 #include "common/image/plot.h"
+#include "common/system/parameters.h"
 #include "raytrace/lessons/07-camera/camera.h"
 #include "raytrace/lessons/08-bvh/bvh.h"
 
@@ -44,9 +45,11 @@ template <typename Enter> ImageRgb draw(const Bvh& tree, float split, const Ente
     });
 }
 
-int main() {
+int main(int argc, char** argv) {
+    int spheres = 500, leaf = 1;
+    read_parameters(argc, argv, {{"spheres", spheres, 0, 3000}, {"objects in a leaf", leaf, 1, 128}});
     std::vector<Object> objects;
-    for (int i = 12; i < 512; ++i) { // as the seeds of a sunflower: each is turned by the golden angle
+    for (int i = 12; i < 12 + spheres; ++i) { // as the seeds of a sunflower: each is turned by the golden angle
         const float angle = 2.39996f * static_cast<float>(i), r = 0.1f * std::sqrt(static_cast<float>(i));
         const std::vector<Sphere> sphere{{{r * std::cos(angle), 0.07f, r * std::sin(angle)}, 0.07f}};
         const Vec3 center = sphere[0].center, reach{0.07f, 0.07f, 0.07f};
@@ -62,13 +65,13 @@ int main() {
         if (key == "f") objects.push_back(triangle_object(point(a), point(b), point(c)));
     }
     write_plot("time.svg", time_plot(objects));
-    const Bvh tree = build(objects);
+    const Bvh tree = build(objects, std::size_t(leaf));
     write_image("evidence.png", draw(tree, kWidth, enter_box));
     write_image("tests.png", draw(tree, kWidth / 2, enter_box));
     const auto whole_ray = [](const Box3& box, Ray ray) { return ray.t_max = kInfinity, enter_box(box, ray); };
     write_image("too-long.png", draw(tree, kWidth / 2, whole_ray));
     const auto no_flat = [](const Box3& box, const Ray& ray) { return box.low.y < box.high.y && enter_box(box, ray); };
-    write_image("flat.png", draw(tree, kWidth, no_flat));
     const auto no_swap = [](const Box3& box, const Ray& ray) { return ray.direction.x > 0 && enter_box(box, ray); };
+    write_image("flat.png", draw(tree, kWidth, no_flat));
     write_image("swap.png", draw(tree, kWidth, no_swap));
 }

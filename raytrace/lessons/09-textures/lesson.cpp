@@ -1,5 +1,6 @@
 // Lesson 09: textures. Writes a globe and a marble sphere on a checkerboard, and what goes wrong with textures.
 #include "common/image/image_file.h"
+#include "common/system/parameters.h"
 #include "raytrace/lessons/02-sphere/sky.h"
 #include "raytrace/lessons/05-diffuse/diffuse.h"
 #include "raytrace/lessons/07-camera/camera.h"
@@ -48,7 +49,9 @@ Rgb letters(Vec2 uv) { // a map with 8 columns and 4 rows of the letter F
     return ink ? Rgb(0.05f, 0.03f, 0.1f) : Rgb(uv.y, 0.5f, 1 - 0.8f * uv.y);
 }
 
-int main() {
+int main(int argc, char** argv) {
+    float scale = 4, swirl = 10;
+    read_parameters(argc, argv, {{"noise scale", scale, 0.5f, 20}, {"swirl", swirl, 0, 40}});
     const auto color = [](float x, float y, Random&) { return planet(sphere_normal({x / 320, 1 - y / 160})); };
     write_image("planet.png", average_samples(320, 160, 4, color));
     StoredImage file = read_stored_image("planet.png");
@@ -56,11 +59,11 @@ int main() {
     file.encoding = StoredImage::Encoding::kLinear;
     const ImageRgb pale = to_linear(file); // the numbers themselves
     const auto image = [](const ImageRgb& pixels) { return [&](Vec2 uv, Vec3) { return image_color(pixels, uv); }; };
-    const auto stone = [](const auto& noise) { // a texture from noise; the shift is any
+    const auto stone = [=](const auto& noise) { // a texture from noise; the shift is any
         const Rgb dark(0.1f, 0.12f, 0.14f), light(0.9f, 0.88f, 0.8f);
-        return [=](Vec2, Vec3 p) { return lerp(dark, light, 0.5f + 0.5f * noise(p * 4.0f + Vec3(2.7f, 0, 1.4f))); };
+        return [=](Vec2, Vec3 p) { return lerp(dark, light, 0.5f + 0.5f * noise(p * scale + Vec3(2.7f, 0, 1.4f))); };
     };
-    const auto marble = [](Vec3 p) { return std::sin(1.2f * p.y + 10 * std::abs(fractal_noise(p * 0.3f, 5))); };
+    const auto marble = [=](Vec3 p) { return std::sin(1.2f * p.y + swirl * std::abs(fractal_noise(p * 0.3f, 5))); };
     const auto tiles = [](Vec2, Vec3 p) { return squares({p.x, 0, p.z}); };
     const Scene scene{{{{0, -301, 0}, 300}, {{-0.55f, 0, 0}, 1}, {{1.45f, -0.3f, 0.5f}, 0.7f}},
                       {tiles, image(map), stone(marble)}};
@@ -71,10 +74,9 @@ int main() {
     };
     const auto linear = [](Vec3 p) { return lattice_noise(p, corner_slope, [](float t) { return t; }); };
     draw_row("fade.png", {stone(slope(linear)), stone(slope(gradient_noise))});
-    const auto right = [](Vec2 uv, Vec3) { return letters(uv); };
     const auto mirrored = [](Vec2 uv, Vec3) { return letters({1 - uv.x, uv.y}); };
     const auto upside_down = [](Vec2 uv, Vec3) { return letters({uv.x, 1 - uv.y}); };
-    draw_row("letters.png", {right, mirrored, upside_down});
+    draw_row("letters.png", {[](Vec2 uv, Vec3) { return letters(uv); }, mirrored, upside_down});
     const auto flat = [](Vec2 uv, Vec3) { return planet({4 * uv.x + (uv.x < 0.5f ? 4.0f : 0), 2 * uv.y - 1, 2}); };
     draw_row("globes.png", {image(map), image(pale), flat});
     const auto cut_off = [](Vec2, Vec3 p) { return squares(Vec3(Vec3T<int>(p * 4.0f))); }; // as int does it

@@ -1,6 +1,7 @@
 // The Cornell box by chance alone: how light bounces, and how much noise a light of each size makes.
 #include "common/image/image_file.h"
 #include "common/image/plot.h"
+#include "common/system/parameters.h"
 #include "raytrace/lessons/07-camera/camera.h"
 #include "raytrace/lessons/10-cornell-box/quads.h"
 
@@ -48,12 +49,15 @@ ImageRgb side_by_side(const std::vector<ImageRgb>& images) {
     return row;
 }
 
-int main() {
-    const std::vector<Quad> box = cornell_box(2, 2); // a large light, and a bright one
-    write_image("evidence.png", render(box, 160, 96));
+int main(int argc, char** argv) {
+    float side = 2, limit = 1;
+    int spp = 96;
+    read_parameters(argc, argv, {{"light size", side, 0.2f, 3}, {"limit", limit, 0.1f, 10}, {"samples", spp, 1, 400}});
+    const std::vector<Quad> box = cornell_box(side, 2); // a large light, and a bright one
+    write_image("evidence.png", render(box, 160, spp));
     const ImageRgb right = render(box, 96, 40);
     write_image("bounces.png", side_by_side({render(box, 96, 40, 1), render(box, 96, 40, 2), right}));
-    write_image("clamped.png", side_by_side({right, render(box, 96, 40, 30, 1)}));
+    write_image("clamped.png", side_by_side({right, render(box, 96, 40, 30, limit)}));
     std::vector<Quad> upward = box, both = box; // the light's front up, and a second front 1 mm above the first
     upward[0] = {box[0].corner, box[0].v, box[0].u, box[0].material, box[0].emission};
     both.push_back(upward[0]), both.back().corner.y += 1e-3f;
@@ -61,10 +65,10 @@ int main() {
     write_image("sides.png", side_by_side({below(box), below(both), below(upward)}));
     std::vector<ImageRgb> sizes;
     Plot plot{"Noise of the Cornell box", "samples per pixel", "error of a pixel (root mean square)", true, true};
-    for (const auto& [name, side] : {std::pair{"twice as wide", 2.0f}, {"as it is", 1.0f}, {"half as wide", 0.5f}}) {
-        sizes.push_back(render(cornell_box(side, 2), 96, 24));
+    for (const auto& [name, size] : {std::pair{"twice as wide", 2.0f}, {"as it is", 1.0f}, {"half as wide", 0.5f}}) {
+        sizes.push_back(render(cornell_box(size, 2), 96, 24));
         plot.series.push_back({name, {}});
-        for (int n = 1; n <= 64; n *= 4) plot.series.back().points.push_back({1.0 * n, noise(cornell_box(side), n)});
+        for (int n = 1; n <= 64; n *= 4) plot.series.back().points.push_back({1.0 * n, noise(cornell_box(size), n)});
         std::printf("A light %s: error %.3f with 64 samples\n", name, plot.series.back().points.back().y);
     }
     write_image("sizes.png", side_by_side(sizes));
