@@ -1,6 +1,7 @@
 #!/bin/sh
-# Builds the web page of both pipelines into a folder, build/web if none is given. Open its index.html in a browser, or
-# serve the folder from any web server. Like setup.sh, it installs what is missing.
+# Builds the web page of both pipelines and of the lessons into a folder, build/web if none is given. Open its
+# index.html or lessons.html in a browser, or serve the folder from any web server. Like setup.sh, it installs what is
+# missing.
 # usage: sh compare/web/build.sh [FOLDER]
 set -eu
 cd "$(dirname "$0")/../.."
@@ -15,5 +16,5 @@ work=build/emscripten
 [ -f $work/build.ninja ] || emcmake cmake -S compare/web -B $work -G Ninja -DCMAKE_BUILD_TYPE=Release \
     -DDUET_TABLES="$PWD/build/release/generated"
 cmake --build $work
-python3 -B compare/web/pack.py $work/duet.js models "$folder"
+python3 -B compare/web/pack.py $work models "$folder"
 echo "web: wrote $folder/index.html"

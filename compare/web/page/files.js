@@ -1,22 +1,6 @@
 // This script opens, saves and downloads scenes and files.
 'use strict';
 
-const loadedFiles = new Map();
-/** Stores a file of the scenes' folder, given in base64. Each script in files/ calls this function with its file. */
-function addFile(path, base64) { loadedFiles.set(path, base64); }
-
-function bytesOf(base64) { return Uint8Array.from(atob(base64), c => c.charCodeAt(0)); }
-
-function loadScript(file) {
-    return new Promise((resolve, reject) => {
-        const script = document.createElement('script');
-        script.src = file;
-        script.onload = resolve;
-        script.onerror = () => reject(new Error(`cannot load ${file}`));
-        document.head.append(script);
-    });
-}
-
 function giveFiles(files) {
     for (const p of [...pipelines, ...helpers]) p.worker.postMessage({files});
 }

@@ -206,6 +206,8 @@ document.addEventListener('drop', event => {
     if (isScene) replaceScene(() => openFilesOf(list, true));
     else openFilesOf(list, true).catch(error => say(error.message));
 });
+addLessons($('lesson'));
+$('lesson').onchange = () => { location.href = `lessons.html#${$('lesson').value}`; };
 let fitting = null;
 new ResizeObserver(() => {
     clearTimeout(fitting);

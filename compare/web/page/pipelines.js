@@ -2,8 +2,6 @@
 // line between the images.
 'use strict';
 
-const $ = id => document.getElementById(id);
-
 let state = null;         // PageSession::state()
 let selected = -1;        // entry of the scene's "objects"
 let split = 0.5;          // fraction of the width that the rasterizer's image has
