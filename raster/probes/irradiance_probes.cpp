@@ -19,24 +19,30 @@ using Vec3s = Vec3T<Floats>;
 
 constexpr int kDistanceSide = 16; ///< texels along a side of an octahedral map of distances
 
-/// Calls visit for every pixel of a probe's cube whose column is a multiple of `columns`.
-template <typename Visit> void for_each_pixel(int columns, const Visit& visit) {
-    for (std::size_t face = 0; face < 6; ++face)
-        for (int y = 0; y < IrradianceProbes::kSide; ++y)
-            for (int x = 0; x < IrradianceProbes::kSide; x += columns) visit(ProbeCapture::Pixel{face, x, y});
-}
+constexpr int kSide = 16, kFineSide = 32; ///< pixels along a side of a face of a probe's cube
 constexpr int kBatch = static_cast<int>(Floats::size);
-static_assert(IrradianceProbes::kSide % kBatch == 0);
+static_assert(kSide % kBatch == 0);
+/// Probes with less light-giving pixels than this are rendered with kFineSide.
+constexpr float kFewestPixels = 64;
+constexpr int kMostBounces = 16;
+constexpr float kNegligible = 0.01f; ///< mean fraction of a probe's light; a bounce that adds less is the last one
+
+/// Calls visit for every pixel of a cube of side × side pixels a face whose column is a multiple of `columns`.
+template <typename Visit> void for_each_pixel(int side, int columns, const Visit& visit) {
+    for (std::size_t face = 0; face < 6; ++face)
+        for (int y = 0; y < side; ++y)
+            for (int x = 0; x < side; x += columns) visit(ProbeCapture::Pixel{face, x, y});
+}
 
 /// Projects the light that arrives at a probe from batches of pixels to the harmonics of the irradiance. The weights of
-/// the pixels are the same for all probes and are stored in a table.
+/// the pixels are the same for all probes of one resolution and are stored in a table.
 class Projection {
 public:
-    Projection() {
-        for (auto& face : weights_) face.fill(PlaneFloat(IrradianceProbes::kSide, IrradianceProbes::kSide));
-        for_each_pixel(1, [&](const ProbeCapture::Pixel& p) {
-            const std::array<float, 9> basis = harmonics(ProbeCapture::direction(p, IrradianceProbes::kSide));
-            const float solid_angle = ProbeCapture::solid_angle(p, IrradianceProbes::kSide);
+    explicit Projection(int side) {
+        for (auto& face : weights_) face.fill(PlaneFloat(side, side));
+        for_each_pixel(side, 1, [&](const ProbeCapture::Pixel& p) {
+            const std::array<float, 9> basis = harmonics(ProbeCapture::direction(p, side));
+            const float solid_angle = ProbeCapture::solid_angle(p, side);
             for (std::size_t i = 0; i < 9; ++i)
                 weights_[p.face][i](p.x, p.y) = basis[i] * static_cast<float>(kIrradianceFactors[i]) * solid_angle;
         });
@@ -50,9 +56,22 @@ public:
 private:
     std::array<std::array<PlaneFloat, 9>, 6> weights_;
 };
-const Projection& projection() {
-    static const Projection table;
-    return table;
+const Projection& projection(int side) {
+    static const Projection table(kSide), fine(kFineSide);
+    return side == kSide ? table : fine;
+}
+
+/// Returns the number of pixels of equal light that have the same ratio of (sum of light)² to (sum of squares) as a
+/// capture's pixels (Kish 1965, "Survey Sampling"). It is small if nearly all light comes from a small bright area,
+/// whose edges then make a large error.
+float effective_pixels(const ProbeCapture& capture) {
+    Floats sum(0.0f), squares(0.0f);
+    for_each_pixel(capture.side(), kBatch, [&](const ProbeCapture::Pixel& p) {
+        const RgbT<Floats> color = capture.faces()[p.face].direct.color(p.x, p.y);
+        const Floats light = color.r + color.g + color.b;
+        sum += light, squares += light * light;
+    });
+    return sqr(xsimd::hadd(sum)) / std::max(xsimd::hadd(squares), std::numeric_limits<float>::min());
 }
 
 } // namespace
@@ -70,7 +89,10 @@ IrradianceProbes::IrradianceProbes(const RasterSceneData& data, const RasterSett
         // pixels, which removes the noise of choosing few lights.
         constexpr std::size_t kMostLights = 8;
         const ChosenLights lights{kMostLights, unit_float(high_bits(mix_bits(i)))};
-        captures[i] = std::make_unique<ProbeCapture>(data, settings, position, kSide, data.glass, lights);
+        for (const int side : {kSide, kFineSide}) {
+            captures[i] = std::make_unique<ProbeCapture>(data, settings, position, side, data.glass, lights);
+            if (effective_pixels(*captures[i]) >= kFewestPixels) break;
+        }
         captures[i]->add_fog(data, settings, {});
     });
     drop_strays(captures);
@@ -80,13 +102,19 @@ IrradianceProbes::IrradianceProbes(const RasterSceneData& data, const RasterSett
     });
     find_sky(data, settings, captures);
     std::vector<std::vector<Weights>> weights(probes_.size());
-    for (int k = 0; k <= kBounces; ++k) {
+    for (int k = 0; k <= kMostBounces; ++k) {
         std::vector<IrradianceHarmonics> next(probes_.size());
         parallel_for(probes_.size(), settings.threads, [&](std::size_t i) {
             if (captures[i]) next[i] = gather(*captures[i], k, weights[i]);
         });
-        for (std::size_t i = 0; i < probes_.size(); ++i) probes_[i].irradiance = next[i];
+        float change = 0; // sum over all probes of the relative change
+        for (std::size_t i = 0; i < probes_.size(); ++i) {
+            const float before = luminance(probes_[i].irradiance[0]), now = luminance(next[i][0]);
+            if (now > 0) change += (now - before) / now;
+            probes_[i].irradiance = next[i];
+        }
         fill_solids();
+        if (change <= kNegligible * static_cast<float>(probes_.size())) break;
     }
 }
 
@@ -99,8 +127,8 @@ void IrradianceProbes::find_sky(const RasterSceneData& data, const RasterSetting
     float seen = 0, all = 0;
     for (const auto& capture : captures) {
         if (!capture) continue;
-        for_each_pixel(1, [&](const ProbeCapture::Pixel& pixel) {
-            const float solid_angle = ProbeCapture::solid_angle(pixel, kSide);
+        for_each_pixel(capture->side(), 1, [&](const ProbeCapture::Pixel& pixel) {
+            const float solid_angle = ProbeCapture::solid_angle(pixel, capture->side());
             all += solid_angle;
             if (capture->distance(pixel) == kInfinity) seen += solid_angle;
         });
@@ -113,9 +141,10 @@ void IrradianceProbes::set_distances(const ProbeCapture& capture, Probe& probe) 
     const float farthest = 1.5f * static_cast<float>(length(step_));
     probe.distance = OctahedralMap(kDistanceSide);
     Image<Vec3> sums(kDistanceSide, kDistanceSide); // sums of distance, squared distance and solid angle
-    for_each_pixel(1, [&](const ProbeCapture::Pixel& pixel) {
-        const Vec2 at = octahedral(ProbeCapture::direction(pixel, kSide));
-        const float distance = min(capture.distance(pixel), farthest), weight = ProbeCapture::solid_angle(pixel, kSide);
+    for_each_pixel(capture.side(), 1, [&](const ProbeCapture::Pixel& pixel) {
+        const Vec2 at = octahedral(ProbeCapture::direction(pixel, capture.side()));
+        const float distance = min(capture.distance(pixel), farthest),
+                    weight = ProbeCapture::solid_angle(pixel, capture.side());
         sums(cell_of(at.x, kDistanceSide), cell_of(at.y, kDistanceSide)) +=
             Vec3(distance, distance * distance, 1) * weight;
     });
@@ -138,7 +167,7 @@ IrradianceHarmonics IrradianceProbes::gather(const ProbeCapture& capture, int bo
     const bool hazy = bounce > 0 && !first.haze.empty();
     const Vec3s center{Floats(0.0f), Floats(0.0f), Floats(0.0f)};
     const RgbT<Floats> around = hazy ? mean_radiance(first.gbuffer.projection.eye(), center, {}) : RgbT<Floats>();
-    for_each_pixel(kBatch, [&](const ProbeCapture::Pixel& p) {
+    for_each_pixel(capture.side(), kBatch, [&](const ProbeCapture::Pixel& p) {
         const ProbeCapture::Face& face = capture.faces()[p.face];
         RgbT<Floats> light = face.direct.color(p.x, p.y);
         const Mask seen = face.gbuffer.visible(p.x, p.y);
@@ -153,7 +182,7 @@ IrradianceHarmonics IrradianceProbes::gather(const ProbeCapture& capture, int bo
             light += blend(seen, albedo * arriving * Floats(kInvPi), RgbT<Floats>(Floats(0.0f)));
         }
         if (hazy) light += face.haze.color(p.x, p.y) * around;
-        projection().add(p, light, sum);
+        projection(capture.side()).add(p, light, sum);
     });
     IrradianceHarmonics result;
     for (std::size_t i = 0; i < 9; ++i)

@@ -16,7 +16,8 @@ namespace duet::raster {
 /// Holds the probes of a scene. They do not depend on the view.
 class IrradianceProbes {
 public:
-    /// Renders the probes and lets light bounce kBounces times. The result is the same for any number of threads.
+    /// Renders the probes, and lets light bounce until a bounce adds less than 1 % to it, or 16 times. The
+    /// result is the same for any number of threads.
     IrradianceProbes(const RasterSceneData& data, const RasterSettings& settings);
 
     /// Returns the irradiance at points relative to the eye at `eye`, with unit normals; unspecified in lanes that
@@ -35,9 +36,6 @@ public:
     /// Returns the distance between neighboring probes, in meters: the largest of the three axes.
     float spacing() const;
     std::size_t memory_bytes() const;
-
-    static constexpr int kSide = 16;    ///< pixels along a side of a face of a probe's cube
-    static constexpr int kBounces = 3;
 
 private:
     struct Probe {

@@ -35,6 +35,7 @@ public:
 
     std::vector<Face>& faces() { return faces_; }
     const std::vector<Face>& faces() const { return faces_; }
+    int side() const { return side_; } ///< pixels along a side of a face
     /// Identifies a pixel of the capture by its face, column and row.
     struct Pixel {
         std::size_t face;
