@@ -8,16 +8,19 @@ namespace {
 using Mask = Floats::batch_bool_type;
 
 /// Facets of one surface must not shade each other. They may meet at up to 27 degrees (tangent kSteepest), or at the
-/// fraction kOfElevation of the light's elevation above the surface. A greater fraction lets more light below a roof
-/// along a wall, a smaller one draws darker lines in valleys; 0.7 minimizes the sum of both errors in a coarse trough.
-constexpr float kSteepest = 0.5f, kOfElevation = 0.7f;
+/// fraction kOfElevation of the light's elevation above the surface. A greater fraction lets more light past the rim of
+/// a coarse trough, a smaller one draws darker lines along its valleys.
+constexpr float kSteepest = 0.5f, kOfElevation = 0.85f;
+/// A surface near the point is a roof, not a facet that begins beside the point, if it lies above the point even when
+/// it is continued to there: by more than this part of the height that facets may have at one texel's distance.
+constexpr float kRoof = 0.7f;
 /// Texels on the side of the point that is nearer to the light are ignored if their surface falls below the receiver's
 /// plane by more than this fraction of the elevation. They lie beyond the end of the receiver's surface.
 constexpr float kFalling = 0.23f;
 constexpr float kLeastKnown = 0.25f; ///< lower bound of the total filter weight of texels that count
 constexpr float kRounding = 0x1p-20f; ///< relative error of a depth, and of a point relative to the light
 
-constexpr int kTaps = 5; ///< taps along each side of the filter
+constexpr std::size_t kTaps = 5; ///< taps along each side of the filter
 
 /// Returns the weights of the quadratic B-spline at four texels. The spline is a box of one texel convolved twice with
 /// itself. The second texel is at the distance f, in [0, 1), before the point.
@@ -40,6 +43,9 @@ std::array<Floats, kTaps> box(const Floats& f) {
     const Floats quarter(0.25f);
     return {quarter - f * quarter, quarter, quarter, quarter, f * quarter};
 }
+
+/// Returns the distance of a texel's center from the point at x along one axis. The filter's texels begin at x0.
+Floats off(const Floats& x0, std::size_t i, const Floats& x) { return x0 + Floats(static_cast<float>(i) + 0.5f) - x; }
 
 Floats dot_constant(const Vec3T<Floats>& a, Vec3 b) {
     return a.x * Floats(b.x) + a.y * Floats(b.y) + a.z * Floats(b.z);
@@ -81,7 +87,8 @@ SharpShadowMap::Plane SharpShadowMap::plane(const Floats& x, const Floats& y, co
             dot_constant(n, flat ? origin_dy_ : direction_dy_) * slope,
             Floats(kRounding) * depth * per_depth / towards,
             t / (cosine - t * sine) * unit, falling / (cosine - falling * sine) * unit,
-            Floats(kSteepest) / (cosine + Floats(kSteepest) * sine) * unit};
+            Floats(kSteepest) / (cosine + Floats(kSteepest) * sine) * unit,
+            Floats(kRoof * kSteepest) / (cosine + Floats(kSteepest) * sine) * unit};
 }
 
 SharpShadowMap::Texels SharpShadowMap::texels(const Vec3T<Floats>& p, Mask& inside) const {
@@ -127,29 +134,37 @@ Floats SharpShadowMap::visibility(const Vec3T<Floats>& p, const Vec3T<Floats>& n
     const Floats before(dithered ? 2.0f : 1.5f);
     const Floats x0 = xsimd::floor(x - before), y0 = xsimd::floor(y - before);
     const std::array<Floats, kTaps> across = weights(x - before - x0), down = weights(y - before - y0);
-    const int taps = dithered ? kTaps : kTaps - 1; // the spline's last weight is 0
+    const std::size_t taps = dithered ? kTaps : kTaps - 1; // the spline's last weight is 0
     const Ints side(map_.side());
     const Ints first = truncated(xsimd::select(inside, y0, zero)) * side +
                        truncated(xsimd::select(inside, x0, zero));
     const float* texels = map_.reversed_depth().pixels().data();
-    Floats dark(0.0f), known(0.0f);
-    for (int j = 0; j < taps; ++j) {
-        const Floats off_y = y0 + Floats(static_cast<float>(j) + 0.5f) - y;
-        Floats row_dark(0.0f), row_known(0.0f);
-        for (int i = 0; i < taps; ++i) {
-            const Floats off_x = x0 + Floats(static_cast<float>(i) + 0.5f) - x;
-            const Floats stored = gather(texels + j * map_.side() + i, first);
+    std::array<std::array<Floats, kTaps>, kTaps> height; // of the texels' surfaces above the receiver's plane
+    for (std::size_t j = 0; j < taps; ++j)
+        for (std::size_t i = 0; i < taps; ++i) {
+            const Floats stored = gather(texels + static_cast<int>(j) * map_.side() + i, first);
             const Floats seen = map_.orthographic() ? Floats(-near_) / max(stored, Floats(1e-25f)) : stored;
-            const Floats distance = xsimd::sqrt(off_x * off_x + off_y * off_y);
-            const Floats change = plane.dx * off_x + plane.dy * off_y, at = plane.at + change;
-            const Mask away = change < zero; // lanes in which the plane recedes from the light
-            const Floats limit = at + plane.rounding + plane.rising * distance;
-            const Floats weight = across[static_cast<std::size_t>(i)];
-            row_dark += xsimd::select(seen > limit, weight, zero);
-            const Floats lowest = at - plane.rounding - xsimd::select(away, plane.steepest, plane.falling) * distance;
-            row_known += xsimd::select(seen < lowest, zero, weight);
+            height[j][i] = seen - (plane.at + plane.dx * off(x0, i, x) + plane.dy * off(y0, j, y));
         }
-        dark += row_dark * down[static_cast<std::size_t>(j)], known += row_known * down[static_cast<std::size_t>(j)];
+    Floats dark(0.0f), known(0.0f);
+    for (std::size_t j = 0; j < taps; ++j) {
+        const Floats off_y = off(y0, j, y);
+        Floats row_dark(0.0f), row_known(0.0f);
+        for (std::size_t i = 0; i < taps; ++i) {
+            const Floats off_x = off(x0, i, x), here = height[j][i];
+            // The surface is continued to the point by its slopes between texels on this side of it.
+            const std::size_t a = i < 2 ? 0 : 2, b = j < 2 ? 0 : 2;
+            const Floats continued =
+                here - (height[j][a + 1] - height[j][a]) * off_x - (height[b + 1][i] - height[b][i]) * off_y;
+            const Floats distance = xsimd::sqrt(off_x * off_x + off_y * off_y);
+            const Mask facet = (here <= plane.rounding + plane.rising * distance) &
+                               ((here <= plane.rounding) | (continued <= plane.rounding + plane.roof));
+            row_dark += xsimd::select(facet, zero, across[i]);
+            const Mask away = plane.dx * off_x + plane.dy * off_y < zero; // lanes in which the plane recedes
+            const Floats lowest = -plane.rounding - xsimd::select(away, plane.steepest, plane.falling) * distance;
+            row_known += xsimd::select(here < lowest, zero, across[i]);
+        }
+        dark += row_dark * down[j], known += row_known * down[j];
     }
     return max(Floats(1.0f) - dark / max(known, Floats(kLeastKnown)), zero);
 }
