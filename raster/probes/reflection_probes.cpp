@@ -6,14 +6,11 @@ namespace {
 using Vec3s = Vec3T<Floats>;
 using Mask = Floats::batch_bool_type;
 
-/// A ray takes this many steps from impostor to impostor. Three bring most rays within a texel.
-constexpr int kSteps = 4;
-/// If the steps do not end on a surface, kSearched points of the ray are tested, and kBisections narrow the interval
-/// between two of them.
+/// This many points of a ray are tested, and kBisections narrow the interval between two of them.
 constexpr int kSearched = 16, kBisections = 9;
 /// A relative difference of distances below kTolerance is a hit. A difference above kStep is the discontinuity at a
 /// silhouette.
-constexpr float kTolerance = 0.03f, kStep = 0.15f;
+constexpr float kTolerance = 0.01f, kStep = 0.15f;
 /// Lookups beside a silhouette keep this fraction of the chord away from it, about three texels on a long ray, so that
 /// they do not read the silhouette itself.
 constexpr float kBeside = 0.03f;
@@ -22,31 +19,16 @@ constexpr float kBeside = 0.03f;
 class ImpostorTracer {
 public:
     ImpostorTracer(const RadianceMap& map, const Vec3s& start, const Vec3s& w, bool lights)
-        : map_(map), start_(start), w_(w), lights_(lights), across_(dot(start, w)), squared_(dot(start, start)) {}
+        : map_(map), start_(start), w_(w), lights_(lights), length_(xsimd::sqrt(dot(start, start))) {}
 
     /// Returns the hits of the given lanes; other lanes are unspecified.
-    Vec3s hit(const Mask& lanes) const {
-        Floats t = advance(map_.distance(w_, lights_), kSteps);
-        const Mask lost = lanes & (mismatch(t) > Floats(kTolerance));
-        if (xsimd::any(lost)) t = xsimd::select(lost, search(lost), t);
-        return start_ + w_ * t;
-    }
+    Vec3s hit(const Mask& lanes) const { return start_ + w_ * search(lanes); }
 
 private:
-    /// Advances along the ray to a sphere about the center. Its radius is the distance of the surface in the direction
-    /// of the point at t.
-    Floats advance(Floats t, int steps) const {
-        for (int i = 0; i < steps; ++i) {
-            const Floats radius = map_.distance(start_ + w_ * t, lights_);
-            const Floats inner = radius * radius - squared_ + across_ * across_;
-            t = max(xsimd::sqrt(max(inner, Floats(0.0f))) - across_, Floats(0.0f));
-        }
-        return t;
-    }
     /// Returns the ray parameter t of the point whose direction from the center lies at the fraction s of the chord
     /// between the unit vectors of `start` and w.
     Floats at_fraction(const Floats& s) const {
-        return min(xsimd::sqrt(squared_) * s / max(Floats(1.0f) - s, Floats(1e-20f)), Floats(RadianceMap::kFarthest));
+        return min(length_ * s / max(Floats(1.0f) - s, Floats(1e-20f)), Floats(RadianceMap::kFarthest));
     }
     struct Depths {
         Floats ray, surface; ///< distances from the center
@@ -55,18 +37,14 @@ private:
         const Vec3s q = start_ + w_ * t;
         return {xsimd::sqrt(dot(q, q)), map_.distance(q, lights_)};
     }
-    Floats mismatch(const Floats& t) const {
-        const auto [ray, surface] = depths(t);
-        return abs(ray - surface) / max(min(ray, surface), Floats(1e-20f));
-    }
     /// Marches along the ray to the first surface that the map shows, and returns its t. If the ray ends behind a
     /// surface instead, the map does not show what the ray hits. The result is then the point before that surface's
     /// silhouette, in whose direction the map shows what lies behind it. (McGuire, Mara, Nowrouzezahrai and Luebke
     /// 2017, "Real-Time Global Illumination using Precomputed Light Field Probes", §4, march through several probes
     /// with the same three outcomes: hit, miss and unknown.)
-    Floats search(const Mask& lost) const {
+    Floats search(const Mask& lanes) const {
         Floats before(0.0f), result(RadianceMap::kFarthest); // an unobstructed ray ends at the background
-        Mask found = ~lost, hidden = before > before;
+        Mask found = ~lanes, hidden = before > before;
         for (int i = 1; i <= kSearched && !xsimd::all(found); ++i) {
             const Floats s(static_cast<float>(i) / kSearched);
             const auto [ray, surface] = depths(at_fraction(s));
@@ -102,7 +80,7 @@ private:
     const RadianceMap& map_;
     const Vec3s &start_, &w_;
     bool lights_;
-    Floats across_, squared_;
+    Floats length_; ///< of start_
 };
 
 } // namespace
