@@ -102,7 +102,7 @@ std::vector<std::string> approximations(const RasterSceneData& data, const Raste
     if (parts.environment && data.irradiance_probes && settings.indirect_light) {
         add_if(true, "Diffuse light between surfaces is interpolated from irradiance probes; caustics are left out.");
         add_if(settings.ambient_occlusion,
-               "Creases finer than the probes' grid are darkened by ambient occlusion from the depth buffer.");
+               "In creases finer than the probes' grid, occluders and their light are found in the image alone.");
     } else if (parts.environment) {
         add_if(!is_dark(data, settings), "Light that surfaces reflect onto each other is left out.");
         add_if(environment && settings.ambient_occlusion,

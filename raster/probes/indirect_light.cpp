@@ -5,14 +5,6 @@
 namespace duet::raster {
 namespace {
 
-/// Returns the fraction of light that reaches a surface of this albedo, including bounces between occluders of the same
-/// albedo (Jimenez et al. 2016, "Practical Realtime Strategies for Accurate Indirect Occlusion", §5).
-Floats with_bounces(const Floats& visible, const Floats& albedo) {
-    const Floats a = Floats(2.0404f) * albedo - Floats(0.3324f), b = Floats(-4.7951f) * albedo + Floats(0.6417f),
-                 c = Floats(2.7552f) * albedo + Floats(0.6903f);
-    return max(visible, ((visible * a + b) * visible + c) * visible);
-}
-
 /// Adds albedo/π times the result of irradiance(x, y, lanes) for each batch.
 template <typename Irradiance>
 void add_reflected(const RasterSettings& settings, const GBuffer& gbuffer, Planes3& radiance,
@@ -21,7 +13,7 @@ void add_reflected(const RasterSettings& settings, const GBuffer& gbuffer, Plane
         const RgbT<Floats> albedo = gbuffer.diffuse.color(x, y);
         const auto lit = gbuffer.visible(x, y) & (albedo.r + albedo.g + albedo.b > Floats(0.0f));
         if (!xsimd::any(lit)) return;
-        const RgbT<Floats> light = albedo * irradiance(x, y, albedo, lit) * Floats(kInvPi),
+        const RgbT<Floats> light = albedo * irradiance(x, y, lit) * Floats(kInvPi),
                            before = radiance.color(x, y);
         radiance.set(x, y, blend(lit, before + light, before)); // other lanes may hold any number
     });
@@ -41,25 +33,21 @@ AmbientLight ambient_light(const RasterSceneData& data, const RasterSettings& se
 
 void add_indirect_light(const RasterSettings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
                         Planes3& radiance) {
-    add_reflected(settings, gbuffer, radiance, [&](int x, int y, const RgbT<Floats>&, const auto& lit) {
+    add_reflected(settings, gbuffer, radiance, [&](int x, int y, const auto& lit) {
         return probes.irradiance(gbuffer.projection, gbuffer.points(x, y), gbuffer.normal.vector(x, y), lit);
     });
 }
 
 void add_indirect_light(const RasterSettings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
-                        GtaoImage& half, Planes3& radiance) {
-    half.add_irradiance(settings.threads, [&](const Vec3T<Floats>& p, const Vec3T<Floats>& n, const auto& lanes) {
-        return probes.irradiance(gbuffer.projection, p, n, lanes);
-    });
-    add_reflected(settings, gbuffer, radiance, [&](int x, int y, const RgbT<Floats>& albedo, const auto& lit) {
-        auto [visible, irradiance, found] = half.lit_at(x, y);
+                        const GtaoImage& half, Planes3& radiance) {
+    add_reflected(settings, gbuffer, radiance, [&](int x, int y, const auto& lit) {
+        auto [visible, irradiance, from_occluders, found] = half.lit_at(x, y);
         if (const auto alone = lit & !found; xsimd::any(alone)) // surfaces that no pixel of half resolution shows
             irradiance = blend(alone,
                                probes.irradiance(gbuffer.projection, gbuffer.points(x, y),
                                                  gbuffer.normal.vector(x, y), alone),
                                irradiance);
-        return irradiance * RgbT<Floats>{with_bounces(visible, albedo.r), with_bounces(visible, albedo.g),
-                                         with_bounces(visible, albedo.b)};
+        return irradiance * visible + from_occluders;
     });
 }
 

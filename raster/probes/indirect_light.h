@@ -1,5 +1,5 @@
 // Adds indirect diffuse light of the environment and of other surfaces from irradiance probes. Ambient occlusion
-// accounts for occluders that are too near for the probes to resolve.
+// accounts for occluders that are too near for the probes to resolve, and for the light that these send.
 #pragma once
 
 #include "raster/fog/fog_grid.h"
@@ -18,9 +18,9 @@ AmbientLight ambient_light(const RasterSceneData& data, const RasterSettings& se
 /// Adds the light of the probes that diffuse surfaces reflect. It is interpolated at every pixel, without occlusion.
 void add_indirect_light(const RasterSettings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
                         Planes3& radiance);
-/// Adds the light of the probes, interpolated at half resolution and attenuated by the occlusion in `half`. The
-/// irradiance is stored in `half`, too.
+/// Adds the light of the probes as interpolated at half resolution, without what occluders hide, and the light of the
+/// occluders. `half` holds both after GtaoImage::find_light().
 void add_indirect_light(const RasterSettings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
-                        GtaoImage& half, Planes3& radiance);
+                        const GtaoImage& half, Planes3& radiance);
 
 } // namespace duet::raster

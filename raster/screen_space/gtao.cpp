@@ -22,6 +22,9 @@ constexpr float kSlack = 1e-3f;
 constexpr float kClosest = 3e-4f;
 constexpr float kFadeFrom = 0.75f;    ///< fraction of the radius at which horizons begin to fade
 constexpr float kLeastCosine = 0.02f; ///< least cosine between normal and viewer; interpolated normals may face away
+/// Occluders do not receive all of the irradiance, because the points hide some of it from them, too. This part of it
+/// makes the least error in models/hall.json, models/demo.json and models/cornell.json.
+constexpr float kOccluderVisibility = 0.6f;
 constexpr int kBlock = 4;             ///< side of a block of half-resolution pixels, each with a direction of its own
 
 /// Returns arccos with an error of at most 7e-5 (Abramowitz and Stegun 1964, 4.4.45).
@@ -49,18 +52,27 @@ Arc arc(const Floats& angle, const Floats& cosine, const Floats& sine, const Flo
             cos_gamma * cube + sin_gamma * (Floats(2.0f / 3) - cosine + cosine * cosine * cosine * third)};
 }
 
+/// Holds the horizon on one side of each point, and the light of the surfaces that make it.
+struct Horizon {
+    Floats cosine; ///< to the viewer
+    Vec3s light{Floats(0.0f), Floats(0.0f), Floats(0.0f)}; ///< sum over surfaces of light times gain
+    Floats gain = Floats(0.0f); ///< sum of the amounts by which surfaces raise the cosine
+};
+
 /// Searches for horizons. A horizon is the greatest cosine to the viewer of the surfaces along a line from each point.
 class HorizonSearch {
 public:
-    HorizonSearch(const GBuffer& gbuffer, const Vec3s& p, const Vec3s& n, const Vec3s& to_viewer, float radius)
-        : gbuffer_(gbuffer), p_(p), n_(n), to_viewer_(to_viewer), home_(gbuffer.projection.homogeneous(p)),
-          radius_(radius), closest_(Floats(kClosest * kClosest) * dot(p, p)) {
+    /// `light` has half the G-buffer's resolution; it may be null.
+    HorizonSearch(const GBuffer& gbuffer, const Planes3* light, const Vec3s& p, const Vec3s& n, const Vec3s& to_viewer,
+                  float radius)
+        : gbuffer_(gbuffer), light_(light), p_(p), n_(n), to_viewer_(to_viewer),
+          home_(gbuffer.projection.homogeneous(p)), radius_(radius), closest_(Floats(kClosest * kClosest) * dot(p, p)) {
         const Floats over_w = Floats(1.0f) / home_[3];
         x_ = home_[0] * over_w, y_ = home_[1] * over_w;
     }
 
     /// Returns the horizon towards the unit vector t, which is perpendicular to the view; at least `lowest`.
-    Floats operator()(const Vec3s& t, const Floats& lowest, const Floats& jitter) const {
+    Horizon operator()(const Vec3s& t, const Floats& lowest, const Floats& jitter) const {
         const std::array<Floats, 4> change = gbuffer_.projection.homogeneous_change(t);
         const Floats over_w = Floats(1.0f) / home_[3];
         Floats step_x = (change[0] - x_ * change[3]) * over_w, step_y = (change[1] - y_ * change[3]) * over_w;
@@ -70,19 +82,19 @@ public:
         const Floats width(static_cast<float>(gbuffer_.width())), height(static_cast<float>(gbuffer_.height()));
         const Floats pixels =
             min(speed * Floats(radius_), min(to_edge(x_, step_x, width), to_edge(y_, step_y, height)));
-        Floats highest = lowest;
+        Horizon result{lowest};
         for (int i = 0; i < GtaoImage::kSteps; ++i) {
             const Floats s = (Floats(static_cast<float>(i)) + jitter) * Floats(1.0f / GtaoImage::kSteps);
             const Floats reach = Floats(1.0f) + s * s * pixels; // denser near the point, where occluders block most
-            highest = max(highest, horizon_at(xsimd::floor(x_ + step_x * reach + Floats(0.5f)),
-                                              xsimd::floor(y_ + step_y * reach + Floats(0.5f)), lowest));
+            raise(result, xsimd::floor(x_ + step_x * reach + Floats(0.5f)),
+                  xsimd::floor(y_ + step_y * reach + Floats(0.5f)), lowest);
         }
-        return highest;
+        return result;
     }
 
 private:
-    /// Returns the cosine to the viewer of the surface at a pixel, or `lowest` if it does not count as an occluder.
-    Floats horizon_at(const Floats& x, const Floats& y, const Floats& lowest) const {
+    /// Raises the horizon to the surface at a pixel if that counts as an occluder.
+    void raise(Horizon& horizon, const Floats& x, const Floats& y, const Floats& lowest) const {
         const Floats none(0.0f), right(static_cast<float>(gbuffer_.width() - 1)),
             bottom(static_cast<float>(gbuffer_.height() - 1));
         const Mask inside = (x >= none) & (y >= none) & (x <= right) & (y <= bottom);
@@ -95,7 +107,15 @@ private:
                             (dot(n_, to) >= Floats(kSlack) * distance);
         const Floats fade = max(distance * Floats(1 / (radius_ * (1 - kFadeFrom))) -
                                     Floats(kFadeFrom / (1 - kFadeFrom)), none);
-        return xsimd::select(counts, lerp(dot(to, to_viewer_) * over, lowest, fade), lowest);
+        const Floats cosine = xsimd::select(counts, lerp(dot(to, to_viewer_) * over, lowest, fade), lowest);
+        const Floats gain = max(cosine - horizon.cosine, none);
+        horizon.cosine = max(horizon.cosine, cosine);
+        if (light_ == nullptr || !xsimd::any(gain > none)) return;
+        const Ints half = (truncated(clamp(y, none, bottom)) >> 1) * Ints(light_->x.stride()) +
+                          (truncated(clamp(x, none, right)) >> 1);
+        const auto read = [&](const PlaneFloat& plane) { return gather(plane.row(0), half); };
+        horizon.light += Vec3s{read(light_->x), read(light_->y), read(light_->z)} * gain;
+        horizon.gain += gain;
     }
     /// Returns the distance in pixels to the image's edge in a unit direction.
     static Floats to_edge(const Floats& at, const Floats& step, const Floats& size) {
@@ -104,6 +124,7 @@ private:
     }
 
     const GBuffer& gbuffer_;
+    const Planes3* light_;
     const Vec3s &p_, &n_, &to_viewer_;
     std::array<Floats, 4> home_;
     Floats x_, y_;
@@ -129,18 +150,19 @@ Pattern pattern_of(int x, int y) {
     return {load(turn, 0), load(jitter, 0)};
 }
 
-/// Holds what a line through each pixel hides of the hemisphere: the cosine-weighted fraction and its directions, and
-/// the line's own share of the hemisphere.
+/// Holds what a line through each pixel hides of the hemisphere: the cosine-weighted fraction, its directions or light,
+/// and the line's own share of the hemisphere.
 struct Line {
     Floats all = Floats(0.0f), lost = Floats(0.0f); // with braces, the arguments would be a list of lanes
     Vec3s directions{Floats(0.0f), Floats(0.0f), Floats(0.0f)};
 };
 /// Searches along the line that `pattern` selects by its rotation about the view direction.
-Line search_line(const GBuffer& gbuffer, const Vec3s& p, const Vec3s& normal, float radius, const Pattern& pattern) {
+Line search_line(const GBuffer& gbuffer, const Planes3* light, const Vec3s& p, const Vec3s& normal, float radius,
+                 const Pattern& pattern) {
     const Floats one(1.0f), none(0.0f);
     const Vec3s v = gbuffer.projection.to_viewer(p);
     const Vec3s n = unit_of(normal + v * max(Floats(kLeastCosine) - dot(normal, v), none));
-    const HorizonSearch search(gbuffer, p, n, v, radius);
+    const HorizonSearch search(gbuffer, light, p, n, v, radius);
     const FrameT<Floats> frame = frame_from_normal(v);
     const auto [sine, cosine] = xsimd::sincos(pattern.turn * Floats(kPi));
     const Vec3s t = frame.s * cosine + frame.t * sine, across = cross(v, t);
@@ -153,15 +175,20 @@ Line search_line(const GBuffer& gbuffer, const Vec3s& p, const Vec3s& normal, fl
     Vec3s hidden{none, none, none};
     for (const float side : {1.0f, -1.0f}) {
         const Floats s = Floats(side) * sin_gamma, lowest = -s; // the tangent plane's horizon, π/2 from the normal
-        const Floats highest = search(t * Floats(side), lowest, pattern.jitter);
+        const Horizon horizon = search(t * Floats(side), lowest, pattern.jitter);
+        const Floats highest = horizon.cosine;
         const Arc open = arc(Floats(kPi / 2) + Floats(side) * gamma, lowest, cos_gamma, cos_gamma, s);
         const Arc seen = arc(arc_cosine(highest), highest, xsimd::sqrt(max(one - highest * highest, none)), cos_gamma,
                              s);
         const auto less = [&](const Floats& whole, const Floats& rest) { // exactly 0 if nothing is hidden
             return xsimd::select(highest > lowest, size * (whole - rest), none);
         };
-        lost += max(less(open.all, seen.all), none);
-        hidden += v * less(open.along_v, seen.along_v) + t * (Floats(side) * less(open.along_t, seen.along_t));
+        const Floats part = max(less(open.all, seen.all), none);
+        lost += part;
+        if (light != nullptr)
+            hidden += horizon.light * (part / max(horizon.gain, Floats(1e-20f)));
+        else
+            hidden += v * less(open.along_v, seen.along_v) + t * (Floats(side) * less(open.along_t, seen.along_t));
     }
     return {all, lost, hidden};
 }
@@ -173,16 +200,31 @@ void GtaoImage::reset(int width, int height) {
     depth_ = PlaneFloat(width, height);
     normal_ = Planes3(width, height);
     lines_ = column_sums_ = {PlaneFloat(width, height), PlaneFloat(width, height), Planes3(width, height)};
+    light_ = irradiance_ = Planes3(width, height);
     smooth_.visible = PlaneFloat(width, height), smooth_.hidden = Planes3(width, height);
 }
 
-void GtaoImage::compute(const GBuffer& gbuffer, float radius, int threads) {
+void GtaoImage::start(const GBuffer& gbuffer, int threads) {
     gbuffer_ = &gbuffer;
     reset((gbuffer.width() + 1) / 2, (gbuffer.height() + 1) / 2);
-    const auto rows = static_cast<std::size_t>(depth_.height());
-    parallel_for(rows, threads, [&](std::size_t y) { search_row(static_cast<int>(y), radius); });
-    parallel_for(rows, threads, [&](std::size_t y) { sum_columns(static_cast<int>(y)); });
-    parallel_for(rows, threads, [&](std::size_t y) { finish_row(static_cast<int>(y)); });
+    parallel_for(static_cast<std::size_t>(depth_.height()), threads, [&](std::size_t row) {
+        const int y = static_cast<int>(row);
+        const auto halved = [&](const PlaneFloat& from, PlaneFloat& to) {
+            for (int x = 0; x < to.width(); ++x) to(x, y) = from(2 * x, 2 * y);
+        };
+        halved(gbuffer.reversed_depth, depth_);
+        halved(gbuffer.normal.x, normal_.x), halved(gbuffer.normal.y, normal_.y), halved(gbuffer.normal.z, normal_.z);
+    });
+}
+
+void GtaoImage::search(float radius, const Planes3* light, int threads) {
+    const auto for_each_row = [&](const auto& use) {
+        parallel_for(static_cast<std::size_t>(depth_.height()), threads,
+                     [&](std::size_t y) { use(static_cast<int>(y)); });
+    };
+    for_each_row([&](int y) { search_row(y, radius, light); });
+    for_each_row([&](int y) { sum_columns(y); });
+    for_each_row([&](int y) { finish_row(y); });
 }
 
 /// Returns the points of a batch of half-resolution pixels, relative to the eye.
@@ -191,18 +233,22 @@ Vec3s GtaoImage::point(int x, int y, const Floats& depth) const {
                                       Floats(static_cast<float>(2 * y)), max(depth, Floats(1e-30f)));
 }
 
-void GtaoImage::search_row(int y, float radius) {
-    const auto halved = [&](const PlaneFloat& from, PlaneFloat& to) {
-        for (int x = 0; x < to.width(); ++x) to(x, y) = from(2 * x, 2 * y);
-    };
-    halved(gbuffer_->reversed_depth, depth_);
-    halved(gbuffer_->normal.x, normal_.x), halved(gbuffer_->normal.y, normal_.y), halved(gbuffer_->normal.z, normal_.z);
+/// Sets the light that an occluder sends: its radiance, and the irradiance that it reflects. Surfaces without a diffuse
+/// lobe send none: emitters, whose light is direct light, and metal, which hardly reflects towards the points.
+void GtaoImage::set_light(int x, int y, Rgb radiance) {
+    const Rgb albedo = gbuffer_->diffuse.color_at(2 * x, 2 * y);
+    const Rgb reflected = irradiance_.color_at(x, y) * albedo * (kInvPi * kOccluderVisibility);
+    const Rgb light = is_black(albedo) ? Rgb() : radiance + reflected;
+    light_.x(x, y) = light.r, light_.y(x, y) = light.g, light_.z(x, y) = light.b;
+}
+
+void GtaoImage::search_row(int y, float radius, const Planes3* light) {
     for (int x = 0; x < depth_.width(); x += static_cast<int>(Floats::size)) {
         const Floats depth = load(depth_, x, y);
         const Mask seen = depth > Floats(0.0f);
         Line found;
         if (radius > 0 && xsimd::any(seen)) {
-            found = search_line(*gbuffer_, point(x, y, depth), normal_.vector(x, y), radius, pattern_of(x, y));
+            found = search_line(*gbuffer_, light, point(x, y, depth), normal_.vector(x, y), radius, pattern_of(x, y));
         }
         // Lanes without a surface may hold any number. They are set to 0 here, so that neighbors may read them with
         // weight 0.
@@ -267,7 +313,7 @@ GtaoImage::Upsampled GtaoImage::upsampled(int x, int y) const {
         Floats(kPlaneTolerance) * projection.pixel_size(Floats(projection.near()) / max(depth, Floats(1e-30f)));
     const Ints column = Ints(x) + load(kLanes, 0), last(depth_.width() - 1);
     Floats sum(0.0f), visible(0.0f);
-    Vec3s hidden{Floats(0.0f), Floats(0.0f), Floats(0.0f)};
+    Vec3s hidden{Floats(0.0f), Floats(0.0f), Floats(0.0f)}, irradiance = hidden;
     for (int dy = 0; dy < (y % 2 == 0 ? 1 : 2); ++dy)
         for (int dx = 0; dx < 2; ++dx) {
             const int row = std::min(y / 2 + dy, depth_.height() - 1);
@@ -281,11 +327,16 @@ GtaoImage::Upsampled GtaoImage::upsampled(int x, int y) const {
             const Floats weight = xsimd::select(other > Floats(0.0f), alike, Floats(0.0f));
             sum += weight;
             visible += weight * read(smooth_.visible);
-            hidden += Vec3s{read(smooth_.hidden.x), read(smooth_.hidden.y), read(smooth_.hidden.z)} * weight;
+            const auto read_all = [&](const Planes3& planes) {
+                return Vec3s{read(planes.x), read(planes.y), read(planes.z)};
+            };
+            hidden += read_all(smooth_.hidden) * weight, irradiance += read_all(irradiance_) * weight;
         }
     const Mask any = sum > Floats(0.0f);
     const Floats over = xsimd::select(any, Floats(1.0f) / sum, Floats(0.0f));
-    return {{xsimd::select(any, visible * over, Floats(1.0f)), hidden * over}, sum > Floats(kLeastLikeness)};
+    const Vec3s e = irradiance * over;
+    return {{xsimd::select(any, visible * over, Floats(1.0f)), hidden * over}, {e.x, e.y, e.z},
+            sum > Floats(kLeastLikeness)};
 }
 
 } // namespace duet::raster

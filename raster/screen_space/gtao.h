@@ -1,7 +1,8 @@
 // Implements ground-truth ambient occlusion (GTAO), which estimates how much of the environment the surfaces in the
 // image hide from each pixel (Jimenez et al. 2016, "Practical Realtime Strategies for Accurate Indirect Occlusion",
-// §4). Horizons are searched at half resolution, averaged over 7 × 7 neighbors on the same surface, and upsampled along
-// depths and normals.
+// §4), and how much light those surfaces send there instead (Ritschel, Grosch and Seidel 2009, "Approximating Dynamic
+// Global Illumination in Image Space"). Horizons are searched at half resolution, averaged over 7 × 7 neighbors on the
+// same surface, and upsampled along depths and normals.
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"
@@ -14,30 +15,37 @@ namespace duet::raster {
 /// frame to frame.
 class GtaoImage {
 public:
-    /// Searches for occluders up to `radius` meters away; with radius 0 there are none. The G-buffer must outlive the
-    /// use of this object.
-    void compute(const GBuffer& gbuffer, float radius, int threads);
-    /// Computes irradiance(p, n, lanes) at every half-resolution pixel: p is relative to the eye, n unit. The results
-    /// overwrite the hidden directions.
-    template <typename Irradiance> void add_irradiance(int threads, const Irradiance& irradiance);
+    /// Takes the surfaces of a G-buffer, which must outlive the use of this object.
+    void start(const GBuffer& gbuffer, int threads);
+    /// Searches for occluders up to `radius` meters away, and the directions that they hide. With radius 0 there are
+    /// none.
+    void find_hidden(float radius, int threads) { search(radius, nullptr, threads); }
+    /// Computes irradiance(p, n, lanes), without occluders, at every half-resolution pixel: p is relative to the eye, n
+    /// unit. Then searches for occluders up to `radius` meters away, and the light that they send if their radiance is
+    /// radiance(x, y) of the pixels of the G-buffer, and they reflect this irradiance.
+    template <typename Irradiance, typename Radiance>
+    void find_light(float radius, int threads, const Irradiance& irradiance, const Radiance& radiance);
 
     /// Returns the visibility of a batch of the G-buffer's pixels, upsampled along depths and normals.
     SkyVisibility<Floats> at(int x, int y) const { return upsampled(x, y).sky; }
-    /// Returns the visible fraction and the irradiance of a batch, after add_irradiance(). `found` marks the lanes
-    /// whose surface has a pixel at half resolution nearby; the others have no irradiance.
+    /// Holds the visible fraction of the hemisphere, the irradiance from all of it, without occlusion, and that from
+    /// the occluders. `found` marks the lanes whose surface has a pixel at half resolution nearby; the others have no
+    /// irradiance.
     struct Lit {
         Floats visible;
-        RgbT<Floats> irradiance;
+        RgbT<Floats> irradiance, from_occluders;
         xsimd::batch_bool<float> found;
     };
+    /// Returns the light of a batch, after find_light().
     Lit lit_at(int x, int y) const {
-        const auto [s, found] = upsampled(x, y);
-        return {s.visible, {s.hidden.x, s.hidden.y, s.hidden.z}, found};
+        const auto [s, irradiance, found] = upsampled(x, y);
+        return {s.visible, irradiance, RgbT<Floats>{s.hidden.x, s.hidden.y, s.hidden.z} * Floats(kPi), found};
     }
 
     std::size_t memory_bytes() const {
         return depth_.memory_bytes() + normal_.memory_bytes() + lines_.memory_bytes() + column_sums_.memory_bytes() +
-               smooth_.visible.memory_bytes() + smooth_.hidden.memory_bytes();
+               smooth_.visible.memory_bytes() + smooth_.hidden.memory_bytes() + irradiance_.memory_bytes() +
+               light_.memory_bytes();
     }
 
     static constexpr int kSteps = 10; ///< depth samples on each side of a pixel
@@ -49,11 +57,12 @@ private:
     };
     struct Upsampled {
         SkyVisibility<Floats> sky;
+        RgbT<Floats> irradiance;
         xsimd::batch_bool<float> found;
     };
-    /// Stores the occluded part of the hemisphere along one line through each pixel (`lost`, `directions`), and the
-    /// line's whole part (`all`); or sums of these over neighbors. Sums are divided by sums, because a line's share of
-    /// the hemisphere depends on its direction.
+    /// Stores the occluded part of the hemisphere along one line through each pixel (`lost`), its directions or light
+    /// (`directions`), and the line's whole part (`all`); or sums of these over neighbors. Sums are divided by sums,
+    /// because a line's share of the hemisphere depends on its direction.
     struct Lines {
         PlaneFloat lost, all;
         Planes3 directions;
@@ -63,7 +72,9 @@ private:
         }
     };
     Upsampled upsampled(int x, int y) const;
-    void search_row(int y, float radius);
+    void set_light(int x, int y, Rgb radiance);
+    void search(float radius, const Planes3* light, int threads);
+    void search_row(int y, float radius, const Planes3* light);
     template <typename Use> void sum_neighbors(const Lines& from, int y, int step_x, int step_y, const Use& use) const;
     void sum_columns(int y);
     void finish_row(int y);
@@ -75,17 +86,25 @@ private:
     Planes3 normal_;        ///< normals of the same pixels
     Lines lines_;           ///< search results of single pixels
     Lines column_sums_;     ///< sums along columns
-    Planes smooth_; ///< averaged over neighbors
+    Planes smooth_;         ///< averaged over neighbors
+    Planes3 irradiance_;    ///< of the same pixels, without occluders
+    Planes3 light_;         ///< radiance of their diffuse lobes
 };
 
-template <typename Irradiance> void GtaoImage::add_irradiance(int threads, const Irradiance& irradiance) {
+template <typename Irradiance, typename Radiance>
+void GtaoImage::find_light(float radius, int threads, const Irradiance& irradiance, const Radiance& radiance) {
     for_each_batch(depth_.width(), depth_.height(), threads, [&](int x, int y) {
         const Floats depth = load(depth_, x, y);
         const auto seen = depth > Floats(0.0f);
         if (!xsimd::any(seen)) return;
         const RgbT<Floats> e = irradiance(point(x, y, depth), normal_.vector(x, y), seen);
-        smooth_.hidden.set(x, y, blend(seen, e, RgbT<Floats>(Floats(0.0f))));
+        irradiance_.set(x, y, blend(seen, e, RgbT<Floats>(Floats(0.0f))));
     });
+    parallel_for(static_cast<std::size_t>(depth_.height()), threads, [&](std::size_t row) {
+        const int y = static_cast<int>(row);
+        for (int x = 0; x < depth_.width(); ++x) set_light(x, y, radiance(2 * x, 2 * y));
+    });
+    search(radius, &light_, threads);
 }
 
 } // namespace duet::raster

@@ -128,25 +128,20 @@ private:
 } // namespace
 
 SolidLobes::SolidLobes(const SolidMaterials& materials, GBuffer& gbuffer, int threads)
-    : gbuffer_(gbuffer), diffuse_(gbuffer.diffuse), solid_diffuse_(gbuffer.width(), gbuffer.height()) {
+    : gbuffer_(gbuffer), all_(gbuffer.diffuse), solids_(gbuffer.width(), gbuffer.height()), others_(solids_),
+      specular_(gbuffer.specular), coat_(gbuffer.coat) {
     for_each_batch(gbuffer.width(), gbuffer.height(), threads, [&](int x, int y) {
-        const RgbT<Floats> all = diffuse_.color(x, y);
+        const RgbT<Floats> all = all_.color(x, y);
         const RgbT<Floats> solid = all * look_up(materials.fraction, gbuffer.material, x, y);
-        solid_diffuse_.set(x, y, solid);
-        gbuffer.diffuse.set(x, y, all - solid);
+        solids_.set(x, y, solid), others_.set(x, y, all - solid);
     });
 }
 
-void SolidLobes::show_diffuse() {
-    gbuffer_.diffuse = solid_diffuse_;
-    specular_ = std::exchange(gbuffer_.specular, Planes3(gbuffer_.width(), gbuffer_.height()));
-    if (!gbuffer_.coat.empty()) coat_ = std::exchange(gbuffer_.coat, PlaneFloat(gbuffer_.width(), gbuffer_.height()));
-}
-
-SolidLobes::~SolidLobes() {
-    gbuffer_.diffuse = std::move(diffuse_);
-    if (!specular_.empty()) gbuffer_.specular = std::move(specular_);
-    if (!coat_.empty()) gbuffer_.coat = std::move(coat_);
+void SolidLobes::show(Lobes lobes) {
+    gbuffer_.diffuse = lobes == Lobes::kAll ? all_ : lobes == Lobes::kSolids ? solids_ : others_;
+    const int width = gbuffer_.width(), height = gbuffer_.height();
+    gbuffer_.specular = lobes == Lobes::kSolids ? Planes3(width, height) : specular_;
+    if (!coat_.empty()) gbuffer_.coat = lobes == Lobes::kSolids ? PlaneFloat(width, height) : coat_;
 }
 
 void blur_solid_light(const SolidMaterials& materials, const GBuffer& gbuffer, int threads, Planes3& light) {

@@ -9,22 +9,24 @@
 
 namespace duet::raster {
 
+enum class Lobes { kAll, kSolids, kOthers }; ///< kSolids: the diffuse lobes of solids
+
 /// Separates the diffuse lobes of solids in a G-buffer from all other lobes, so that their light can be computed
 /// separately. It changes the G-buffer, and its destructor restores it.
 class SolidLobes {
 public:
-    /// Removes the solids' diffuse lobes from the G-buffer.
     SolidLobes(const SolidMaterials& materials, GBuffer& gbuffer, int threads);
     SolidLobes(const SolidLobes&) = delete;
     SolidLobes& operator=(const SolidLobes&) = delete;
-    ~SolidLobes();
+    ~SolidLobes() { show(Lobes::kAll); }
 
-    /// Replaces the lobes in the G-buffer by the solids' diffuse lobes.
-    void show_diffuse();
+    /// Leaves some lobes in the G-buffer and removes the others.
+    void show(Lobes lobes);
 
 private:
     GBuffer& gbuffer_;
-    Planes3 diffuse_, solid_diffuse_, specular_;
+    Planes3 all_, solids_, others_; ///< diffuse lobes
+    Planes3 specular_;
     PlaneFloat coat_;
 };
 

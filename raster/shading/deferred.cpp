@@ -103,49 +103,83 @@ public:
         }
         done("shadow filter");
     }
-    /// Adds the light of the environment and of other surfaces.
-    void add_indirect(Planes3& radiance) {
+    /// Finds what the image's surfaces hide from each other, and the light that they send instead. `direct` returns the
+    /// direct light of a pixel.
+    template <typename Direct> void find_occluders(const Direct& direct) {
         const GBuffer& gbuffer = *frame_.gbuffer;
         const int threads = settings_.threads;
         const bool occluded = settings_.ambient_occlusion;
-        if (!settings_.components.environment) return;
-        if (data_.irradiance_probes && settings_.indirect_light) {
+        if (uses_probes()) {
             const float radius = occluded ? kOccluded * data_.irradiance_probes->spacing() : 0;
-            frame_.occlusion.compute(gbuffer, radius, threads);
-            done("ambient occlusion");
+            const auto irradiance = [&](const auto& p, const auto& n, const auto& lanes) {
+                return data_.irradiance_probes->irradiance(gbuffer.projection, p, n, lanes);
+            };
+            frame_.occlusion.start(gbuffer, threads);
+            frame_.occlusion.find_light(radius, threads, irradiance, direct);
+        } else if (uses_sky() && occluded) {
+            frame_.occlusion.start(gbuffer, threads);
+            frame_.occlusion.find_hidden(static_cast<float>(occlusion_radius(data_, settings_)), threads);
+        }
+        done("ambient occlusion");
+    }
+    /// Adds the light of the environment and of other surfaces, after find_occluders().
+    void add_indirect(Planes3& radiance) {
+        const GBuffer& gbuffer = *frame_.gbuffer;
+        if (uses_probes()) {
             add_indirect_light(settings_, gbuffer, *data_.irradiance_probes, frame_.occlusion, radiance);
             done("indirect light");
-        } else if (shows_environment(data_, settings_)) {
-            const auto radius = static_cast<float>(occlusion_radius(data_, settings_));
-            if (occluded) frame_.occlusion.compute(gbuffer, radius, threads);
-            done("ambient occlusion");
-            add_sky_light(data_, settings_, gbuffer, occluded ? &frame_.occlusion : nullptr, radiance);
+        } else if (uses_sky()) {
+            const GtaoImage* occlusion = settings_.ambient_occlusion ? &frame_.occlusion : nullptr;
+            add_sky_light(data_, settings_, gbuffer, occlusion, radiance);
             done("sky light");
         }
     }
-    /// Adds the light that is scattered inside solids, after their diffuse lobes are selected in the G-buffer by
-    /// `lobes`.
-    void add_subsurface(const SolidMaterials& materials, SolidLobes& lobes, Planes3& radiance) {
-        const GBuffer& gbuffer = *frame_.gbuffer;
-        const int width = gbuffer.width(), height = gbuffer.height(), threads = settings_.threads;
-        lobes.show_diffuse();
-        Planes3& light = frame_.solid_light = Planes3(width, height);
-        ComponentRecorder none(light, threads, nullptr);
-        add_direct(light, none);
-        add_indirect(light);
-        blur_solid_light(materials, gbuffer, threads, light);
-        for_each_batch(width, height, threads,
-                       [&](int x, int y) { radiance.set(x, y, radiance.color(x, y) + light.color(x, y)); });
-        done("subsurface scattering");
-    }
 
 private:
+    bool uses_probes() const {
+        return settings_.components.environment && data_.irradiance_probes && settings_.indirect_light;
+    }
+    bool uses_sky() const {
+        return settings_.components.environment && !uses_probes() && shows_environment(data_, settings_);
+    }
+
     const RasterSceneData& data_;
     const RasterSettings& settings_;
     const ShadeOptions& options_;
     DeferredFrame& frame_;
     Stopwatch& watch_;
 };
+
+/// Adds the light that diffuse lobes reflect, and the direct light of the other lobes.
+void add_diffuse_light(LightStages& stages, ComponentRecorder& recorder, Planes3& radiance) {
+    stages.add_direct(radiance, recorder);
+    stages.find_occluders([&](int x, int y) { return radiance.color_at(x, y); });
+    stages.add_indirect(radiance);
+}
+
+/// Does the same in a scene with solids, whose diffuse light is scattered inside of them.
+void add_diffuse_light(LightStages& stages, const SolidMaterials& materials, DeferredFrame& frame, int threads,
+                       ComponentRecorder& recorder) {
+    GBuffer& gbuffer = *frame.gbuffer;
+    Planes3& radiance = frame.radiance;
+    Planes3& inside = frame.solid_light = Planes3(gbuffer.width(), gbuffer.height());
+    ComponentRecorder none(inside, threads, nullptr);
+    SolidLobes lobes(materials, gbuffer, threads);
+    lobes.show(Lobes::kSolids);
+    stages.add_direct(inside, none);
+    lobes.show(Lobes::kOthers);
+    stages.add_direct(radiance, recorder);
+    lobes.show(Lobes::kAll);
+    stages.find_occluders([&](int x, int y) { return radiance.color_at(x, y) + inside.color_at(x, y); });
+    lobes.show(Lobes::kSolids);
+    stages.add_indirect(inside);
+    blur_solid_light(materials, gbuffer, threads, inside);
+    stages.done("subsurface scattering");
+    lobes.show(Lobes::kOthers);
+    stages.add_indirect(radiance);
+    for_each_batch(gbuffer.width(), gbuffer.height(), threads,
+                   [&](int x, int y) { radiance.set(x, y, radiance.color(x, y) + inside.color(x, y)); });
+}
 
 } // namespace
 
@@ -161,19 +195,11 @@ void shade_gbuffer(const RasterSceneData& data, const RasterSettings& settings, 
     if (options.background) draw_background(data, settings, gbuffer, radiance);
     recorder.record(&LightComponentImages::emission);
     stages.done("background");
-    {
-        std::optional<SolidMaterials> solids;
-        std::optional<SolidLobes> lobes; // removes the diffuse lobes of solids from the G-buffer in this scope
-        // If the hits lie on the caller's own rays, neighboring pixels do not show neighboring points, so nothing is
-        // blurred.
-        if (settings.subsurface && data.scene.needs.subsurface && gbuffer.position.empty()) {
-            solids.emplace(data.scene);
-            lobes.emplace(*solids, *frame.gbuffer, threads);
-        }
-        stages.add_direct(radiance, recorder);
-        stages.add_indirect(radiance);
-        if (lobes) stages.add_subsurface(*solids, *lobes, radiance);
-    }
+    // If the hits lie on the caller's own rays, neighboring pixels do not show neighboring points, so nothing is blurred.
+    if (settings.subsurface && data.scene.needs.subsurface && gbuffer.position.empty())
+        add_diffuse_light(stages, SolidMaterials(data.scene), frame, threads, recorder);
+    else
+        add_diffuse_light(stages, recorder, radiance);
     recorder.record(&LightComponentImages::environment);
     if (data.reflection_probes && settings.components.reflection) {
         add_reflections(data, settings, gbuffer, data.reflection_probes.get(), radiance);
