@@ -1,4 +1,5 @@
 // These tests compare the occlusion of the environment with form factors.
+#include "tests/raster/path_traced.h"
 #include "tests/raster/scenes.h"
 
 #include <doctest/doctest.h>
@@ -218,6 +219,30 @@ TEST_SUITE("unit") {
             CHECK(invalid == 0);
             CHECK(sum / static_cast<double>(3 * found.size()) < 1e-3);
         }
+    }
+
+    // Without the light of occluders, it would be 0.59 of the path tracer's.
+    TEST_CASE("a red wall in the sun reddens the floor at its foot as in the path tracer's image, to 15 %") {
+        Scene scene;
+        add(scene, QuadList{{{Vec3(-4, 0, 4), Vec3(8, 0, 0), Vec3(0, 0, -8)}}}, Mat4(), Diffuse{{Rgb(0.8f)}});
+        add(scene, QuadList{{{Vec3(-4, 0, -4), Vec3(8, 0, 0), Vec3(0, 2, 0)}}}, Mat4(),
+            Diffuse{{Rgb(0.8f, 0.05f, 0.05f)}});
+        scene.lights = {SunLight{normalize(Vec3(0, -0.02f, -1)), Rgb(5.0f)}};
+        finish_scene(scene);
+        const View view{look({0, 2, -1}, {0, 0, -4}, 40), 240, 180};
+        const Pinhole pinhole = CameraModel(view).pinhole();
+        const ImageRgb found = render(scene, view, {}).radiance, truth = path_traced(scene, view, 64);
+        Rgb mean_found, mean_truth;
+        int pixels = 0;
+        for (int y = 0; y < view.height; ++y)
+            for (int x = 100; x < 140; ++x) {
+                const Rayd ray = pinhole.ray({x + 0.5, y + 0.5});
+                const double z = ray.at(-ray.origin.y / ray.direction.y).z;
+                if (z > -3.99 && z < -3.9) mean_found += found(x, y), mean_truth += truth(x, y), ++pixels;
+            }
+        CHECK(pixels > 100);
+        CHECK(mean_found.r == doctest::Approx(mean_truth.r).epsilon(0.15)); // measured: 1.10 of it
+        CHECK(mean_found.g == doctest::Approx(mean_truth.g).epsilon(0.15)); // measured: 1.11
     }
 
     TEST_CASE("the same bits for any number of threads") {
