@@ -195,7 +195,8 @@ void shade_gbuffer(const RasterSceneData& data, const RasterSettings& settings, 
     if (options.background) draw_background(data, settings, gbuffer, radiance);
     recorder.record(&LightComponentImages::emission);
     stages.done("background");
-    // If the hits lie on the caller's own rays, neighboring pixels do not show neighboring points, so nothing is blurred.
+    // If the hits lie on the caller's own rays, neighboring pixels do not show neighboring points, so nothing is
+    // blurred.
     if (settings.subsurface && data.scene.needs.subsurface && gbuffer.position.empty())
         add_diffuse_light(stages, SolidMaterials(data.scene), frame, threads, recorder);
     else
