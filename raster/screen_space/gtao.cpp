@@ -22,9 +22,9 @@ constexpr float kSlack = 1e-3f;
 constexpr float kClosest = 3e-4f;
 constexpr float kFadeFrom = 0.75f;    ///< fraction of the radius at which horizons begin to fade
 constexpr float kLeastCosine = 0.02f; ///< least cosine between normal and viewer; interpolated normals may face away
-/// Occluders do not receive all of the irradiance, because the points hide some of it from them, too. This part of it
-/// makes the least error in models/hall.json, models/demo.json and models/cornell.json.
-constexpr float kOccluderVisibility = 0.6f;
+/// Occluders do not receive all of the irradiance, because the points hide some of it from them, too. Of models/,
+/// hall.json and demo.json have the least error with 0.6 of it, cornell.json and open-sky.json with 0.4.
+constexpr float kOccluderVisibility = 0.5f;
 constexpr int kBlock = 4;             ///< side of a block of half-resolution pixels, each with a direction of its own
 
 /// Returns arccos with an error of at most 7e-5 (Abramowitz and Stegun 1964, 4.4.45).
