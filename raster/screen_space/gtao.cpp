@@ -238,7 +238,8 @@ Vec3s GtaoImage::point(int x, int y, const Floats& depth) const {
 void GtaoImage::set_light(int x, int y, Rgb radiance) {
     const Rgb albedo = gbuffer_->diffuse.color_at(2 * x, 2 * y);
     const Rgb reflected = irradiance_.color_at(x, y) * albedo * (kInvPi * kOccluderVisibility);
-    const Rgb light = is_black(albedo) ? Rgb() : radiance + reflected;
+    const bool sends = depth_(x, y) > 0 && !is_black(albedo);
+    const Rgb light = sends ? radiance + reflected : Rgb(); // other pixels may hold any number
     light_.x(x, y) = light.r, light_.y(x, y) = light.g, light_.z(x, y) = light.b;
 }
 
