@@ -167,6 +167,7 @@ EdgeSearch search_edge(const ReferenceTracer& tracer, const Pinhole& pinhole, Ve
                        const Hit& b) {
     EdgeSearcher search{tracer, pinhole, pixel, radius, a, b, {}, 0};
     search.result.center = search.trace(pixel);
+    search.result.center_hits_both = !search.result.range_a.empty() && !search.result.range_b.empty();
     if (!may_be_hit(search, a) || !may_be_hit(search, b)) return search.result;
     (void)(search.result.both() || try_circles(search) || try_primitive(search, a) || try_primitive(search, b) ||
            try_disk(search));

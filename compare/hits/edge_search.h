@@ -22,6 +22,7 @@ inline constexpr double kTieTolerance = 1e-6;
 struct DistanceRange {
     double low = std::numeric_limits<double>::infinity(), high = 0;
     void extend(double t) { low = min(low, t), high = max(high, t); }
+    bool empty() const { return !(low <= high); }
 };
 /// Returns whether rays hit both primitives, and one distance is in both ranges.
 inline bool overlap(const DistanceRange& a, const DistanceRange& b) { return a.low <= b.high && b.low <= a.high; }
@@ -30,15 +31,16 @@ inline bool overlap(const DistanceRange& a, const DistanceRange& b) { return a.l
 struct EdgeSearch {
     bool found_a = false, found_b = false; ///< whether a ray has the pipeline's hit as its closest hit
     bool tied_a = false, tied_b = false;   ///< whether a ray hits the primitive within kTieTolerance of its closest hit
-    /// These are the distances at which rays hit the two primitives, even behind others. The rasterizer may take a
-    /// primitive's distance at any of these rays for the pixel's: it clamps a hit to the triangle before snapping. For
-    /// two steep surfaces that nearly coincide, that is farther apart than they are.
+    /// These are the distances at which rays hit the two primitives, even behind others. Where the pixel's ray misses a
+    /// primitive, the rasterizer may take any of these for its distance: it moves the point into the triangle.
     DistanceRange range_a, range_b;
-    ReferenceHit center;                   ///< closest hit of the undisplaced ray
+    bool center_hits_both = false; ///< whether the undisplaced ray hits both primitives, even behind others
+    ReferenceHit center;           ///< closest hit of the undisplaced ray
 
     bool both() const { return found_a && found_b; }
     bool both_or_tied() const {
-        return ((found_a || tied_a) && (found_b || tied_b)) || overlap(range_a, range_b);
+        const bool moved = (found_a || found_b) && !center_hits_both && overlap(range_a, range_b);
+        return ((found_a || tied_a) && (found_b || tied_b)) || moved;
     }
 };
 
@@ -48,7 +50,7 @@ double pixel_width(const Pinhole& pinhole, Vec2d pixel, double t);
 /// Displaces the ray through `pixel` by up to `radius` pixels: first on circles, then into the parts of the two
 /// primitives that lie within reach (however thin they are), then over a dense disk. It stops when both hits are found
 /// or all of about 5,000 rays are tried. Each ray is traced through the whole scene: being close to an edge is not
-/// enough, a ray must hit the primitive. The one exception is a primitive whose plane contains the ray.
+/// enough, a ray must hit the primitive. The one exception is a primitive that projects to a line.
 EdgeSearch search_edge(const ReferenceTracer& tracer, const Pinhole& pinhole, Vec2d pixel, double radius, const Hit& a,
                        const Hit& b);
 

@@ -40,14 +40,13 @@ void add_indirect_light(const RasterSettings& settings, const GBuffer& gbuffer, 
 
 void add_indirect_light(const RasterSettings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
                         const GtaoImage& half, Planes3& radiance) {
-    add_reflected(settings, gbuffer, radiance, [&](int x, int y, const auto& lit) {
-        auto [visible, irradiance, from_occluders, found] = half.lit_at(x, y);
-        if (const auto alone = lit & !found; xsimd::any(alone)) // surfaces that no pixel of half resolution shows
-            irradiance = blend(alone,
-                               probes.irradiance(gbuffer.projection, gbuffer.points(x, y),
-                                                 gbuffer.normal.vector(x, y), alone),
-                               irradiance);
-        return irradiance * visible + from_occluders;
+    add_reflected(settings, gbuffer, radiance, [&](int x, int y, const auto& lit) -> RgbT<Floats> {
+        const auto [visible, irradiance, from_occluders, found] = half.lit_at(x, y);
+        const RgbT<Floats> half_resolution = irradiance * visible + from_occluders;
+        const auto alone = lit & !found; // surfaces that no pixel of half resolution shows
+        if (!xsimd::any(alone)) return half_resolution;
+        const Vec3T<Floats> p = gbuffer.points(x, y), n = gbuffer.normal.vector(x, y);
+        return blend(alone, probes.irradiance(gbuffer.projection, p, n, alone), half_resolution);
     });
 }
 

@@ -22,10 +22,10 @@ constexpr int kDistanceSide = 16; ///< texels along a side of an octahedral map 
 constexpr int kSide = 16, kFineSide = 32; ///< pixels along a side of a face of a probe's cube
 constexpr int kBatch = static_cast<int>(Floats::size);
 static_assert(kSide % kBatch == 0);
-/// Probes with less light-giving pixels than this are rendered with kFineSide.
+/// Probes with fewer bright pixels than this are rendered with kFineSide.
 constexpr float kFewestPixels = 64;
-constexpr int kMostBounces = 16;
-constexpr float kNegligible = 0.01f; ///< mean fraction of a probe's light; a bounce that adds less is the last one
+constexpr int kMostBounces = 12;
+constexpr float kNegligible = 0.01f; ///< fraction of all light; a bounce that adds less is the last one
 
 /// Calls visit for every pixel of a cube of side × side pixels a face whose column is a multiple of `columns`.
 template <typename Visit> void for_each_pixel(int side, int columns, const Visit& visit) {
@@ -63,7 +63,7 @@ const Projection& projection(int side) {
 
 /// Returns the number of pixels of equal light that have the same ratio of (sum of light)² to (sum of squares) as a
 /// capture's pixels (Kish 1965, "Survey Sampling"). It is small if nearly all light comes from a small bright area,
-/// whose edges then make a large error.
+/// whose edges then make a large error. It is infinite if there is no light.
 float effective_pixels(const ProbeCapture& capture) {
     Floats sum(0.0f), squares(0.0f);
     for_each_pixel(capture.side(), kBatch, [&](const ProbeCapture::Pixel& p) {
@@ -71,7 +71,15 @@ float effective_pixels(const ProbeCapture& capture) {
         const Floats light = color.r + color.g + color.b;
         sum += light, squares += light * light;
     });
-    return sqr(xsimd::hadd(sum)) / std::max(xsimd::hadd(squares), std::numeric_limits<float>::min());
+    const float all = xsimd::hadd(squares);
+    return all > 0 ? sqr(xsimd::hadd(sum)) / all : kInfinity;
+}
+
+/// Returns the sum of all further bounces, as a multiple of the last one, if each adds the same fraction of the one
+/// before.
+float rest_of_series(float last, float before) {
+    const float ratio = before > 0 ? std::clamp(last / before, 0.0f, 0.95f) : 0;
+    return ratio / (1 - ratio);
 }
 
 } // namespace
@@ -102,19 +110,27 @@ IrradianceProbes::IrradianceProbes(const RasterSceneData& data, const RasterSett
     });
     find_sky(data, settings, captures);
     std::vector<std::vector<Weights>> weights(probes_.size());
+    float added_before = 0;
     for (int k = 0; k <= kMostBounces; ++k) {
         std::vector<IrradianceHarmonics> next(probes_.size());
         parallel_for(probes_.size(), settings.threads, [&](std::size_t i) {
             if (captures[i]) next[i] = gather(*captures[i], k, weights[i]);
         });
-        float change = 0; // sum over all probes of the relative change
+        float lit = 0, added = 0; // sum over the probes of the part of its light that this bounce adds
         for (std::size_t i = 0; i < probes_.size(); ++i) {
             const float before = luminance(probes_[i].irradiance[0]), now = luminance(next[i][0]);
-            if (now > 0) change += (now - before) / now;
-            probes_[i].irradiance = next[i];
+            if (captures[i] && now > 0) ++lit, added += (now - before) / now;
         }
+        const bool last = added <= kNegligible * lit || k == kMostBounces;
+        const float rest = last && k > 1 ? rest_of_series(added, added_before) : 0;
+        for (std::size_t i = 0; i < probes_.size(); ++i)
+            for (std::size_t c = 0; c < next[i].size(); ++c) {
+                Rgb& irradiance = probes_[i].irradiance[c];
+                irradiance = next[i][c] + (next[i][c] - irradiance) * rest;
+            }
         fill_solids();
-        if (change <= kNegligible * static_cast<float>(probes_.size())) break;
+        if (last) break;
+        added_before = added;
     }
 }
 

@@ -16,8 +16,8 @@ namespace duet::raster {
 /// Holds the probes of a scene. They do not depend on the view.
 class IrradianceProbes {
 public:
-    /// Renders the probes, and lets light bounce until a bounce adds less than 1 % to it, or 16 times. The
-    /// result is the same for any number of threads.
+    /// Renders the probes, and lets light bounce until a bounce adds less than 1 % to it, or 12 times. All further
+    /// bounces are added as a geometric series. The result is the same for any number of threads.
     IrradianceProbes(const RasterSceneData& data, const RasterSettings& settings);
 
     /// Returns the irradiance at points relative to the eye at `eye`, with unit normals; unspecified in lanes that

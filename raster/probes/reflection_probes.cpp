@@ -16,9 +16,9 @@ constexpr float kTolerance = 0.01f, kStep = 0.15f;
 constexpr float kBeside = 0.03f;
 
 /// Follows a batch of rays through a radiance map. Vectors are relative to the map's center.
-class ImpostorTracer {
+class MapTracer {
 public:
-    ImpostorTracer(const RadianceMap& map, const Vec3s& start, const Vec3s& w, bool lights)
+    MapTracer(const RadianceMap& map, const Vec3s& start, const Vec3s& w, bool lights)
         : map_(map), start_(start), w_(w), lights_(lights), length_(xsimd::sqrt(dot(start, start))) {}
 
     /// Returns the hits of the given lanes; other lanes are unspecified.
@@ -39,9 +39,8 @@ private:
     }
     /// Marches along the ray to the first surface that the map shows, and returns its t. If the ray ends behind a
     /// surface instead, the map does not show what the ray hits. The result is then the point before that surface's
-    /// silhouette, in whose direction the map shows what lies behind it. (McGuire, Mara, Nowrouzezahrai and Luebke
-    /// 2017, "Real-Time Global Illumination using Precomputed Light Field Probes", §4, march through several probes
-    /// with the same three outcomes: hit, miss and unknown.)
+    /// silhouette, in whose direction the map shows what lies behind it. (McGuire et al. 2017, §4, march through several
+    /// probes with the same three outcomes: hit, miss and unknown.)
     Floats search(const Mask& lanes) const {
         Floats before(0.0f), result(RadianceMap::kFarthest); // an unobstructed ray ends at the background
         Mask found = ~lanes, hidden = before > before;
@@ -89,7 +88,7 @@ Vec3s ReflectionProbes::trace(std::size_t probe, const Vec3d& eye, const Vec3s& 
                               const Mask& lanes) const {
     const Vec3 offset(eye - probes_[probe].center);
     const Vec3s start = p + broadcast<Floats>(offset);
-    return ImpostorTracer(probes_[probe].map, start, w, lights).hit(lanes);
+    return MapTracer(probes_[probe].map, start, w, lights).hit(lanes);
 }
 
 std::size_t ReflectionProbes::memory_bytes() const {

@@ -1,6 +1,7 @@
 // Provides the reflections of mirrors, metal and glass from radiance maps at points of the scene. A map is sampled in
-// the direction where the reflected ray hits the surfaces that the map shows (Szirmay-Kalos et al. 2005, "Approximate
-// Ray-Tracing on the GPU with Distance Impostors").
+// the direction where the reflected ray first hits the surfaces that the map shows, but for those that are narrower
+// than a step of the search (McGuire, Mara, Nowrouzezahrai and Luebke 2017, "Real-Time Global Illumination using
+// Precomputed Light Field Probes", §4).
 #pragma once
 
 #include "raster/probes/probe_capture.h"

@@ -52,6 +52,15 @@ Arc arc(const Floats& angle, const Floats& cosine, const Floats& sine, const Flo
             cos_gamma * cube + sin_gamma * (Floats(2.0f / 3) - cosine + cosine * cosine * cosine * third)};
 }
 
+} // namespace
+
+/// Holds what occluders send at half the G-buffer's resolution, from the side that the viewer sees and the other.
+struct GtaoImage::OccluderLight {
+    const Planes3 &front, &back, &normals;
+};
+
+namespace {
+
 /// Holds the horizon on one side of each point, and the light of the surfaces that make it.
 struct Horizon {
     Floats cosine; ///< to the viewer
@@ -62,9 +71,9 @@ struct Horizon {
 /// Searches for horizons. A horizon is the greatest cosine to the viewer of the surfaces along a line from each point.
 class HorizonSearch {
 public:
-    /// `light` has half the G-buffer's resolution; it may be null.
-    HorizonSearch(const GBuffer& gbuffer, const Planes3* light, const Vec3s& p, const Vec3s& n, const Vec3s& to_viewer,
-                  float radius)
+    /// `light` may be null.
+    HorizonSearch(const GBuffer& gbuffer, const GtaoImage::OccluderLight* light, const Vec3s& p, const Vec3s& n,
+                  const Vec3s& to_viewer, float radius)
         : gbuffer_(gbuffer), light_(light), p_(p), n_(n), to_viewer_(to_viewer),
           home_(gbuffer.projection.homogeneous(p)), radius_(radius), closest_(Floats(kClosest * kClosest) * dot(p, p)) {
         const Floats over_w = Floats(1.0f) / home_[3];
@@ -111,10 +120,13 @@ private:
         const Floats gain = max(cosine - horizon.cosine, none);
         horizon.cosine = max(horizon.cosine, cosine);
         if (light_ == nullptr || !xsimd::any(gain > none)) return;
-        const Ints half = (truncated(clamp(y, none, bottom)) >> 1) * Ints(light_->x.stride()) +
+        const Ints half = (truncated(clamp(y, none, bottom)) >> 1) * Ints(light_->front.x.stride()) +
                           (truncated(clamp(x, none, right)) >> 1);
-        const auto read = [&](const PlaneFloat& plane) { return gather(plane.row(0), half); };
-        horizon.light += Vec3s{read(light_->x), read(light_->y), read(light_->z)} * gain;
+        const auto read = [&](const Planes3& planes) {
+            return Vec3s{gather(planes.x.row(0), half), gather(planes.y.row(0), half), gather(planes.z.row(0), half)};
+        };
+        const Mask faces = dot(read(light_->normals), to) < none; // the point
+        horizon.light += select(faces, read(light_->front), read(light_->back)) * gain;
         horizon.gain += gain;
     }
     /// Returns the distance in pixels to the image's edge in a unit direction.
@@ -124,7 +136,7 @@ private:
     }
 
     const GBuffer& gbuffer_;
-    const Planes3* light_;
+    const GtaoImage::OccluderLight* light_;
     const Vec3s &p_, &n_, &to_viewer_;
     std::array<Floats, 4> home_;
     Floats x_, y_;
@@ -157,8 +169,8 @@ struct Line {
     Vec3s directions{Floats(0.0f), Floats(0.0f), Floats(0.0f)};
 };
 /// Searches along the line that `pattern` selects by its rotation about the view direction.
-Line search_line(const GBuffer& gbuffer, const Planes3* light, const Vec3s& p, const Vec3s& normal, float radius,
-                 const Pattern& pattern) {
+Line search_line(const GBuffer& gbuffer, const GtaoImage::OccluderLight* light, const Vec3s& p, const Vec3s& normal,
+                 float radius, const Pattern& pattern) {
     const Floats one(1.0f), none(0.0f);
     const Vec3s v = gbuffer.projection.to_viewer(p);
     const Vec3s n = unit_of(normal + v * max(Floats(kLeastCosine) - dot(normal, v), none));
@@ -200,7 +212,7 @@ void GtaoImage::reset(int width, int height) {
     depth_ = PlaneFloat(width, height);
     normal_ = Planes3(width, height);
     lines_ = column_sums_ = {PlaneFloat(width, height), PlaneFloat(width, height), Planes3(width, height)};
-    light_ = irradiance_ = Planes3(width, height);
+    front_ = back_ = irradiance_ = Planes3(width, height);
     smooth_.visible = PlaneFloat(width, height), smooth_.hidden = Planes3(width, height);
 }
 
@@ -217,7 +229,7 @@ void GtaoImage::start(const GBuffer& gbuffer, int threads) {
     });
 }
 
-void GtaoImage::search(float radius, const Planes3* light, int threads) {
+void GtaoImage::search(float radius, const OccluderLight* light, int threads) {
     const auto for_each_row = [&](const auto& use) {
         parallel_for(static_cast<std::size_t>(depth_.height()), threads,
                      [&](std::size_t y) { use(static_cast<int>(y)); });
@@ -227,23 +239,29 @@ void GtaoImage::search(float radius, const Planes3* light, int threads) {
     for_each_row([&](int y) { finish_row(y); });
 }
 
+void GtaoImage::search_light(float radius, int threads) {
+    const OccluderLight light{front_, back_, normal_};
+    search(radius, &light, threads);
+}
+
 /// Returns the points of a batch of half-resolution pixels, relative to the eye.
 Vec3s GtaoImage::point(int x, int y, const Floats& depth) const {
     return gbuffer_->projection.point(Floats(static_cast<float>(2 * x)) + load(kLanesAsFloats, 0) * Floats(2.0f),
                                       Floats(static_cast<float>(2 * y)), max(depth, Floats(1e-30f)));
 }
 
-/// Sets the light that an occluder sends: its radiance, and the irradiance that it reflects. Surfaces without a diffuse
-/// lobe send none: emitters, whose light is direct light, and metal, which hardly reflects towards the points.
-void GtaoImage::set_light(int x, int y, Rgb radiance) {
+/// Sets the light that an occluder sends: its direct light, and the irradiance that it reflects. Surfaces without a
+/// diffuse lobe send none: emitters, whose light is direct light, and metal, which sends it in one direction. The side
+/// that the viewer does not see has no direct light, as far as is known.
+void GtaoImage::set_light(int x, int y, Rgb direct) {
     const Rgb albedo = gbuffer_->diffuse.color_at(2 * x, 2 * y);
     const Rgb reflected = irradiance_.color_at(x, y) * albedo * (kInvPi * kOccluderVisibility);
-    const bool sends = depth_(x, y) > 0 && !is_black(albedo);
-    const Rgb light = sends ? radiance + reflected : Rgb(); // other pixels may hold any number
-    light_.x(x, y) = light.r, light_.y(x, y) = light.g, light_.z(x, y) = light.b;
+    const bool sends = depth_(x, y) > 0 && !is_black(albedo); // other pixels may hold any number
+    front_.set_at(x, y, sends ? direct + reflected : Rgb());
+    back_.set_at(x, y, sends ? reflected : Rgb());
 }
 
-void GtaoImage::search_row(int y, float radius, const Planes3* light) {
+void GtaoImage::search_row(int y, float radius, const OccluderLight* light) {
     for (int x = 0; x < depth_.width(); x += static_cast<int>(Floats::size)) {
         const Floats depth = load(depth_, x, y);
         const Mask seen = depth > Floats(0.0f);

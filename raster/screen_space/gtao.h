@@ -21,10 +21,12 @@ public:
     /// none.
     void find_hidden(float radius, int threads) { search(radius, nullptr, threads); }
     /// Computes irradiance(p, n, lanes), without occluders, at every half-resolution pixel: p is relative to the eye, n
-    /// unit. Then searches for occluders up to `radius` meters away, and the light that they send if their radiance is
-    /// radiance(x, y) of the pixels of the G-buffer, and they reflect this irradiance.
-    template <typename Irradiance, typename Radiance>
-    void find_light(float radius, int threads, const Irradiance& irradiance, const Radiance& radiance);
+    /// unit.
+    template <typename Irradiance> void set_irradiance(int threads, const Irradiance& irradiance);
+    /// Searches for occluders up to `radius` meters away, and the light that they send, after set_irradiance(). Their
+    /// direct light is that which the viewer sees, direct(x, y) of the G-buffer's pixels; they reflect the irradiance,
+    /// too.
+    template <typename Direct> void find_light(float radius, int threads, const Direct& direct);
 
     /// Returns the visibility of a batch of the G-buffer's pixels, upsampled along depths and normals.
     SkyVisibility<Floats> at(int x, int y) const { return upsampled(x, y).sky; }
@@ -36,7 +38,7 @@ public:
         RgbT<Floats> irradiance, from_occluders;
         xsimd::batch_bool<float> found;
     };
-    /// Returns the light of a batch, after find_light().
+    /// Returns the light of a batch, after set_irradiance() and find_light().
     Lit lit_at(int x, int y) const {
         const auto [s, irradiance, found] = upsampled(x, y);
         return {s.visible, irradiance, RgbT<Floats>{s.hidden.x, s.hidden.y, s.hidden.z} * Floats(kPi), found};
@@ -45,10 +47,12 @@ public:
     std::size_t memory_bytes() const {
         return depth_.memory_bytes() + normal_.memory_bytes() + lines_.memory_bytes() + column_sums_.memory_bytes() +
                smooth_.visible.memory_bytes() + smooth_.hidden.memory_bytes() + irradiance_.memory_bytes() +
-               light_.memory_bytes();
+               front_.memory_bytes() + back_.memory_bytes();
     }
 
     static constexpr int kSteps = 10; ///< depth samples on each side of a pixel
+
+    struct OccluderLight;
 
 private:
     struct Planes {
@@ -72,9 +76,10 @@ private:
         }
     };
     Upsampled upsampled(int x, int y) const;
-    void set_light(int x, int y, Rgb radiance);
-    void search(float radius, const Planes3* light, int threads);
-    void search_row(int y, float radius, const Planes3* light);
+    void set_light(int x, int y, Rgb direct);
+    void search(float radius, const OccluderLight* light, int threads);
+    void search_row(int y, float radius, const OccluderLight* light);
+    void search_light(float radius, int threads);
     template <typename Use> void sum_neighbors(const Lines& from, int y, int step_x, int step_y, const Use& use) const;
     void sum_columns(int y);
     void finish_row(int y);
@@ -88,11 +93,10 @@ private:
     Lines column_sums_;     ///< sums along columns
     Planes smooth_;         ///< averaged over neighbors
     Planes3 irradiance_;    ///< of the same pixels, without occluders
-    Planes3 light_;         ///< radiance of their diffuse lobes
+    Planes3 front_, back_;  ///< radiance that they send as occluders, from the side that is seen and the other
 };
 
-template <typename Irradiance, typename Radiance>
-void GtaoImage::find_light(float radius, int threads, const Irradiance& irradiance, const Radiance& radiance) {
+template <typename Irradiance> void GtaoImage::set_irradiance(int threads, const Irradiance& irradiance) {
     for_each_batch(depth_.width(), depth_.height(), threads, [&](int x, int y) {
         const Floats depth = load(depth_, x, y);
         const auto seen = depth > Floats(0.0f);
@@ -100,11 +104,14 @@ void GtaoImage::find_light(float radius, int threads, const Irradiance& irradian
         const RgbT<Floats> e = irradiance(point(x, y, depth), normal_.vector(x, y), seen);
         irradiance_.set(x, y, blend(seen, e, RgbT<Floats>(Floats(0.0f))));
     });
+}
+
+template <typename Direct> void GtaoImage::find_light(float radius, int threads, const Direct& direct) {
     parallel_for(static_cast<std::size_t>(depth_.height()), threads, [&](std::size_t row) {
         const int y = static_cast<int>(row);
-        for (int x = 0; x < depth_.width(); ++x) set_light(x, y, radiance(2 * x, 2 * y));
+        for (int x = 0; x < depth_.width(); ++x) set_light(x, y, direct(2 * x, 2 * y));
     });
-    search(radius, &light_, threads);
+    search_light(radius, threads);
 }
 
 } // namespace duet::raster

@@ -110,17 +110,23 @@ public:
         const int threads = settings_.threads;
         const bool occluded = settings_.ambient_occlusion;
         if (uses_probes()) {
-            const float radius = occluded ? kOccluded * data_.irradiance_probes->spacing() : 0;
-            const auto irradiance = [&](const auto& p, const auto& n, const auto& lanes) {
-                return data_.irradiance_probes->irradiance(gbuffer.projection, p, n, lanes);
-            };
             frame_.occlusion.start(gbuffer, threads);
-            frame_.occlusion.find_light(radius, threads, irradiance, direct);
+            frame_.occlusion.set_irradiance(threads, [&](const auto& p, const auto& n, const auto& lanes) {
+                return data_.irradiance_probes->irradiance(gbuffer.projection, p, n, lanes);
+            });
+            done("indirect light");
+            const float radius = occluded ? kOccluded * data_.irradiance_probes->spacing() : 0;
+            if (settings_.components.direct) {
+                frame_.occlusion.find_light(radius, threads, direct);
+            } else {
+                const Planes3 light = all_direct_light();
+                frame_.occlusion.find_light(radius, threads, [&](int x, int y) { return light.color_at(x, y); });
+            }
         } else if (uses_sky() && occluded) {
             frame_.occlusion.start(gbuffer, threads);
             frame_.occlusion.find_hidden(static_cast<float>(occlusion_radius(data_, settings_)), threads);
         }
-        done("ambient occlusion");
+        if (occluded) done("ambient occlusion");
     }
     /// Adds the light of the environment and of other surfaces, after find_occluders().
     void add_indirect(Planes3& radiance) {
@@ -136,6 +142,15 @@ public:
     }
 
 private:
+    /// Returns the direct light of an image in which it is not selected.
+    Planes3 all_direct_light() {
+        RasterSettings settings = settings_;
+        settings.components = {};
+        Planes3 light(frame_.gbuffer->width(), frame_.gbuffer->height());
+        ComponentRecorder none(light, settings.threads, nullptr);
+        LightStages(data_, settings, options_, frame_, watch_).add_direct(light, none);
+        return light;
+    }
     bool uses_probes() const {
         return settings_.components.environment && data_.irradiance_probes && settings_.indirect_light;
     }

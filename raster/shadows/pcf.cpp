@@ -11,8 +11,10 @@ using Mask = Floats::batch_bool_type;
 /// fraction kOfElevation of the light's elevation above the surface. A greater fraction lets more light past the rim of
 /// a coarse trough, a smaller one draws darker lines along its valleys.
 constexpr float kSteepest = 0.5f, kOfElevation = 0.85f;
-/// A surface near the point is a roof, not a facet that begins beside the point, if it lies above the point even when
-/// it is continued to there: by more than this part of the height that facets may have at one texel's distance.
+/// A texel's surface is continued to the point by its slope in the map. It is a roof over the point if it is then
+/// higher above the receiver's plane than kRoof times the height that a facet at kSteepest reaches within one texel. A
+/// facet that begins beside the point would be lower than the plane there. A surface that ends between two texels is
+/// steep, and so counts as a roof, too.
 constexpr float kRoof = 0.7f;
 /// Texels on the side of the point that is nearer to the light are ignored if their surface falls below the receiver's
 /// plane by more than this fraction of the elevation. They lie beyond the end of the receiver's surface.
@@ -146,20 +148,21 @@ Floats SharpShadowMap::visibility(const Vec3T<Floats>& p, const Vec3T<Floats>& n
             const Floats seen = map_.orthographic() ? Floats(-near_) / max(stored, Floats(1e-25f)) : stored;
             height[j][i] = seen - (plane.at + plane.dx * off(x0, i, x) + plane.dy * off(y0, j, y));
         }
+    const Mask may_be_roof(!dithered); // a dithered map has several surfaces in turn
     Floats dark(0.0f), known(0.0f);
     for (std::size_t j = 0; j < taps; ++j) {
         const Floats off_y = off(y0, j, y);
         Floats row_dark(0.0f), row_known(0.0f);
         for (std::size_t i = 0; i < taps; ++i) {
             const Floats off_x = off(x0, i, x), here = height[j][i];
-            // The surface is continued to the point by its slopes between texels on this side of it.
+            // The slope is that between two texels on one side of the point.
             const std::size_t a = i < 2 ? 0 : 2, b = j < 2 ? 0 : 2;
             const Floats continued =
                 here - (height[j][a + 1] - height[j][a]) * off_x - (height[b + 1][i] - height[b][i]) * off_y;
+            const Mask roof = may_be_roof & (here > plane.rounding) & (continued > plane.rounding + plane.roof);
             const Floats distance = xsimd::sqrt(off_x * off_x + off_y * off_y);
-            const Mask facet = (here <= plane.rounding + plane.rising * distance) &
-                               ((here <= plane.rounding) | (continued <= plane.rounding + plane.roof));
-            row_dark += xsimd::select(facet, zero, across[i]);
+            const Mask shades = (here > plane.rounding + plane.rising * distance) | roof;
+            row_dark += xsimd::select(shades, across[i], zero);
             const Mask away = plane.dx * off_x + plane.dy * off_y < zero; // lanes in which the plane recedes
             const Floats lowest = -plane.rounding - xsimd::select(away, plane.steepest, plane.falling) * distance;
             row_known += xsimd::select(here < lowest, zero, across[i]);

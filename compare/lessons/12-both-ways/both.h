@@ -5,6 +5,7 @@
 #include "raytrace/lessons/05-diffuse/diffuse.h"
 #include "raytrace/lessons/07-camera/camera.h"
 #include "raytrace/lessons/08-bvh/bvh.h"
+
 namespace duet::lesson {
 
 /// Way 1: for each triangle, the pixels that it covers. shade(hit) is the color of a point that is seen.

@@ -4,7 +4,9 @@
 #include "common/system/parameters.h"
 #include "compare/lessons/12-both-ways/both.h"
 #include "raster/lessons/01-lines/figures.h"
+
 #include <ctime>
+
 using namespace duet;
 using namespace duet::lesson;
 

@@ -115,7 +115,6 @@ function take(data) {
     stop();
     if (data.done) for (const figure of $('images').children) figure.classList.remove('old');
     say(data.failed ? `The program failed: ${data.failed}` : `${data.seconds.toFixed(2)} seconds`);
-    document.documentElement.dataset.runs = Number(document.documentElement.dataset.runs || 0) + 1;
     if (again) run();
 }
 
@@ -159,6 +158,7 @@ async function open(id) {
     if (prepared) URL.revokeObjectURL(prepared.source);
     prepared = null;
     parameters = [];
+    for (const image of $('images').querySelectorAll('img')) URL.revokeObjectURL(image.src);
     $('images').replaceChildren();
     $('parameters').replaceChildren();
     $('output').textContent = $('command').textContent = '';
