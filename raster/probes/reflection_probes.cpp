@@ -39,8 +39,8 @@ private:
     }
     /// Marches along the ray to the first surface that the map shows, and returns its t. If the ray ends behind a
     /// surface instead, the map does not show what the ray hits. The result is then the point before that surface's
-    /// silhouette, in whose direction the map shows what lies behind it. (McGuire et al. 2017, §4, march through several
-    /// probes with the same three outcomes: hit, miss and unknown.)
+    /// silhouette, in whose direction the map shows what lies behind it. (McGuire et al. 2017, §4, march through
+    /// several probes with the same three outcomes: hit, miss and unknown.)
     Floats search(const Mask& lanes) const {
         Floats before(0.0f), result(RadianceMap::kFarthest); // an unobstructed ray ends at the background
         Mask found = ~lanes, hidden = before > before;

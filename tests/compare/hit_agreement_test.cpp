@@ -264,8 +264,8 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("of two steep surfaces that nearly coincide, either may be seen at an edge, and nowhere else") {
-        // Both are valleys with their bottom at x = 0.5 - offset. Beside the bottom, the rasterizer may move a point over
-        // it, which changes the distance by up to 1/64. The tie's tolerance is 1e-4.
+        // Both are valleys with their bottom at x = 0.5 - offset. Beside the bottom, the rasterizer may move a point
+        // over it, which changes the distance by up to 1/64. The tie's tolerance is 1e-4.
         for (const float offset : {0.002f, 0.2f})
             for (const float gap : {0.005f, 0.05f}) {
                 Scene scene = test::empty_scene();
