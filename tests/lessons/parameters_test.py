@@ -1,4 +1,5 @@
-"""Each lesson's program declares two to four parameters, takes them from its command line, and refuses what is none.
+"""Each lesson's program declares two to four parameters, takes them from its command line, draws with the least value of
+each, and refuses what is none.
 
 usage: parameters_test.py LESSONS_OUT
 """
@@ -40,6 +41,10 @@ def faults_of(program):
         if p["option"] not in text:
             faults.append(f"--help does not name {p['option']}")
         faults += refused(program, p["option"], str(p["greatest"] + 1))
+    least = [word for p in parameters for word in (p["option"], str(p["least"]))]
+    result, files = run(program, *least)
+    if result.returncode != 0 or not files:
+        faults.append(f"{' '.join(least)}: exit code {result.returncode}, '{result.stderr}', {len(files)} files")
     return faults + refused(program, "--no-such-parameter", "1")
 
 
