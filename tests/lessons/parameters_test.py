@@ -1,5 +1,5 @@
-"""Each lesson's program declares two to four parameters, takes them from its command line, draws with the least value of
-each, and refuses what is none.
+"""Each lesson's program declares two to four parameters, takes them from its command line, draws with the least value
+of each, and refuses what is none.
 
 usage: parameters_test.py LESSONS_OUT
 """
