@@ -17,8 +17,9 @@ enum class HitVerdict : std::uint8_t {
     kSame,       ///< same object and primitive, or both miss
     kEdge,       ///< double-precision rays within 1/128 pixel of the center, plus the rounding error, find both hits
     kDepthTie,   ///< the double-precision ray hits both at the same distance, within kDepthTolerance; or displaced rays
-                 ///< find one, and hit the other within kTieTolerance of its occluder; or they hit both at ranges of
-                 ///< distances that overlap; or one is at the eye, within rounding
+                 ///< find one, and hit the other within kTieTolerance of its occluder; or they find one, the
+                 ///< undisplaced ray misses one, and the ranges of their distances overlap; or one is at the eye,
+                 ///< within rounding
     kUnexplained ///< neither same, edge nor tie: one of the pipelines is wrong
 };
 

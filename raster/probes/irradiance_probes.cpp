@@ -109,11 +109,16 @@ IrradianceProbes::IrradianceProbes(const RasterSceneData& data, const RasterSett
         if (captures[i]) set_distances(*captures[i], probes_[i]);
     });
     find_sky(data, settings, captures);
+    bounce_light(captures, settings.threads);
+}
+
+/// Sets the irradiance of all probes. After the direct light, each bounce takes the light of the one before.
+void IrradianceProbes::bounce_light(const std::vector<std::unique_ptr<ProbeCapture>>& captures, int threads) {
     std::vector<std::vector<Weights>> weights(probes_.size());
     float added_before = 0;
     for (int k = 0; k <= kMostBounces; ++k) {
         std::vector<IrradianceHarmonics> next(probes_.size());
-        parallel_for(probes_.size(), settings.threads, [&](std::size_t i) {
+        parallel_for(probes_.size(), threads, [&](std::size_t i) {
             if (captures[i]) next[i] = gather(*captures[i], k, weights[i]);
         });
         float lit = 0, added = 0; // sum over the probes of the part of its light that this bounce adds

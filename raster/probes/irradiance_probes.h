@@ -60,6 +60,7 @@ private:
     void find_sights(const std::vector<std::unique_ptr<ProbeCapture>>& captures);
     bool sees(const ProbeCapture& capture, std::size_t from, std::size_t to) const;
     std::size_t corner_of(std::size_t cell, unsigned corner) const;
+    void bounce_light(const std::vector<std::unique_ptr<ProbeCapture>>& captures, int threads);
     void fill_solids();
     void find_sky(const RasterSceneData& data, const RasterSettings& settings,
                   const std::vector<std::unique_ptr<ProbeCapture>>& captures);

@@ -52,15 +52,6 @@ Arc arc(const Floats& angle, const Floats& cosine, const Floats& sine, const Flo
             cos_gamma * cube + sin_gamma * (Floats(2.0f / 3) - cosine + cosine * cosine * cosine * third)};
 }
 
-} // namespace
-
-/// Holds what occluders send at half the G-buffer's resolution, from the side that the viewer sees and the other.
-struct GtaoImage::OccluderLight {
-    const Planes3 &front, &back, &normals;
-};
-
-namespace {
-
 /// Holds the horizon on one side of each point, and the light of the surfaces that make it.
 struct Horizon {
     Floats cosine; ///< to the viewer
@@ -71,10 +62,10 @@ struct Horizon {
 /// Searches for horizons. A horizon is the greatest cosine to the viewer of the surfaces along a line from each point.
 class HorizonSearch {
 public:
-    /// `light` may be null.
-    HorizonSearch(const GBuffer& gbuffer, const GtaoImage::OccluderLight* light, const Vec3s& p, const Vec3s& n,
+    /// Without `occluders` (null), no light is searched for.
+    HorizonSearch(const GBuffer& gbuffer, const GtaoImage::Occluders* occluders, const Vec3s& p, const Vec3s& n,
                   const Vec3s& to_viewer, float radius)
-        : gbuffer_(gbuffer), light_(light), p_(p), n_(n), to_viewer_(to_viewer),
+        : gbuffer_(gbuffer), occluders_(occluders), p_(p), n_(n), to_viewer_(to_viewer),
           home_(gbuffer.projection.homogeneous(p)), radius_(radius), closest_(Floats(kClosest * kClosest) * dot(p, p)) {
         const Floats over_w = Floats(1.0f) / home_[3];
         x_ = home_[0] * over_w, y_ = home_[1] * over_w;
@@ -119,14 +110,14 @@ private:
         const Floats cosine = xsimd::select(counts, lerp(dot(to, to_viewer_) * over, lowest, fade), lowest);
         const Floats gain = max(cosine - horizon.cosine, none);
         horizon.cosine = max(horizon.cosine, cosine);
-        if (light_ == nullptr || !xsimd::any(gain > none)) return;
-        const Ints half = (truncated(clamp(y, none, bottom)) >> 1) * Ints(light_->front.x.stride()) +
+        if (occluders_ == nullptr || !xsimd::any(gain > none)) return;
+        const Ints half = (truncated(clamp(y, none, bottom)) >> 1) * Ints(occluders_->front.x.stride()) +
                           (truncated(clamp(x, none, right)) >> 1);
         const auto read = [&](const Planes3& planes) {
             return Vec3s{gather(planes.x.row(0), half), gather(planes.y.row(0), half), gather(planes.z.row(0), half)};
         };
-        const Mask faces = dot(read(light_->normals), to) < none; // the point
-        horizon.light += select(faces, read(light_->front), read(light_->back)) * gain;
+        const Mask faces = dot(read(occluders_->normals), to) < none; // the point
+        horizon.light += select(faces, read(occluders_->front), read(occluders_->back)) * gain;
         horizon.gain += gain;
     }
     /// Returns the distance in pixels to the image's edge in a unit direction.
@@ -136,7 +127,7 @@ private:
     }
 
     const GBuffer& gbuffer_;
-    const GtaoImage::OccluderLight* light_;
+    const GtaoImage::Occluders* occluders_;
     const Vec3s &p_, &n_, &to_viewer_;
     std::array<Floats, 4> home_;
     Floats x_, y_;
@@ -169,12 +160,12 @@ struct Line {
     Vec3s directions{Floats(0.0f), Floats(0.0f), Floats(0.0f)};
 };
 /// Searches along the line that `pattern` selects by its rotation about the view direction.
-Line search_line(const GBuffer& gbuffer, const GtaoImage::OccluderLight* light, const Vec3s& p, const Vec3s& normal,
+Line search_line(const GBuffer& gbuffer, const GtaoImage::Occluders* occluders, const Vec3s& p, const Vec3s& normal,
                  float radius, const Pattern& pattern) {
     const Floats one(1.0f), none(0.0f);
     const Vec3s v = gbuffer.projection.to_viewer(p);
     const Vec3s n = unit_of(normal + v * max(Floats(kLeastCosine) - dot(normal, v), none));
-    const HorizonSearch search(gbuffer, light, p, n, v, radius);
+    const HorizonSearch search(gbuffer, occluders, p, n, v, radius);
     const FrameT<Floats> frame = frame_from_normal(v);
     const auto [sine, cosine] = xsimd::sincos(pattern.turn * Floats(kPi));
     const Vec3s t = frame.s * cosine + frame.t * sine, across = cross(v, t);
@@ -197,7 +188,7 @@ Line search_line(const GBuffer& gbuffer, const GtaoImage::OccluderLight* light, 
         };
         const Floats part = max(less(open.all, seen.all), none);
         lost += part;
-        if (light != nullptr)
+        if (occluders != nullptr)
             hidden += horizon.light * (part / max(horizon.gain, Floats(1e-20f)));
         else
             hidden += v * less(open.along_v, seen.along_v) + t * (Floats(side) * less(open.along_t, seen.along_t));
@@ -210,9 +201,9 @@ Line search_line(const GBuffer& gbuffer, const GtaoImage::OccluderLight* light, 
 void GtaoImage::reset(int width, int height) {
     if (depth_.width() == width && depth_.height() == height) return;
     depth_ = PlaneFloat(width, height);
-    normal_ = Planes3(width, height);
     lines_ = column_sums_ = {PlaneFloat(width, height), PlaneFloat(width, height), Planes3(width, height)};
-    front_ = back_ = irradiance_ = Planes3(width, height);
+    occluders_ = {Planes3(width, height), Planes3(width, height), Planes3(width, height)};
+    irradiance_ = Planes3(width, height);
     smooth_.visible = PlaneFloat(width, height), smooth_.hidden = Planes3(width, height);
 }
 
@@ -225,23 +216,19 @@ void GtaoImage::start(const GBuffer& gbuffer, int threads) {
             for (int x = 0; x < to.width(); ++x) to(x, y) = from(2 * x, 2 * y);
         };
         halved(gbuffer.reversed_depth, depth_);
-        halved(gbuffer.normal.x, normal_.x), halved(gbuffer.normal.y, normal_.y), halved(gbuffer.normal.z, normal_.z);
+        Planes3& normals = occluders_.normals;
+        halved(gbuffer.normal.x, normals.x), halved(gbuffer.normal.y, normals.y), halved(gbuffer.normal.z, normals.z);
     });
 }
 
-void GtaoImage::search(float radius, const OccluderLight* light, int threads) {
+void GtaoImage::search(float radius, const Occluders* occluders, int threads) {
     const auto for_each_row = [&](const auto& use) {
         parallel_for(static_cast<std::size_t>(depth_.height()), threads,
                      [&](std::size_t y) { use(static_cast<int>(y)); });
     };
-    for_each_row([&](int y) { search_row(y, radius, light); });
+    for_each_row([&](int y) { search_row(y, radius, occluders); });
     for_each_row([&](int y) { sum_columns(y); });
     for_each_row([&](int y) { finish_row(y); });
-}
-
-void GtaoImage::search_light(float radius, int threads) {
-    const OccluderLight light{front_, back_, normal_};
-    search(radius, &light, threads);
 }
 
 /// Returns the points of a batch of half-resolution pixels, relative to the eye.
@@ -257,17 +244,18 @@ void GtaoImage::set_light(int x, int y, Rgb direct) {
     const Rgb albedo = gbuffer_->diffuse.color_at(2 * x, 2 * y);
     const Rgb reflected = irradiance_.color_at(x, y) * albedo * (kInvPi * kOccluderVisibility);
     const bool sends = depth_(x, y) > 0 && !is_black(albedo); // other pixels may hold any number
-    front_.set_at(x, y, sends ? direct + reflected : Rgb());
-    back_.set_at(x, y, sends ? reflected : Rgb());
+    occluders_.front.set_at(x, y, sends ? direct + reflected : Rgb());
+    occluders_.back.set_at(x, y, sends ? reflected : Rgb());
 }
 
-void GtaoImage::search_row(int y, float radius, const OccluderLight* light) {
+void GtaoImage::search_row(int y, float radius, const Occluders* occluders) {
     for (int x = 0; x < depth_.width(); x += static_cast<int>(Floats::size)) {
         const Floats depth = load(depth_, x, y);
         const Mask seen = depth > Floats(0.0f);
         Line found;
         if (radius > 0 && xsimd::any(seen)) {
-            found = search_line(*gbuffer_, light, point(x, y, depth), normal_.vector(x, y), radius, pattern_of(x, y));
+            found = search_line(*gbuffer_, occluders, point(x, y, depth), occluders_.normals.vector(x, y), radius,
+                                pattern_of(x, y));
         }
         // Lanes without a surface may hold any number. They are set to 0 here, so that neighbors may read them with
         // weight 0.
@@ -289,7 +277,7 @@ void GtaoImage::sum_neighbors(const Lines& from, int y, int step_x, int step_y, 
     for (int x = 0; x < depth_.width(); x += static_cast<int>(Floats::size)) {
         const Floats depth = load(depth_, x, y);
         if (!xsimd::any(depth > Floats(0.0f))) continue;
-        const Vec3s p = point(x, y, depth), n = normal_.vector(x, y);
+        const Vec3s p = point(x, y, depth), n = occluders_.normals.vector(x, y);
         const Floats tolerance =
             Floats(kPlaneTolerance) * projection.pixel_size(Floats(projection.near()) / max(depth, Floats(1e-30f)));
         Floats all(0.0f), lost(0.0f);
@@ -297,7 +285,8 @@ void GtaoImage::sum_neighbors(const Lines& from, int y, int step_x, int step_y, 
         for (int i = 1 - kBlock; i < kBlock; ++i) {
             const int at_x = x + i * step_x, at_y = y + i * step_y;
             const Floats other = load_at(depth_, at_x, at_y);
-            const Floats alike = likeness(p, n, tolerance, point(at_x, at_y, other), load_at(normal_, at_x, at_y));
+            const Vec3s m = load_at(occluders_.normals, at_x, at_y);
+            const Floats alike = likeness(p, n, tolerance, point(at_x, at_y, other), m);
             const Floats share(static_cast<float>(kBlock - std::abs(i)) / kBlock);
             const Floats weight = xsimd::select(other > Floats(0.0f), alike * share, Floats(0.0f));
             all += weight * load_at(from.all, at_x, at_y);
@@ -341,7 +330,7 @@ GtaoImage::Upsampled GtaoImage::upsampled(int x, int y) const {
             const Floats other = read(depth_);
             const Vec3s q = projection.point(xsimd::batch_cast<float>(half) * Floats(2.0f),
                                              Floats(static_cast<float>(2 * row)), max(other, Floats(1e-30f)));
-            const Vec3s m{read(normal_.x), read(normal_.y), read(normal_.z)};
+            const Vec3s m{read(occluders_.normals.x), read(occluders_.normals.y), read(occluders_.normals.z)};
             const Floats alike = max(likeness(p, n, tolerance, q, m), Floats(1e-4f));
             const Floats weight = xsimd::select(other > Floats(0.0f), alike, Floats(0.0f));
             sum += weight;

@@ -45,14 +45,18 @@ public:
     }
 
     std::size_t memory_bytes() const {
-        return depth_.memory_bytes() + normal_.memory_bytes() + lines_.memory_bytes() + column_sums_.memory_bytes() +
+        return depth_.memory_bytes() + lines_.memory_bytes() + column_sums_.memory_bytes() +
                smooth_.visible.memory_bytes() + smooth_.hidden.memory_bytes() + irradiance_.memory_bytes() +
-               front_.memory_bytes() + back_.memory_bytes();
+               occluders_.normals.memory_bytes() + occluders_.front.memory_bytes() + occluders_.back.memory_bytes();
     }
 
     static constexpr int kSteps = 10; ///< depth samples on each side of a pixel
 
-    struct OccluderLight;
+    /// Holds surfaces at half the G-buffer's resolution, from every second pixel of every second row: their normals,
+    /// and the radiance that they send as occluders, from the side that the viewer sees and from the other.
+    struct Occluders {
+        Planes3 normals, front, back;
+    };
 
 private:
     struct Planes {
@@ -77,9 +81,8 @@ private:
     };
     Upsampled upsampled(int x, int y) const;
     void set_light(int x, int y, Rgb direct);
-    void search(float radius, const OccluderLight* light, int threads);
-    void search_row(int y, float radius, const OccluderLight* light);
-    void search_light(float radius, int threads);
+    void search(float radius, const Occluders* occluders, int threads);
+    void search_row(int y, float radius, const Occluders* occluders);
     template <typename Use> void sum_neighbors(const Lines& from, int y, int step_x, int step_y, const Use& use) const;
     void sum_columns(int y);
     void finish_row(int y);
@@ -88,12 +91,11 @@ private:
 
     const GBuffer* gbuffer_ = nullptr;
     PlaneFloat depth_;      ///< reversed depth of every second pixel of every second row
-    Planes3 normal_;        ///< normals of the same pixels
+    Occluders occluders_;   ///< surfaces of the same pixels
     Lines lines_;           ///< search results of single pixels
     Lines column_sums_;     ///< sums along columns
     Planes smooth_;         ///< averaged over neighbors
     Planes3 irradiance_;    ///< of the same pixels, without occluders
-    Planes3 front_, back_;  ///< radiance that they send as occluders, from the side that is seen and the other
 };
 
 template <typename Irradiance> void GtaoImage::set_irradiance(int threads, const Irradiance& irradiance) {
@@ -101,7 +103,7 @@ template <typename Irradiance> void GtaoImage::set_irradiance(int threads, const
         const Floats depth = load(depth_, x, y);
         const auto seen = depth > Floats(0.0f);
         if (!xsimd::any(seen)) return;
-        const RgbT<Floats> e = irradiance(point(x, y, depth), normal_.vector(x, y), seen);
+        const RgbT<Floats> e = irradiance(point(x, y, depth), occluders_.normals.vector(x, y), seen);
         irradiance_.set(x, y, blend(seen, e, RgbT<Floats>(Floats(0.0f))));
     });
 }
@@ -111,7 +113,7 @@ template <typename Direct> void GtaoImage::find_light(float radius, int threads,
         const int y = static_cast<int>(row);
         for (int x = 0; x < depth_.width(); ++x) set_light(x, y, direct(2 * x, 2 * y));
     });
-    search_light(radius, threads);
+    search(radius, &occluders_, threads);
 }
 
 } // namespace duet::raster

@@ -89,8 +89,7 @@ SharpShadowMap::Plane SharpShadowMap::plane(const Floats& x, const Floats& y, co
             dot_constant(n, flat ? origin_dy_ : direction_dy_) * slope,
             Floats(kRounding) * depth * per_depth / towards,
             t / (cosine - t * sine) * unit, falling / (cosine - falling * sine) * unit,
-            Floats(kSteepest) / (cosine + Floats(kSteepest) * sine) * unit,
-            Floats(kRoof * kSteepest) / (cosine + Floats(kSteepest) * sine) * unit};
+            Floats(kSteepest) / (cosine + Floats(kSteepest) * sine) * unit};
 }
 
 SharpShadowMap::Texels SharpShadowMap::texels(const Vec3T<Floats>& p, Mask& inside) const {
@@ -148,6 +147,7 @@ Floats SharpShadowMap::visibility(const Vec3T<Floats>& p, const Vec3T<Floats>& n
             const Floats seen = map_.orthographic() ? Floats(-near_) / max(stored, Floats(1e-25f)) : stored;
             height[j][i] = seen - (plane.at + plane.dx * off(x0, i, x) + plane.dy * off(y0, j, y));
         }
+    const Floats roof_height = plane.steepest * Floats(kRoof);
     const Mask may_be_roof(!dithered); // a dithered map has several surfaces in turn
     Floats dark(0.0f), known(0.0f);
     for (std::size_t j = 0; j < taps; ++j) {
@@ -159,7 +159,7 @@ Floats SharpShadowMap::visibility(const Vec3T<Floats>& p, const Vec3T<Floats>& n
             const std::size_t a = i < 2 ? 0 : 2, b = j < 2 ? 0 : 2;
             const Floats continued =
                 here - (height[j][a + 1] - height[j][a]) * off_x - (height[b + 1][i] - height[b][i]) * off_y;
-            const Mask roof = may_be_roof & (here > plane.rounding) & (continued > plane.rounding + plane.roof);
+            const Mask roof = may_be_roof & (here > plane.rounding) & (continued > plane.rounding + roof_height);
             const Floats distance = xsimd::sqrt(off_x * off_x + off_y * off_y);
             const Mask shades = (here > plane.rounding + plane.rising * distance) | roof;
             row_dark += xsimd::select(shades, across[i], zero);

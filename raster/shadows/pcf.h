@@ -29,7 +29,6 @@ private:
     struct Plane {
         Floats at, dx, dy, rounding;
         Floats rising, falling, steepest; ///< tolerances per texel of distance
-        Floats roof;                      ///< least height of a roof that is continued to the point
     };
     Plane plane(const Floats& x, const Floats& y, const Floats& depth, const Vec3T<Floats>& n) const;
 

@@ -2,6 +2,7 @@
 #include "tests/raster/path_traced.h"
 #include "tests/raster/scenes.h"
 #include "tests/raster/varied_scene.h"
+#include "tests/raytrace/estimates.h"
 
 #include "raster/probes/irradiance_probes.h"
 #include "raster/probes/radiance_map.h"
@@ -168,12 +169,8 @@ TEST_SUITE("unit") {
         scene.camera = look({1.5, 1.5, 1.5}, {-1, 1, -1}, 60);
         finish_scene(scene);
         const View view{scene.camera, 40, 30};
-        const auto mean = [](const ImageRgb& image) {
-            double sum = 0;
-            for (const Rgb c : image) sum += static_cast<double>(c.g) / static_cast<double>(image.size());
-            return sum;
-        };
-        const double truth = mean(path_traced(scene, view, 256)), found = mean(render(scene, view, {}).radiance);
+        const double truth = raytrace::mean_of(path_traced(scene, view, 256)).g,
+                     found = raytrace::mean_of(render(scene, view, {}).radiance).g;
         CHECK(found == doctest::Approx(truth).epsilon(0.04)); // measured: 0.986 of it
     }
 
