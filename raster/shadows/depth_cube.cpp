@@ -34,11 +34,11 @@ Vec3T<Floats> DepthCube::surface(const Vec3T<Floats>& w, Floats& texel) const {
     const Floats axis = pick(w.x, w.y, w.z), sign = xsimd::select(axis < zero, -one, one);
     const Floats scale = Floats(scale_) / max(axis * sign, Floats(1e-30f)), middle(middle_);
     const Floats last(static_cast<float>(side_ - 1));
-    const Floats x = xsimd::floor(clamp(middle + pick(w.z, w.x, w.y) * sign * scale, zero, last)),
-                 y = xsimd::floor(clamp(middle - pick(w.y, w.z, w.x) * scale, zero, last));
-    const Ints face = truncated(pick(zero, Floats(2.0f), Floats(4.0f)) + xsimd::select(axis < zero, one, zero));
-    const Ints index = (face * Ints(side_) + truncated(y)) * Ints(side_) + truncated(x);
-    const Floats depth = gather(depths_.data(), index);
+    const Ints column = truncated(clamp(middle + pick(w.z, w.x, w.y) * sign * scale, zero, last)),
+               row = truncated(clamp(middle - pick(w.y, w.z, w.x) * scale, zero, last)),
+               face = truncated(pick(zero, Floats(2.0f), Floats(4.0f)) + xsimd::select(axis < zero, one, zero));
+    const Floats depth = gather(depths_.data(), (face * Ints(side_) + row) * Ints(side_) + column);
+    const Floats x = xsimd::to_float(column), y = xsimd::to_float(row);
     const Floats per_texel = depth * Floats(1 / scale_);
     texel = per_texel;
     const Floats right = (x + half - middle) * per_texel * sign, up = (middle - y - half) * per_texel,

@@ -1,7 +1,9 @@
 #include "raster/shadows/pcss.h"
 
 #include "common/sampling/sobol.h"
+#include "raster/geometry/sample_positions.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace duet::raster {
@@ -10,7 +12,6 @@ namespace {
 using Mask = Floats::batch_bool_type;
 using Vec3s = Vec3T<Floats>;
 
-constexpr int kPatterns = 16;
 /// A blocker must rise above the receiver's plane by this fraction of its distance from the receiver. Facets of a
 /// concave surface that meet at up to 6 degrees thus do not shade each other.
 constexpr float kLeastRise = 0.1f;
@@ -18,31 +19,50 @@ constexpr float kLeastRise = 0.1f;
 constexpr float kRounding = 0x1p-18f;
 constexpr float kMargin = 0.02f; ///< a line may miss the light by this fraction of its edge
 
-/// Holds tap positions by pattern and tap, kPatterns × count in a (0,2)-net: (a, b) on the unit square, and the same
-/// points mapped to the unit disk.
+constexpr int kBlock = 4; ///< side of the blocks of pixels that have different taps
+using PerLane = std::array<float, Floats::size>;
+
+/// Holds one tap of each pixel in a row: a point (a, b) on the unit square, the same point mapped to the unit disk, and
+/// the fraction of the line to the light at which a blocker is searched.
+struct alignas(64) Tap {
+    PerLane a, b, disk_x, disk_y, fraction;
+};
+
+/// Holds kTaps taps for each row of a block. All points of a block are a (0,2)-net.
 template <int kTaps> struct Taps {
-    std::array<std::array<float, kPatterns>, kTaps> a, b, disk_x, disk_y, fraction;
+    std::array<std::array<Tap, kTaps>, kBlock> rows;
 
     Taps() {
-        constexpr int kAll = kPatterns * kTaps;
-        for (int pattern = 0; pattern < kPatterns; ++pattern)
-            for (int tap = 0; tap < kTaps; ++tap) {
-                const auto k = static_cast<std::size_t>(tap), i = static_cast<std::size_t>(pattern);
-                const auto index = static_cast<std::uint32_t>(tap * kPatterns + pattern);
-                const Vec2 u = sobol_net_point(index, kAll);
-                a[k][i] = u.x, b[k][i] = u.y;
-                const float radius = std::sqrt(u.x), angle = 2 * kPi * u.y;
-                disk_x[k][i] = radius * std::cos(angle), disk_y[k][i] = radius * std::sin(angle);
-                // Offsets from the center's direction grow quadratically, so that contacts near the receiver are found,
-                // too.
-                const float s = (static_cast<float>(tap) + (static_cast<float>(pattern * 7 % kPatterns) + 0.5f) /
-                                                               kPatterns) / kTaps;
-                fraction[k][i] = s * s;
-            }
+        constexpr int kPixels = kBlock * kBlock;
+        for (int y = 0; y < kBlock; ++y)
+            for (int k = 0; k < kTaps; ++k)
+                for (std::size_t lane = 0; lane < Floats::size; ++lane) {
+                    const int rank = static_cast<int>(dither_rank(static_cast<int>(lane), y));
+                    const Vec2 u = sobol_net_point(static_cast<std::uint32_t>(k * kPixels + rank), kTaps * kPixels);
+                    const float radius = std::sqrt(u.x), angle = 2 * kPi * u.y;
+                    // Searched fractions grow quadratically, so that blockers near the receiver are found, too.
+                    const float stratum = (static_cast<float>(rank * 7 % kPixels) + 0.5f) / kPixels,
+                                s = (static_cast<float>(k) + stratum) / kTaps;
+                    Tap& tap = rows[static_cast<std::size_t>(y)][static_cast<std::size_t>(k)];
+                    tap.a[lane] = u.x, tap.b[lane] = u.y, tap.fraction[lane] = s * s;
+                    tap.disk_x[lane] = radius * std::cos(angle), tap.disk_y[lane] = radius * std::sin(angle);
+                }
     }
+    const std::array<Tap, kTaps>& row(int y) const { return rows[static_cast<std::size_t>(y % kBlock)]; }
 };
 const Taps<SoftShadowMap::kSearchTaps> kSearch;
 const Taps<SoftShadowMap::kFilterTaps> kFilter;
+
+Floats load(const PerLane& lanes) { return Floats::load_aligned(lanes.data()); }
+
+/// Returns in each lane the sum over the lanes of its block of pixels.
+Floats sum_in_block(const Floats& x) {
+    alignas(64) PerLane lanes;
+    x.store_aligned(lanes.data());
+    for (auto group = lanes.begin(); group != lanes.end(); group += kBlock)
+        std::fill_n(group, kBlock, (group[0] + group[1]) + (group[2] + group[3]));
+    return Floats::load_aligned(lanes.data());
+}
 
 } // namespace
 
@@ -59,6 +79,7 @@ struct SoftShadowMap::Receiver {
     Vec3s p, n;
     Floats per_height; ///< 1 / the height of p above the light's plane, along −axis
     Floats slack;
+    Floats from_a, from_b; ///< coordinates of p over the light
 
     /// Returns the fraction of the line from p to the light's plane at which the surface seen in direction q blocks the
     /// light. The fraction is negated in lanes where the surface lies in between but the line misses the light. It is 0
@@ -68,27 +89,26 @@ struct SoftShadowMap::Receiver {
         const Vec3s to = cube.surface(q, texel) - p;
         const Floats f = dot(to, light.axis) * per_height;
         const Floats rise = dot(to, n), distance2 = dot(to, to);
-        const Floats scale = Floats(1.0f) / max(f, Floats(1e-6f));
-        const Vec3s hit = p + to * scale - light.corner; // intersection of the line with the light's plane
-        const Floats a = dot(hit, light.dual_u), b = dot(hit, light.dual_v);
-        // The texel that contains direction q has its center up to this far from q, projected onto the light.
-        const Floats reach = texel * scale * Floats(0.7f);
-        const Floats margin_a = multiply_add(reach, light.per_u, Floats(kMargin)),
-                     margin_b = multiply_add(reach, light.per_v, Floats(kMargin)), one(1.0f);
-        const Mask inside = (a > -margin_a) & (b > -margin_b) & (a < one + margin_a) & (b < one + margin_b);
-        const Mask meets = light.shape == Emitter::Kind::kSphere ? a * a + b * b <= (one + margin_a) * (one + margin_a)
-            : light.shape == Emitter::Kind::kTriangle            ? inside & (a + b < one + margin_a + margin_b)
+        // The line meets the light's plane at coordinates a / f and b / f.
+        const Floats a = multiply_add(from_a, f, dot(to, light.dual_u)),
+                     b = multiply_add(from_b, f, dot(to, light.dual_v));
+        // The texel that contains direction q has its center up to this far from q; 1 / f projects it onto the light.
+        const Floats reach = texel * Floats(0.7f), margin = f * Floats(kMargin);
+        const Floats margin_a = multiply_add(reach, light.per_u, margin),
+                     margin_b = multiply_add(reach, light.per_v, margin);
+        const Mask inside = (a > -margin_a) & (b > -margin_b) & (a < f + margin_a) & (b < f + margin_b);
+        const Mask meets = light.shape == Emitter::Kind::kSphere ? a * a + b * b <= (f + margin_a) * (f + margin_a)
+            : light.shape == Emitter::Kind::kTriangle            ? inside & (a + b < f + margin_a + margin_b)
                                                                  : inside;
         const Mask between = (f > Floats(1e-5f)) & (f < Floats(0.9999f)) & (rise > slack) &
                              (rise * rise > Floats(kLeastRise * kLeastRise) * distance2);
         return xsimd::select(between, xsimd::select(meets, f, -f), Floats(0.0f));
     }
     /// Returns the position of a tap on the light.
-    template <int kTaps> Vec3s on_light(const Taps<kTaps>& taps, std::size_t tap, const Ints& pattern) const {
+    Vec3s on_light(const Tap& tap) const {
         if (light.shape == Emitter::Kind::kSphere)
-            return light.u * gather(taps.disk_x[tap].data(), pattern) +
-                   light.v * gather(taps.disk_y[tap].data(), pattern);
-        const Floats a = gather(taps.a[tap].data(), pattern), b = gather(taps.b[tap].data(), pattern);
+            return light.u * load(tap.disk_x) + light.v * load(tap.disk_y);
+        const Floats a = load(tap.a), b = load(tap.b);
         if (light.shape == Emitter::Kind::kTriangle) { // fold the other half of the parallelogram onto it
             const Mask beyond = a + b > Floats(1.0f);
             return light.corner + light.u * xsimd::select(beyond, Floats(1.0f) - a, a) +
@@ -154,31 +174,34 @@ Floats SoftShadowMap::visibility(const Vec3d& eye, const Vec3s& p) const {
     });
 }
 
-Floats SoftShadowMap::visibility(const Vec3d& eye, const Vec3s& p, const Vec3s& n, const Ints& pattern) const {
+Floats SoftShadowMap::visibility(const Vec3d& eye, const Vec3s& p, const Vec3s& n, int y) const {
     const Vec3s own = local(p + broadcast<Floats>(Vec3(eye - cube_.center))), normal = local(n);
-    return combined(own, [&](const DepthCube& cube) { return filtered(cube, own, normal, pattern); });
+    return combined(own, [&](const DepthCube& cube) { return filtered(cube, own, normal, y); });
 }
 
 /// Returns the visible fraction by one cube, for points and normals in its frame.
-Floats SoftShadowMap::filtered(const DepthCube& cube, const Vec3s& own, const Vec3s& n, const Ints& pattern) const {
+Floats SoftShadowMap::filtered(const DepthCube& cube, const Vec3s& own, const Vec3s& n, int y) const {
     const Outline light = outline_from(own);
     const Floats height = max(-dot(own, light.axis), Floats(1e-20f));
-    const Receiver receiver{cube, light, own, n, Floats(1.0f) / height, height * Floats(kRounding)};
+    const Vec3s from = own - light.corner;
+    const Receiver receiver{cube, light, own, n, Floats(1.0f) / height, height * Floats(kRounding),
+                            dot(from, light.dual_u), dot(from, light.dual_v)};
 
     Floats sum(0.0f), count(0.0f);
-    for (std::size_t i = 0; i < kSearchTaps; ++i) {
-        const Floats f = gather(kSearch.fraction[i].data(), pattern);
-        const Vec3s l = receiver.on_light(kSearch, i, pattern);
-        const Floats found = receiver.blocker(own * (Floats(1.0f) - f) + l * f);
+    for (const Tap& tap : kSearch.row(y)) {
+        const Floats f = load(tap.fraction);
+        const Floats found = receiver.blocker(own * (Floats(1.0f) - f) + receiver.on_light(tap) * f);
         sum += max(found, Floats(0.0f));
         count += xsimd::select(found > Floats(0.0f), Floats(1.0f), Floats(0.0f));
     }
+    if (!xsimd::any(count > Floats(0.0f))) return Floats(1.0f);
+    // Four neighbors in a row share what they found, because a thin blocker may escape the few taps of one of them.
+    sum = sum_in_block(sum), count = sum_in_block(count);
     const Mask any = count > Floats(0.0f);
-    if (!xsimd::any(any)) return Floats(1.0f);
     const Floats f = sum / max(count, Floats(1.0f));
     Floats dark(0.0f);
-    for (std::size_t i = 0; i < kFilterTaps; ++i) {
-        const Vec3s l = receiver.on_light(kFilter, i, pattern);
+    for (const Tap& tap : kFilter.row(y)) {
+        const Vec3s l = receiver.on_light(tap);
         const auto found_at = [&](const Floats& at) { return receiver.blocker(own * (Floats(1.0f) - at) + l * at); };
         Floats found = found_at(f);
         // If the line misses a blocker beside it at another depth, it is tested at that depth, too.

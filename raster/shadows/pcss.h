@@ -18,15 +18,15 @@ class SoftShadowMap {
 public:
     SoftShadowMap(const CellMaps& maps, const Emitter& emitter);
 
-    /// Returns the visible fraction of the light at points relative to the eye at `eye`, with unit normals. `pattern`
-    /// in [0, 16) selects the taps of each lane; the taps of all sixteen patterns together cover the light evenly.
-    Floats visibility(const Vec3d& eye, const Vec3T<Floats>& p, const Vec3T<Floats>& n, const Ints& pattern) const;
+    /// Returns the visible fraction of the light at points relative to the eye at `eye`, with unit normals. The batch
+    /// starts at a multiple of 4 pixels in row y: the taps of a block of 4 × 4 pixels together cover the light evenly.
+    Floats visibility(const Vec3d& eye, const Vec3T<Floats>& p, const Vec3T<Floats>& n, int y) const;
 
     /// Returns 1 where points see the light's center, else 0. If casters surround the light closely, it returns the
     /// visible fraction past them.
     Floats visibility(const Vec3d& eye, const Vec3T<Floats>& p) const;
 
-    static constexpr int kSearchTaps = 8, kFilterTaps = 8;
+    static constexpr int kSearchTaps = 4, kFilterTaps = 4;
 
 private:
     struct Receiver;
@@ -35,7 +35,7 @@ private:
 
     Outline outline_from(const Vec3T<Floats>& p) const;
     Vec3T<Floats> local(const Vec3T<Floats>& w) const;
-    Floats filtered(const DepthCube& cube, const Vec3T<Floats>& p, const Vec3T<Floats>& n, const Ints& pattern) const;
+    Floats filtered(const DepthCube& cube, const Vec3T<Floats>& p, const Vec3T<Floats>& n, int y) const;
     template <typename Lookup> Floats combined(const Vec3T<Floats>& p, const Lookup& lookup) const;
 
     DepthCube cube_;

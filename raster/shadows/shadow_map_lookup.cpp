@@ -5,13 +5,6 @@ namespace {
 
 using Mask = Floats::batch_bool_type;
 
-Ints patterns(int x, int y) {
-    alignas(64) std::array<std::int32_t, Ints::size> result;
-    for (std::size_t i = 0; i < result.size(); ++i)
-        result[i] = static_cast<std::int32_t>(dither_rank(x + static_cast<int>(i), y));
-    return Ints::load_aligned(result.data());
-}
-
 } // namespace
 
 SoftShadowMaps::SoftShadowMaps(const Shadows& shadows) {
@@ -82,11 +75,10 @@ Floats MapShadows::visibility(std::size_t source, const Vec3T<Floats>& point, co
     const auto [p, n] = to_moment_.empty() ? receivers : at_moment(receivers, x, y);
     const std::span<const SoftShadowMap> cells = soft_.of(source, moment_);
     if (cells.empty()) return sharp_visibility(sources_[source], p, n);
-    const Ints pattern = patterns(x, y);
     // Up to four cells alternate between the rows of a block, so a batch samples one cell only.
-    if (cells.size() <= 4) return cells[static_cast<std::size_t>(y) % cells.size()].visibility(eye_, p, n, pattern);
+    if (cells.size() <= 4) return cells[static_cast<std::size_t>(y) % cells.size()].visibility(eye_, p, n, y);
     Floats sum(0.0f);
-    for (const SoftShadowMap& cell : cells) sum += cell.visibility(eye_, p, n, pattern);
+    for (const SoftShadowMap& cell : cells) sum += cell.visibility(eye_, p, n, y);
     return sum * Floats(1 / static_cast<float>(cells.size()));
 }
 
