@@ -1,7 +1,8 @@
 #include "raster/lighting/background.h"
 
-#include <algorithm>
-#include <bit>
+#include "raster/geometry/lane_math.h"
+
+#include <variant>
 
 namespace duet::raster {
 
@@ -13,26 +14,59 @@ bool is_dark(const RasterSceneData& data, const RasterSettings& settings) {
     return data.scene.lights.empty() && !shows_environment(data, settings) && !data.any_emits;
 }
 
+namespace {
+
+// The following functions are radiance() of common/light/environment.h for one direction per lane, in float.
+
+RgbT<Floats> radiance(const ConstantEnvironment& e, const Vec3T<Floats>&) { return broadcast<Floats>(e.radiance); }
+
+RgbT<Floats> radiance(const SkyEnvironment& e, const Vec3T<Floats>& w) {
+    return lerp(broadcast<Floats>(e.down), broadcast<Floats>(e.up), Floats(0.5f) * (w.y + Floats(1.0f)));
+}
+
+RgbT<Floats> radiance(const ImageEnvironment& e, const Vec3T<Floats>& w) {
+    const Floats half(0.5f), one(1.0f), zero(0.0f);
+    const Floats width(static_cast<float>(e.image.width())), rows(static_cast<float>(e.image.height()));
+    const Floats turn = xsimd::atan2(w.x, -w.z) * Floats(kInvPi / 2) + Floats(0.5f + e.rotation * (kInvPi / 2));
+    const Floats latitude = xsimd::atan2(w.y, xsimd::sqrt(w.x * w.x + w.z * w.z)) * Floats(kInvPi);
+    const Floats x = (turn - xsimd::floor(turn)) * width - half, y = (half - latitude) * rows - half;
+    const Floats left = xsimd::floor(x), top = xsimd::floor(y);
+    // The lookup wraps around in longitude and is clamped in latitude.
+    const Floats column = xsimd::select(left < zero, width - one, left),
+                 next = xsimd::select(left + one < width, left + one, zero);
+    const Floats row = clamp(top, zero, rows - one), below = clamp(top + one, zero, rows - one);
+    const auto texel = [&](const Floats& i, const Floats& j) {
+        const Ints at = (truncated(j) * Ints(e.image.width()) + truncated(i)) * Ints(3);
+        const float* colors = &e.image.pixels().data()->r;
+        return RgbT<Floats>{gather(colors, at), gather(colors + 1, at), gather(colors + 2, at)};
+    };
+    const auto in_row = [&](const Floats& j) { return lerp(texel(column, j), texel(next, j), Floats(x - left)); };
+    return lerp(in_row(row), in_row(below), Floats(y - top)) * Floats(e.scale);
+}
+
+} // namespace
+
 void draw_background(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
-                     Planes3& radiance) {
+                     Planes3& radiance_image) {
     if (settings.shading != Shading::kLit || !settings.components.emission || !shows_environment(data, settings))
         return;
-    const auto* constant = std::get_if<ConstantEnvironment>(&data.scene.environment);
-    for_each_batch(gbuffer.width(), gbuffer.height(), settings.threads, [&](int x, int y) {
-        std::uint32_t open = ~lane_bits(gbuffer.visible(x, y)) & ((1u << Floats::size) - 1);
-        for (; open != 0; open &= open - 1) {
-            const int column = x + std::countr_zero(open);
-            if (column >= gbuffer.width()) break;
-            const auto direction = [&] {
-                if (!gbuffer.position.empty()) return normalize(gbuffer.position.vector_at(column, y));
-                return -gbuffer.projection.to_viewer(gbuffer.projection.point(
-                    static_cast<float>(column), static_cast<float>(y), gbuffer.projection.near()));
-            };
-            radiance.set_at(column, y,
-                            constant != nullptr ? constant->radiance
-                                                : duet::radiance(data.scene.environment, direction()));
+    const ScreenProjection& projection = gbuffer.projection;
+    const auto directions = [&](int x, int y) {
+        if (!gbuffer.position.empty()) {
+            const Vec3T<Floats> d = gbuffer.position.vector(x, y);
+            return d * inverse_sqrt(dot(d, d));
         }
-    });
+        return -projection.to_viewer(projection.point(Floats(static_cast<float>(x)) + load(kLanesAsFloats, 0),
+                                                      Floats(static_cast<float>(y)), Floats(projection.near())));
+    };
+    std::visit([&](const auto& environment) {
+        for_each_batch(gbuffer.width(), gbuffer.height(), settings.threads, [&](int x, int y) {
+            const xsimd::batch_bool<float> visible = gbuffer.visible(x, y);
+            if (xsimd::all(visible)) return;
+            const RgbT<Floats> arriving = radiance(environment, directions(x, y));
+            radiance_image.set(x, y, blend(visible, radiance_image.color(x, y), arriving));
+        });
+    }, data.scene.environment);
 }
 
 } // namespace duet::raster

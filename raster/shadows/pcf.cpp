@@ -141,12 +141,15 @@ Floats SharpShadowMap::visibility(const Vec3T<Floats>& p, const Vec3T<Floats>& n
                        truncated(xsimd::select(inside, x0, zero));
     const float* texels = map_.reversed_depth().pixels().data();
     std::array<std::array<Floats, kTaps>, kTaps> height; // of the texels' surfaces above the receiver's plane
+    Mask any_above = zero > zero;
     for (std::size_t j = 0; j < taps; ++j)
         for (std::size_t i = 0; i < taps; ++i) {
             const Floats stored = gather(texels + static_cast<int>(j) * map_.side() + i, first);
             const Floats seen = map_.orthographic() ? Floats(-near_) / max(stored, Floats(1e-25f)) : stored;
             height[j][i] = seen - (plane.at + plane.dx * off(x0, i, x) + plane.dy * off(y0, j, y));
+            any_above = any_above | (height[j][i] > plane.rounding);
         }
+    if (!xsimd::any(inside & any_above)) return Floats(1.0f); // only a surface above the plane may shade
     const Floats roof_height = plane.steepest * Floats(kRoof);
     const Mask may_be_roof(!dithered); // a dithered map has several surfaces in turn
     Floats dark(0.0f), known(0.0f);
