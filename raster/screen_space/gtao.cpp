@@ -63,9 +63,9 @@ struct Horizon {
 class HorizonSearch {
 public:
     /// Without `occluders` (null), no light is searched for.
-    HorizonSearch(const GBuffer& gbuffer, const GtaoImage::Occluders* occluders, const Vec3s& p, const Vec3s& n,
-                  const Vec3s& to_viewer, float radius)
-        : gbuffer_(gbuffer), occluders_(occluders), p_(p), n_(n), to_viewer_(to_viewer),
+    HorizonSearch(const GBuffer& gbuffer, const PlaneFloat& depth, const GtaoImage::Occluders* occluders, const Vec3s& p,
+                  const Vec3s& n, const Vec3s& to_viewer, float radius)
+        : gbuffer_(gbuffer), depth_(depth), occluders_(occluders), p_(p), n_(n), to_viewer_(to_viewer),
           home_(gbuffer.projection.homogeneous(p)), radius_(radius), closest_(Floats(kClosest * kClosest) * dot(p, p)) {
         const Floats over_w = Floats(1.0f) / home_[3];
         x_ = home_[0] * over_w, y_ = home_[1] * over_w;
@@ -86,8 +86,8 @@ public:
         for (int i = 0; i < GtaoImage::kSteps; ++i) {
             const Floats s = (Floats(static_cast<float>(i)) + jitter) * Floats(1.0f / GtaoImage::kSteps);
             const Floats reach = Floats(1.0f) + s * s * pixels; // denser near the point, where occluders block most
-            raise(result, xsimd::floor(x_ + step_x * reach + Floats(0.5f)),
-                  xsimd::floor(y_ + step_y * reach + Floats(0.5f)), lowest);
+            raise(result, xsimd::floor((x_ + step_x * reach) * Floats(0.5f) + Floats(0.5f)),
+                  xsimd::floor((y_ + step_y * reach) * Floats(0.5f) + Floats(0.5f)), lowest);
         }
         return result;
     }
@@ -95,13 +95,12 @@ public:
 private:
     /// Raises the horizon to the surface at a pixel if that counts as an occluder.
     void raise(Horizon& horizon, const Floats& x, const Floats& y, const Floats& lowest) const {
-        const Floats none(0.0f), right(static_cast<float>(gbuffer_.width() - 1)),
-            bottom(static_cast<float>(gbuffer_.height() - 1));
+        const Floats none(0.0f), two(2.0f), right(static_cast<float>(depth_.width() - 1)),
+            bottom(static_cast<float>(depth_.height() - 1));
         const Mask inside = (x >= none) & (y >= none) & (x <= right) & (y <= bottom);
-        const Ints index = truncated(clamp(y, none, bottom)) * Ints(gbuffer_.reversed_depth.stride()) +
-                           truncated(clamp(x, none, right));
-        const Floats depth = gather(gbuffer_.reversed_depth.row(0), index);
-        const Vec3s to = gbuffer_.projection.point(x, y, depth) - p_;
+        const Ints index = truncated(clamp(y, none, bottom)) * Ints(depth_.stride()) + truncated(clamp(x, none, right));
+        const Floats depth = gather(depth_.row(0), index);
+        const Vec3s to = gbuffer_.projection.point(Floats(x * two), Floats(y * two), depth) - p_;
         const Floats squared = dot(to, to), over = inverse_sqrt(squared), distance = squared * over;
         const Mask counts = inside & (depth > none) & (squared > closest_) & (distance < Floats(radius_)) &
                             (dot(n_, to) >= Floats(kSlack) * distance);
@@ -111,10 +110,8 @@ private:
         const Floats gain = max(cosine - horizon.cosine, none);
         horizon.cosine = max(horizon.cosine, cosine);
         if (occluders_ == nullptr || !xsimd::any(gain > none)) return;
-        const Ints half = (truncated(clamp(y, none, bottom)) >> 1) * Ints(occluders_->front.x.stride()) +
-                          (truncated(clamp(x, none, right)) >> 1);
         const auto read = [&](const Planes3& planes) {
-            return Vec3s{gather(planes.x.row(0), half), gather(planes.y.row(0), half), gather(planes.z.row(0), half)};
+            return Vec3s{gather(planes.x.row(0), index), gather(planes.y.row(0), index), gather(planes.z.row(0), index)};
         };
         const Mask faces = dot(read(occluders_->normals), to) < none; // the point
         horizon.light += select(faces, read(occluders_->front), read(occluders_->back)) * gain;
@@ -127,6 +124,7 @@ private:
     }
 
     const GBuffer& gbuffer_;
+    const PlaneFloat& depth_;
     const GtaoImage::Occluders* occluders_;
     const Vec3s &p_, &n_, &to_viewer_;
     std::array<Floats, 4> home_;
@@ -160,12 +158,12 @@ struct Line {
     Vec3s directions{Floats(0.0f), Floats(0.0f), Floats(0.0f)};
 };
 /// Searches along the line that `pattern` selects by its rotation about the view direction.
-Line search_line(const GBuffer& gbuffer, const GtaoImage::Occluders* occluders, const Vec3s& p, const Vec3s& normal,
-                 float radius, const Pattern& pattern) {
+Line search_line(const GBuffer& gbuffer, const PlaneFloat& depth, const GtaoImage::Occluders* occluders,
+                 const Vec3s& p, const Vec3s& normal, float radius, const Pattern& pattern) {
     const Floats one(1.0f), none(0.0f);
     const Vec3s v = gbuffer.projection.to_viewer(p);
     const Vec3s n = unit_of(normal + v * max(Floats(kLeastCosine) - dot(normal, v), none));
-    const HorizonSearch search(gbuffer, occluders, p, n, v, radius);
+    const HorizonSearch search(gbuffer, depth, occluders, p, n, v, radius);
     const FrameT<Floats> frame = frame_from_normal(v);
     const auto [sine, cosine] = xsimd::sincos(pattern.turn * Floats(kPi));
     const Vec3s t = frame.s * cosine + frame.t * sine, across = cross(v, t);
@@ -254,8 +252,8 @@ void GtaoImage::search_row(int y, float radius, const Occluders* occluders) {
         const Mask seen = depth > Floats(0.0f);
         Line found;
         if (radius > 0 && xsimd::any(seen)) {
-            found = search_line(*gbuffer_, occluders, point(x, y, depth), occluders_.normals.vector(x, y), radius,
-                                pattern_of(x, y));
+            found = search_line(*gbuffer_, depth_, occluders, point(x, y, depth), occluders_.normals.vector(x, y),
+                                radius, pattern_of(x, y));
         }
         // Lanes without a surface may hold any number. They are set to 0 here, so that neighbors may read them with
         // weight 0.
