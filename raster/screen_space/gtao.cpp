@@ -86,23 +86,28 @@ public:
         for (int i = 0; i < GtaoImage::kSteps; ++i) {
             const Floats s = (Floats(static_cast<float>(i)) + jitter) * Floats(1.0f / GtaoImage::kSteps);
             const Floats reach = Floats(1.0f) + s * s * pixels; // denser near the point, where occluders block most
-            raise(result, xsimd::floor((x_ + step_x * reach) * Floats(0.5f) + Floats(0.5f)),
-                  xsimd::floor((y_ + step_y * reach) * Floats(0.5f) + Floats(0.5f)), lowest);
+            raise(result, x_ + step_x * reach, y_ + step_y * reach, lowest);
         }
         return result;
     }
 
 private:
-    /// Raises the horizon to the surface at a pixel if that counts as an occluder.
+    /// Raises the horizon to the surface at a position in pixels if that counts as an occluder.
     void raise(Horizon& horizon, const Floats& x, const Floats& y, const Floats& lowest) const {
-        const Floats none(0.0f), two(2.0f), right(static_cast<float>(depth_.width() - 1)),
-            bottom(static_cast<float>(depth_.height() - 1));
-        const Mask inside = (x >= none) & (y >= none) & (x <= right) & (y <= bottom);
-        const Ints index = truncated(clamp(y, none, bottom)) * Ints(depth_.stride()) + truncated(clamp(x, none, right));
+        const Floats none(0.0f), half(0.5f), two(2.0f);
+        const auto inside = [&](const Floats& at, int size) {
+            return (at >= -half) & (at <= Floats(static_cast<float>(size)) - half);
+        };
+        const auto nearest = [&](const Floats& at, int size) { // of every second pixel
+            return clamp(xsimd::floor(at * half + half), none, Floats(static_cast<float>(size - 1)));
+        };
+        const Floats column = nearest(x, depth_.width()), row = nearest(y, depth_.height());
+        const Ints index = truncated(row) * Ints(depth_.stride()) + truncated(column);
         const Floats depth = gather(depth_.row(0), index);
-        const Vec3s to = gbuffer_.projection.point(Floats(x * two), Floats(y * two), depth) - p_;
+        const Vec3s to = gbuffer_.projection.point(Floats(column * two), Floats(row * two), depth) - p_;
         const Floats squared = dot(to, to), over = inverse_sqrt(squared), distance = squared * over;
-        const Mask counts = inside & (depth > none) & (squared > closest_) & (distance < Floats(radius_)) &
+        const Mask counts = inside(x, gbuffer_.width()) & inside(y, gbuffer_.height()) & (depth > none) &
+                            (squared > closest_) & (distance < Floats(radius_)) &
                             (dot(n_, to) >= Floats(kSlack) * distance);
         const Floats fade = max(distance * Floats(1 / (radius_ * (1 - kFadeFrom))) -
                                     Floats(kFadeFrom / (1 - kFadeFrom)), none);
@@ -163,7 +168,7 @@ Line search_line(const GBuffer& gbuffer, const PlaneFloat& depth, const GtaoImag
     const Floats one(1.0f), none(0.0f);
     const Vec3s v = gbuffer.projection.to_viewer(p);
     const Vec3s n = unit_of(normal + v * max(Floats(kLeastCosine) - dot(normal, v), none));
-    const HorizonSearch search(gbuffer, depth, occluders, p, n, v, radius);
+    const HorizonSearch search(gbuffer, depth, occluders, p, normal, v, radius);
     const FrameT<Floats> frame = frame_from_normal(v);
     const auto [sine, cosine] = xsimd::sincos(pattern.turn * Floats(kPi));
     const Vec3s t = frame.s * cosine + frame.t * sine, across = cross(v, t);

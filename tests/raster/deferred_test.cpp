@@ -29,6 +29,32 @@ TEST_SUITE("unit") {
         }
     }
 
+    TEST_CASE("the background is the environment's radiance along each camera ray, at the zenith and the seam, too") {
+        Scene scene;
+        add(scene, Sphere{Vec3(0, 0, 0), 1});
+        ImageRgb image(16, 8);
+        for (std::size_t i = 0; i < image.pixels().size(); ++i)
+            image.pixels()[i] = Rgb(static_cast<float>(i * 7 % 11), static_cast<float>(i * 5 % 13), 1);
+        Camera level = look({0, 0, 5}, {0, 0, 9}, 120), upwards = look({0, 5, 0}, {0, 9, 1}, 120), parallel = level;
+        parallel.projection = Camera::Projection::kOrthographic;
+        for (const float rotation : {0.0f, -2.0f, 40.0f})
+            for (const Environment& environment :
+                 {Environment{make_image_environment(image, 0.7f, rotation)}, Environment{SkyEnvironment{}}})
+                for (const Camera& camera : {level, upwards, parallel}) {
+                    scene.camera = camera, scene.environment = environment;
+                    finish_scene(scene);
+                    const View view{scene.camera, 90, 60};
+                    const CameraModel rays(view);
+                    const ImageRgb found = render(scene, view, {}).radiance;
+                    for (int y = 0; y < view.height; ++y)
+                        for (int x = 0; x < view.width; ++x) {
+                            const Rgb off = found(x, y) -
+                                radiance(environment, rays.ray({x + 0.5, y + 0.5}).direction);
+                            CHECK(std::abs(off.r) + std::abs(off.g) + std::abs(off.b) < 2e-4f);
+                        }
+                }
+    }
+
     TEST_CASE("the image is the same for any number of threads") {
         const Scene scene = varied_scene(24);
         raster::RasterSettings settings;
