@@ -63,8 +63,8 @@ struct Horizon {
 class HorizonSearch {
 public:
     /// Without `occluders` (null), no light is searched for.
-    HorizonSearch(const GBuffer& gbuffer, const PlaneFloat& depth, const GtaoImage::Occluders* occluders, const Vec3s& p,
-                  const Vec3s& n, const Vec3s& to_viewer, float radius)
+    HorizonSearch(const GBuffer& gbuffer, const PlaneFloat& depth, const GtaoImage::Occluders* occluders,
+                  const Vec3s& p, const Vec3s& n, const Vec3s& to_viewer, float radius)
         : gbuffer_(gbuffer), depth_(depth), occluders_(occluders), p_(p), n_(n), to_viewer_(to_viewer),
           home_(gbuffer.projection.homogeneous(p)), radius_(radius), closest_(Floats(kClosest * kClosest) * dot(p, p)) {
         const Floats over_w = Floats(1.0f) / home_[3];
@@ -115,9 +115,8 @@ private:
         const Floats gain = max(cosine - horizon.cosine, none);
         horizon.cosine = max(horizon.cosine, cosine);
         if (occluders_ == nullptr || !xsimd::any(gain > none)) return;
-        const auto read = [&](const Planes3& planes) {
-            return Vec3s{gather(planes.x.row(0), index), gather(planes.y.row(0), index), gather(planes.z.row(0), index)};
-        };
+        const auto of = [&](const PlaneFloat& plane) { return gather(plane.row(0), index); };
+        const auto read = [&](const Planes3& planes) { return Vec3s{of(planes.x), of(planes.y), of(planes.z)}; };
         const Mask faces = dot(read(occluders_->normals), to) < none; // the point
         horizon.light += select(faces, read(occluders_->front), read(occluders_->back)) * gain;
         horizon.gain += gain;

@@ -22,7 +22,7 @@ struct HitCorners {
 /// Returns the corners of a hit of the ray through `pixel`.
 HitCorners hit_corners(const PassView& view, const Hit& hit, Vec2d pixel, const ObjectView& object,
                        int samples_per_pixel);
-/// Returns the surface point at a camera ray's hit, with the detail that its material needs (surface_detail()), and with
+/// Returns the surface point at a camera ray's hit, with the detail that its material needs (surface_detail()). It has
 /// the sample's footprint if the scene has filtered textures.
 SurfacePoint filtered_point(const Scene& scene, const PassView& view, const Ray& ray, const Hit& hit,
                             int samples_per_pixel);
