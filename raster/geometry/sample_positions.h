@@ -24,6 +24,9 @@ struct SampleOffset {
     }
 };
 
+/// Neighboring pixels use different taps or directions, so that few per pixel suffice. Pixels at this distance along
+/// either axis use the same.
+inline constexpr int kDitherSide = 4;
 /// Returns a pixel's rank, 0 to 15, in a dither matrix of 4 × 4 pixels (Bayer 1973, "An Optimum Method for Two-Level
 /// Rendition of Continuous-Tone Images"), so that the ranks of neighbors differ most.
 inline std::uint32_t dither_rank(int x, int y) {

@@ -2,6 +2,7 @@
 
 #include "raster/geometry/lane_math.h"
 
+#include <cmath>
 #include <variant>
 
 namespace duet::raster {
@@ -18,21 +19,25 @@ namespace {
 
 // The following functions are radiance() of common/light/environment.h for one direction per lane, in float.
 
-RgbT<Floats> radiance(const ConstantEnvironment& e, const Vec3T<Floats>&) { return broadcast<Floats>(e.radiance); }
+RgbT<Floats> radiance_of(const ConstantEnvironment& e, const Vec3T<Floats>&) { return broadcast<Floats>(e.radiance); }
 
-RgbT<Floats> radiance(const SkyEnvironment& e, const Vec3T<Floats>& w) {
+RgbT<Floats> radiance_of(const SkyEnvironment& e, const Vec3T<Floats>& w) {
     return lerp(broadcast<Floats>(e.down), broadcast<Floats>(e.up), Floats(0.5f) * (w.y + Floats(1.0f)));
 }
 
-RgbT<Floats> radiance(const ImageEnvironment& e, const Vec3T<Floats>& w) {
+RgbT<Floats> radiance_of(const ImageEnvironment& e, const Vec3T<Floats>& w) {
     const Floats half(0.5f), one(1.0f), zero(0.0f);
+    if (e.image.empty()) return {zero, zero, zero};
     const Floats width(static_cast<float>(e.image.width())), rows(static_cast<float>(e.image.height()));
-    const Floats turn = xsimd::atan2(w.x, -w.z) * Floats(kInvPi / 2) + Floats(0.5f + e.rotation * (kInvPi / 2));
+    const double rotation = static_cast<double>(e.rotation) / (2 * kPiDouble);
+    const Floats offset(static_cast<float>(0.5 + rotation - std::floor(rotation)));
+    const auto pole = (w.x == zero) & (w.z == zero); // xsimd's atan2(0, 0) is not a number
+    const Floats turn = xsimd::atan2(w.x, xsimd::select(pole, one, -w.z)) * Floats(kInvPi / 2) + offset;
     const Floats latitude = xsimd::atan2(w.y, xsimd::sqrt(w.x * w.x + w.z * w.z)) * Floats(kInvPi);
     const Floats x = (turn - xsimd::floor(turn)) * width - half, y = (half - latitude) * rows - half;
     const Floats left = xsimd::floor(x), top = xsimd::floor(y);
-    // The lookup wraps around in longitude and is clamped in latitude.
-    const Floats column = xsimd::select(left < zero, width - one, left),
+    // The lookup wraps around in longitude and is clamped in latitude. The column is clamped in case of rounding.
+    const Floats column = xsimd::select(left < zero, width - one, min(left, width - one)),
                  next = xsimd::select(left + one < width, left + one, zero);
     const Floats row = clamp(top, zero, rows - one), below = clamp(top + one, zero, rows - one);
     const auto texel = [&](const Floats& i, const Floats& j) {
@@ -47,14 +52,14 @@ RgbT<Floats> radiance(const ImageEnvironment& e, const Vec3T<Floats>& w) {
 } // namespace
 
 void draw_background(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
-                     Planes3& radiance_image) {
+                     Planes3& radiance) {
     if (settings.shading != Shading::kLit || !settings.components.emission || !shows_environment(data, settings))
         return;
     const ScreenProjection& projection = gbuffer.projection;
     const auto directions = [&](int x, int y) {
         if (!gbuffer.position.empty()) {
             const Vec3T<Floats> d = gbuffer.position.vector(x, y);
-            return d * inverse_sqrt(dot(d, d));
+            return d * inverse_sqrt(max(dot(d, d), Floats(1e-30f))); // padding lanes hold zero
         }
         return -projection.to_viewer(projection.point(Floats(static_cast<float>(x)) + load(kLanesAsFloats, 0),
                                                       Floats(static_cast<float>(y)), Floats(projection.near())));
@@ -63,8 +68,8 @@ void draw_background(const RasterSceneData& data, const RasterSettings& settings
         for_each_batch(gbuffer.width(), gbuffer.height(), settings.threads, [&](int x, int y) {
             const xsimd::batch_bool<float> visible = gbuffer.visible(x, y);
             if (xsimd::all(visible)) return;
-            const RgbT<Floats> arriving = radiance(environment, directions(x, y));
-            radiance_image.set(x, y, blend(visible, radiance_image.color(x, y), arriving));
+            const RgbT<Floats> arriving = radiance_of(environment, directions(x, y));
+            radiance.set(x, y, blend(visible, radiance.color(x, y), arriving));
         });
     }, data.scene.environment);
 }

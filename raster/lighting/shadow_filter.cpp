@@ -10,7 +10,6 @@ namespace {
 using Mask = Floats::batch_bool_type;
 using Vec3s = Vec3T<Floats>;
 
-constexpr int kBlock = 4; ///< side of a block of pixels with different taps
 constexpr int kWidth = static_cast<int>(Floats::size);
 
 /// Classifies the shadows of a batch. A batch that is lit or dark all over needs no averaging.
@@ -31,8 +30,8 @@ RgbT<Floats> mean_of_block(const GBuffer& gbuffer, const Planes3& lit, int x, in
     const Floats tolerance = Floats(kPlaneTolerance) * projection.pixel_size(Floats(projection.near()) / depth);
     RgbT<Floats> sum(zero);
     Floats weights(zero);
-    for (int dy = -kBlock / 2; dy < kBlock / 2; ++dy)
-        for (int dx = -kBlock / 2; dx < kBlock / 2; ++dx) {
+    for (int dy = -kDitherSide / 2; dy < kDitherSide / 2; ++dy)
+        for (int dx = -kDitherSide / 2; dx < kDitherSide / 2; ++dx) {
             const Floats other = load_at(gbuffer.reversed_depth, x + dx, y + dy);
             const Vec3s q = projection.point(Floats(static_cast<float>(x + dx)) + load(kLanesAsFloats, 0),
                                              Floats(static_cast<float>(y + dy)), max(other, least));
@@ -61,7 +60,7 @@ void add_direct_light(const GBuffer& gbuffer, const DirectLight& light, int thre
     const auto needs_filter = [&](int x, int y) {
         const Shade own = shades(x / kWidth, y);
         if (own == Shade::kMixed) return true;
-        for (int row = std::max(y - kBlock / 2, 0); row < std::min(y + kBlock / 2, height); ++row)
+        for (int row = std::max(y - kDitherSide / 2, 0); row < std::min(y + kDitherSide / 2, height); ++row)
             for (int b = std::max(x / kWidth - 1, 0); b <= std::min(x / kWidth + 1, batches - 1); ++b)
                 if (shades(b, row) != own) return true;
         return false;

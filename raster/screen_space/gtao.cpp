@@ -25,7 +25,6 @@ constexpr float kLeastCosine = 0.02f; ///< least cosine between normal and viewe
 /// Occluders do not receive all of the irradiance, because the points hide some of it from them, too. Of models/,
 /// hall.json and demo.json have the least error with 0.6 of it, cornell.json and open-sky.json with 0.4.
 constexpr float kOccluderVisibility = 0.5f;
-constexpr int kBlock = 4;             ///< side of a block of half-resolution pixels, each with a direction of its own
 
 /// Returns arccos with an error of at most 7e-5 (Abramowitz and Stegun 1964, 4.4.45).
 Floats arc_cosine(const Floats& x) {
@@ -62,7 +61,8 @@ struct Horizon {
 /// Searches for horizons. A horizon is the greatest cosine to the viewer of the surfaces along a line from each point.
 class HorizonSearch {
 public:
-    /// Without `occluders` (null), no light is searched for.
+    /// `depth` holds the reversed depths of every second pixel of every second row. Without `occluders` (null), which
+    /// are the same pixels, no light is searched for.
     HorizonSearch(const GBuffer& gbuffer, const PlaneFloat& depth, const GtaoImage::Occluders* occluders,
                   const Vec3s& p, const Vec3s& n, const Vec3s& to_viewer, float radius)
         : gbuffer_(gbuffer), depth_(depth), occluders_(occluders), p_(p), n_(n), to_viewer_(to_viewer),
@@ -85,7 +85,8 @@ public:
         Horizon result{lowest};
         for (int i = 0; i < GtaoImage::kSteps; ++i) {
             const Floats s = (Floats(static_cast<float>(i)) + jitter) * Floats(1.0f / GtaoImage::kSteps);
-            const Floats reach = Floats(1.0f) + s * s * pixels; // denser near the point, where occluders block most
+            // The nearest other pixel is 2 away. Steps are denser near the point, where occluders block most.
+            const Floats reach = Floats(2.0f) + s * s * pixels;
             raise(result, x_ + step_x * reach, y_ + step_y * reach, lowest);
         }
         return result;
@@ -148,9 +149,9 @@ Pattern pattern_of(int x, int y) {
         const auto fraction = [](int column, int row) {
             return (static_cast<float>(dither_rank(column, row)) + 0.5f) / 16;
         };
-        const int other = (y % kBlock * kBlock + (x + i) % kBlock) * 5 + 3;
+        const int other = (y % kDitherSide * kDitherSide + (x + i) % kDitherSide) * 5 + 3;
         turn[static_cast<std::size_t>(i)] = fraction(x + i, y);
-        jitter[static_cast<std::size_t>(i)] = fraction(other, other / kBlock);
+        jitter[static_cast<std::size_t>(i)] = fraction(other, other / kDitherSide);
     }
     return {load(turn, 0), load(jitter, 0)};
 }
@@ -167,6 +168,7 @@ Line search_line(const GBuffer& gbuffer, const PlaneFloat& depth, const GtaoImag
     const Floats one(1.0f), none(0.0f);
     const Vec3s v = gbuffer.projection.to_viewer(p);
     const Vec3s n = unit_of(normal + v * max(Floats(kLeastCosine) - dot(normal, v), none));
+    // Heights are measured above the surface itself. Above the plane of n, points of the surface would have some, too.
     const HorizonSearch search(gbuffer, depth, occluders, p, normal, v, radius);
     const FrameT<Floats> frame = frame_from_normal(v);
     const auto [sine, cosine] = xsimd::sincos(pattern.turn * Floats(kPi));
@@ -284,12 +286,12 @@ void GtaoImage::sum_neighbors(const Lines& from, int y, int step_x, int step_y, 
             Floats(kPlaneTolerance) * projection.pixel_size(Floats(projection.near()) / max(depth, Floats(1e-30f)));
         Floats all(0.0f), lost(0.0f);
         Vec3s directions{Floats(0.0f), Floats(0.0f), Floats(0.0f)};
-        for (int i = 1 - kBlock; i < kBlock; ++i) {
+        for (int i = 1 - kDitherSide; i < kDitherSide; ++i) {
             const int at_x = x + i * step_x, at_y = y + i * step_y;
             const Floats other = load_at(depth_, at_x, at_y);
             const Vec3s m = load_at(occluders_.normals, at_x, at_y);
             const Floats alike = likeness(p, n, tolerance, point(at_x, at_y, other), m);
-            const Floats share(static_cast<float>(kBlock - std::abs(i)) / kBlock);
+            const Floats share(static_cast<float>(kDitherSide - std::abs(i)) / kDitherSide);
             const Floats weight = xsimd::select(other > Floats(0.0f), alike * share, Floats(0.0f));
             all += weight * load_at(from.all, at_x, at_y);
             lost += weight * load_at(from.lost, at_x, at_y);

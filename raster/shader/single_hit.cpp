@@ -71,7 +71,8 @@ void set_sphere(HitCorners& at, const Scene& scene, const PassView& view, const 
         beside.t = static_cast<float>(dot(p - ray.origin, n) / dot(ray.direction, n));
         return surface_point(scene, rounded(ray, view.time), beside);
     };
-    const SurfacePoint here = surface_point(scene, rounded(view.pinhole.ray(pixel), view.time), hit); // with uv
+    // at.surface may lack texture coordinates.
+    const SurfacePoint here = surface_point(scene, rounded(view.pinhole.ray(pixel), view.time), hit);
     const std::array<SurfacePoint, 3> points{here, point({pixel.x + 1, pixel.y}), point({pixel.x, pixel.y + 1})};
     for (std::size_t k = 0; k < 3; ++k) {
         at.p[k] = points[k].p_object;
@@ -90,9 +91,10 @@ void set_sphere(HitCorners& at, const Scene& scene, const PassView& view, const 
 
 SurfacePoint filtered_point(const Scene& scene, const PassView& view, const Ray& ray, const Hit& hit,
                             int samples_per_pixel) {
-    const RayFootprint footprint =
-        scene.needs.footprints ? PixelFootprint(view.pinhole, samples_per_pixel).at(ray, hit.t) : RayFootprint{};
     const SurfaceDetail detail = surface_detail(scene, material_index(scene, hit.object, hit.primitive));
+    if (!scene.needs.footprints || detail == SurfaceDetail::kWithoutUv)
+        return surface_point(scene, ray, hit, nullptr, detail);
+    const RayFootprint footprint = PixelFootprint(view.pinhole, samples_per_pixel).at(ray, hit.t);
     return surface_point(scene, ray, hit, &footprint, detail);
 }
 

@@ -141,7 +141,7 @@ Floats SharpShadowMap::visibility(const Vec3T<Floats>& p, const Vec3T<Floats>& n
                        truncated(xsimd::select(inside, x0, zero));
     const float* texels = map_.reversed_depth().pixels().data();
     std::array<std::array<Floats, kTaps>, kTaps> height; // of the texels' surfaces above the receiver's plane
-    Mask any_above = zero > zero;
+    Mask any_above(false);
     for (std::size_t j = 0; j < taps; ++j)
         for (std::size_t i = 0; i < taps; ++i) {
             const Floats stored = gather(texels + static_cast<int>(j) * map_.side() + i, first);

@@ -19,49 +19,47 @@ constexpr float kLeastRise = 0.1f;
 constexpr float kRounding = 0x1p-18f;
 constexpr float kMargin = 0.02f; ///< a line may miss the light by this fraction of its edge
 
-constexpr int kBlock = 4; ///< side of the blocks of pixels that have different taps
-using PerLane = std::array<float, Floats::size>;
-
 /// Holds one tap of each pixel in a row: a point (a, b) on the unit square, the same point mapped to the unit disk, and
 /// the fraction of the line to the light at which a blocker is searched.
-struct alignas(64) Tap {
-    PerLane a, b, disk_x, disk_y, fraction;
+struct Tap {
+    PacketOf<float> a, b, disk_x, disk_y, fraction;
 };
 
-/// Holds kTaps taps for each row of a block. All points of a block are a (0,2)-net.
+/// Holds kTaps taps for each row of a block of pixels. The points of the block are a (0,2)-net. So are the points of
+/// four neighbors in a row, which share what they find.
 template <int kTaps> struct Taps {
-    std::array<std::array<Tap, kTaps>, kBlock> rows;
+    std::array<std::array<Tap, kTaps>, kDitherSide> rows;
 
     Taps() {
-        constexpr int kPixels = kBlock * kBlock;
-        for (int y = 0; y < kBlock; ++y)
+        constexpr int kPixels = kDitherSide * kDitherSide;
+        for (int y = 0; y < kDitherSide; ++y)
             for (int k = 0; k < kTaps; ++k)
-                for (std::size_t lane = 0; lane < Floats::size; ++lane) {
-                    const int rank = static_cast<int>(dither_rank(static_cast<int>(lane), y));
+                for (int x = 0; x < static_cast<int>(kPacketSize); ++x) {
+                    const int rank = y * kDitherSide + (x ^ y) % kDitherSide;
                     const Vec2 u = sobol_net_point(static_cast<std::uint32_t>(k * kPixels + rank), kTaps * kPixels);
                     const float radius = std::sqrt(u.x), angle = 2 * kPi * u.y;
                     // Searched fractions grow quadratically, so that blockers near the receiver are found, too.
                     const float stratum = (static_cast<float>(rank * 7 % kPixels) + 0.5f) / kPixels,
                                 s = (static_cast<float>(k) + stratum) / kTaps;
                     Tap& tap = rows[static_cast<std::size_t>(y)][static_cast<std::size_t>(k)];
+                    const auto lane = static_cast<std::size_t>(x);
                     tap.a[lane] = u.x, tap.b[lane] = u.y, tap.fraction[lane] = s * s;
                     tap.disk_x[lane] = radius * std::cos(angle), tap.disk_y[lane] = radius * std::sin(angle);
                 }
     }
-    const std::array<Tap, kTaps>& row(int y) const { return rows[static_cast<std::size_t>(y % kBlock)]; }
+    const std::array<Tap, kTaps>& row(int y) const { return rows[static_cast<std::size_t>(y % kDitherSide)]; }
 };
 const Taps<SoftShadowMap::kSearchTaps> kSearch;
 const Taps<SoftShadowMap::kFilterTaps> kFilter;
 
-Floats load(const PerLane& lanes) { return Floats::load_aligned(lanes.data()); }
-
-/// Returns in each lane the sum over the lanes of its block of pixels.
-Floats sum_in_block(const Floats& x) {
-    alignas(64) PerLane lanes;
-    x.store_aligned(lanes.data());
-    for (auto group = lanes.begin(); group != lanes.end(); group += kBlock)
-        std::fill_n(group, kBlock, (group[0] + group[1]) + (group[2] + group[3]));
-    return Floats::load_aligned(lanes.data());
+/// Returns in each lane the sum over its group of four lanes, which are neighbors in a row.
+Floats sum_of_four(const Floats& x) {
+    static_assert(Floats::size % kDitherSide == 0);
+    PacketOf<float> lanes;
+    store(lanes, 0, x);
+    for (std::size_t i = 0; i < Floats::size; i += kDitherSide)
+        std::fill_n(&lanes[i], kDitherSide, (lanes[i] + lanes[i + 1]) + (lanes[i + 2] + lanes[i + 3]));
+    return load(lanes, 0);
 }
 
 } // namespace
@@ -79,7 +77,7 @@ struct SoftShadowMap::Receiver {
     Vec3s p, n;
     Floats per_height; ///< 1 / the height of p above the light's plane, along −axis
     Floats slack;
-    Floats from_a, from_b; ///< coordinates of p over the light
+    Floats from_a, from_b; ///< coordinates of p along the light's u and v, from its corner
 
     /// Returns the fraction of the line from p to the light's plane at which the surface seen in direction q blocks the
     /// light. The fraction is negated in lanes where the surface lies in between but the line misses the light. It is 0
@@ -89,7 +87,8 @@ struct SoftShadowMap::Receiver {
         const Vec3s to = cube.surface(q, texel) - p;
         const Floats f = dot(to, light.axis) * per_height;
         const Floats rise = dot(to, n), distance2 = dot(to, to);
-        // The line meets the light's plane at coordinates a / f and b / f.
+        // The line meets the light's plane at coordinates a / f and b / f. All comparisons are multiplied by f, which
+        // saves a division; only lanes with f > 0 count.
         const Floats a = multiply_add(from_a, f, dot(to, light.dual_u)),
                      b = multiply_add(from_b, f, dot(to, light.dual_v));
         // The texel that contains direction q has its center up to this far from q; 1 / f projects it onto the light.
@@ -107,8 +106,8 @@ struct SoftShadowMap::Receiver {
     /// Returns the position of a tap on the light.
     Vec3s on_light(const Tap& tap) const {
         if (light.shape == Emitter::Kind::kSphere)
-            return light.u * load(tap.disk_x) + light.v * load(tap.disk_y);
-        const Floats a = load(tap.a), b = load(tap.b);
+            return light.u * load(tap.disk_x, 0) + light.v * load(tap.disk_y, 0);
+        const Floats a = load(tap.a, 0), b = load(tap.b, 0);
         if (light.shape == Emitter::Kind::kTriangle) { // fold the other half of the parallelogram onto it
             const Mask beyond = a + b > Floats(1.0f);
             return light.corner + light.u * xsimd::select(beyond, Floats(1.0f) - a, a) +
@@ -174,13 +173,14 @@ Floats SoftShadowMap::visibility(const Vec3d& eye, const Vec3s& p) const {
     });
 }
 
-Floats SoftShadowMap::visibility(const Vec3d& eye, const Vec3s& p, const Vec3s& n, int y) const {
+Floats SoftShadowMap::visibility(const Vec3d& eye, const Vec3s& p, const Vec3s& n, int y, const Mask& lanes) const {
     const Vec3s own = local(p + broadcast<Floats>(Vec3(eye - cube_.center))), normal = local(n);
-    return combined(own, [&](const DepthCube& cube) { return filtered(cube, own, normal, y); });
+    return combined(own, [&](const DepthCube& cube) { return filtered(cube, own, normal, y, lanes); });
 }
 
 /// Returns the visible fraction by one cube, for points and normals in its frame.
-Floats SoftShadowMap::filtered(const DepthCube& cube, const Vec3s& own, const Vec3s& n, int y) const {
+Floats SoftShadowMap::filtered(const DepthCube& cube, const Vec3s& own, const Vec3s& n, int y,
+                               const Mask& lanes) const {
     const Outline light = outline_from(own);
     const Floats height = max(-dot(own, light.axis), Floats(1e-20f));
     const Vec3s from = own - light.corner;
@@ -189,14 +189,15 @@ Floats SoftShadowMap::filtered(const DepthCube& cube, const Vec3s& own, const Ve
 
     Floats sum(0.0f), count(0.0f);
     for (const Tap& tap : kSearch.row(y)) {
-        const Floats f = load(tap.fraction);
+        const Floats f = load(tap.fraction, 0);
         const Floats found = receiver.blocker(own * (Floats(1.0f) - f) + receiver.on_light(tap) * f);
-        sum += max(found, Floats(0.0f));
-        count += xsimd::select(found > Floats(0.0f), Floats(1.0f), Floats(0.0f));
+        const Mask blocks = lanes & (found > Floats(0.0f));
+        sum += xsimd::select(blocks, found, Floats(0.0f));
+        count += xsimd::select(blocks, Floats(1.0f), Floats(0.0f));
     }
     if (!xsimd::any(count > Floats(0.0f))) return Floats(1.0f);
     // Four neighbors in a row share what they found, because a thin blocker may escape the few taps of one of them.
-    sum = sum_in_block(sum), count = sum_in_block(count);
+    sum = sum_of_four(sum), count = sum_of_four(count);
     const Mask any = count > Floats(0.0f);
     const Floats f = sum / max(count, Floats(1.0f));
     Floats dark(0.0f);

@@ -1,6 +1,6 @@
 // Computes soft shadows of area lights with SIMD: percentage-closer soft shadows (Fernando 2005, "Percentage-Closer
-// Soft Shadows") in a cube of depths seen from the light's center. Neighboring pixels use different taps, so few taps
-// per pixel suffice.
+// Soft Shadows") in a cube of depths seen from the light's center. Neighboring pixels use different taps, and four
+// neighbors in a row share the blockers that they find, so few taps per pixel suffice.
 #pragma once
 
 #include "raster/gbuffer/screen_projection.h"
@@ -18,9 +18,11 @@ class SoftShadowMap {
 public:
     SoftShadowMap(const CellMaps& maps, const Emitter& emitter);
 
-    /// Returns the visible fraction of the light at points relative to the eye at `eye`, with unit normals. The batch
-    /// starts at a multiple of 4 pixels in row y: the taps of a block of 4 × 4 pixels together cover the light evenly.
-    Floats visibility(const Vec3d& eye, const Vec3T<Floats>& p, const Vec3T<Floats>& n, int y) const;
+    /// Returns the visible fraction of the light at points relative to the eye at `eye`, with unit normals: a noisy
+    /// estimate, unspecified outside `lanes`. The batch starts at a multiple of 4 pixels in row y. The taps of a block
+    /// of 4 × 4 pixels together cover the light evenly.
+    Floats visibility(const Vec3d& eye, const Vec3T<Floats>& p, const Vec3T<Floats>& n, int y,
+                      const xsimd::batch_bool<float>& lanes) const;
 
     /// Returns 1 where points see the light's center, else 0. If casters surround the light closely, it returns the
     /// visible fraction past them.
@@ -35,7 +37,8 @@ private:
 
     Outline outline_from(const Vec3T<Floats>& p) const;
     Vec3T<Floats> local(const Vec3T<Floats>& w) const;
-    Floats filtered(const DepthCube& cube, const Vec3T<Floats>& p, const Vec3T<Floats>& n, int y) const;
+    Floats filtered(const DepthCube& cube, const Vec3T<Floats>& p, const Vec3T<Floats>& n, int y,
+                    const xsimd::batch_bool<float>& lanes) const;
     template <typename Lookup> Floats combined(const Vec3T<Floats>& p, const Lookup& lookup) const;
 
     DepthCube cube_;

@@ -69,16 +69,16 @@ MapShadows::Receivers MapShadows::at_moment(const Receivers& receivers, int x, i
 }
 
 Floats MapShadows::visibility(std::size_t source, const Vec3T<Floats>& point, const Vec3T<Floats>& normal, int x,
-                              int y, const Mask&) const {
+                              int y, const Mask& lanes) const {
     if (unblocked_.contains(source, x, y)) return Floats(1.0f);
     const Receivers receivers{point, normal};
     const auto [p, n] = to_moment_.empty() ? receivers : at_moment(receivers, x, y);
     const std::span<const SoftShadowMap> cells = soft_.of(source, moment_);
     if (cells.empty()) return sharp_visibility(sources_[source], p, n);
     // Up to four cells alternate between the rows of a block, so a batch samples one cell only.
-    if (cells.size() <= 4) return cells[static_cast<std::size_t>(y) % cells.size()].visibility(eye_, p, n, y);
+    if (cells.size() <= 4) return cells[static_cast<std::size_t>(y) % cells.size()].visibility(eye_, p, n, y, lanes);
     Floats sum(0.0f);
-    for (const SoftShadowMap& cell : cells) sum += cell.visibility(eye_, p, n, y);
+    for (const SoftShadowMap& cell : cells) sum += cell.visibility(eye_, p, n, y, lanes);
     return sum * Floats(1 / static_cast<float>(cells.size()));
 }
 
