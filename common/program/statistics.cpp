@@ -1,6 +1,7 @@
 #include "common/program/statistics.h"
 
 #include "common/system/file.h"
+#include "common/system/peak_memory.h"
 
 #include <nlohmann/json.hpp>
 
@@ -51,6 +52,7 @@ nlohmann::json statistics_json(const RenderContext& context, const RenderStatist
           {"shadow", statistics.shadow_rays}}},
         {"triangles", statistics.triangles},
         {"memory_bytes", statistics.memory_bytes},
+        {"peak_memory_bytes", peak_memory_bytes()},
         {"bvh", bvh},
         {"estimated_relmse", relmse},
         {"invalid_samples", statistics.invalid_samples},

@@ -20,8 +20,8 @@ struct RenderContext {
 
 /// Returns the statistics as JSON with the keys of common/README.md: program, version, scene, width, height, threads,
 /// samples_per_pixel, passes, seed, seconds (load, prepare, render, write, total), stages, rays, triangles,
-/// memory_bytes, bvh (nodes, references, or null), estimated_relmse (null where unknown), invalid_samples,
-/// first_invalid (x, y, sample, or null), approximations, skipped, interrupted.
+/// memory_bytes, peak_memory_bytes, bvh (nodes, references, or null), estimated_relmse (null where unknown),
+/// invalid_samples, first_invalid (x, y, sample, or null), approximations, skipped, interrupted.
 nlohmann::json statistics_json(const RenderContext& context, const RenderStatistics& statistics);
 
 /// Throws Error where write_json could not write to `path`, because its folder does not exist. Programs call this

@@ -6,8 +6,9 @@ import time
 
 import blocks
 import catalog
-import compare_figures  # registers its figures, as the next two do
+import compare_figures  # registers its figures, as three of the next do
 import measure
+import memory_figures
 import raster_figures
 import raytrace_figures
 

@@ -17,8 +17,8 @@ for program in raster raytrace; do
     [ -s "$scratch/a.depth.exr" ] && [ -s "$scratch/a.hit.exr" ] || fail "$program: --aov wrote no files beside the PNG"
     for key in program version scene width height threads samples_per_pixel passes seed seconds load prepare render \
         write total \
-        rays camera indirect shadow triangles memory_bytes bvh estimated_relmse invalid_samples first_invalid \
-            approximations skipped; do
+        rays camera indirect shadow triangles memory_bytes peak_memory_bytes bvh estimated_relmse invalid_samples \
+        first_invalid approximations skipped; do
         grep -q "\"$key\":" "$scratch/stdout" || fail "$program --stats lacks $key"
     done
     expect 0 "$bin/$program" models/cornell.json -o "$scratch/orbit-%04d.png" --orbit 3 --size 24x16 --spp 2 --quiet \

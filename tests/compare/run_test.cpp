@@ -33,6 +33,7 @@ json without_times(json report) {
         report[side].erase("stages");
         report[side].erase("threads");
         report[side].erase("memory_bytes"); // each thread has its own working memory
+        report[side].erase("peak_memory_bytes");
     }
     return report;
 }
