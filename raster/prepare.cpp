@@ -152,6 +152,7 @@ RasterScene prepare_after(const RasterSceneData* before, const Scene& scene, con
                          .shapes = packed_shapes(scene, before),
                          .texture_samplers = texture_samplers(scene.textures),
                          .ambient = mean_radiance(scene.environment)};
+    for (const Material& material : scene.materials) data.lobes_of_color.push_back(LobesOfColor::of(material));
     for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
         const Object& object = scene.objects[i];
         const Shape& shape = scene.shapes[object.shape];

@@ -3,6 +3,7 @@
 
 #include "common/scene/scene.h"
 #include "common/system/object_pool.h"
+#include "raster/gbuffer/surface_lobes.h"
 #include "raster/geometry/packed_shape.h"
 #include "raster/lighting/environment_irradiance.h"
 #include "raster/settings.h"
@@ -38,6 +39,7 @@ class GlassShapes; // raster/probes/glass_shapes.h
 struct RasterSceneData {
     const Scene& scene;
     std::vector<RasterObject> objects{};  ///< parallel to Scene::objects
+    std::vector<std::optional<LobesOfColor>> lobes_of_color{}; ///< parallel to Scene::materials
     bool any_emits = false;               ///< whether any surface emits light
     std::vector<std::uint32_t> emitters{}; ///< indices of the objects all of whose materials emit, in order
     std::vector<std::uint32_t> polygonal{}; ///< indices of the mesh and quad objects without alpha, in order

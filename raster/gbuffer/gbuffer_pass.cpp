@@ -67,8 +67,7 @@ struct Frame {
     const RasterSceneData& data;
     const Geometry& geometry;
     const PassView& view;
-    std::vector<std::optional<LobesOfColor>> of_color; ///< indexed by material
-    std::vector<bool> emits;                           ///< indexed by material; all false unless emission is requested
+    bool emission; ///< whether emission is requested
     AttributeShader shader{};
 };
 
@@ -76,9 +75,9 @@ struct Frame {
 class TileFiller {
 public:
     TileFiller(const Frame& frame, const PixelRect& rect, GBuffer& gbuffer, Planes3& emission)
-        : scene_(frame.data.scene), geometry_(frame.geometry), view_(frame.view), of_color_(frame.of_color),
-          emits_(frame.emits), rect_(rect), gbuffer_(gbuffer), emission_(emission), reader_(geometry_.triangles),
-          shader_(frame.data, geometry_, view_, rect, frame.shader) {}
+        : data_(frame.data), scene_(data_.scene), geometry_(frame.geometry), view_(frame.view), rect_(rect),
+          with_emission_(frame.emission), gbuffer_(gbuffer), emission_(emission), reader_(geometry_.triangles),
+          shader_(data_, geometry_, view_, rect, frame.shader) {}
 
     void run(const DepthTile& tile) {
         for (int y = rect_.y0; y < rect_.y1; y += DepthTile::kPacketRows)
@@ -94,16 +93,18 @@ private:
         find_materials();
         store_packet(object_, x, y, gbuffer_.object);
         store_packet(material_, x, y, gbuffer_.material);
-        clear_emission(x, y);
         store_depths_and_normals(packet);
-        const auto of_packet =
-            static_cast<std::uint32_t>(material_[static_cast<std::size_t>(std::countr_zero(samples_.visible))]);
-        if (one_material_ && of_color_[of_packet])
-            fill_lobes(packet, *of_color_[of_packet]);
-        else
-            for_each_visible(packet, [&](int column, int row, std::size_t i) { fill_lobes(column, row, i, packet); });
-        if (emits_[of_packet] || !one_material_)
-            for_each_visible(packet, [&](int column, int row, std::size_t i) { add_emission(column, row, i, packet); });
+        emitted_ = {};
+        for_each_material([&](std::uint32_t material, std::uint32_t lanes) {
+            if (const std::optional<LobesOfColor>& lobes = data_.lobes_of_color[material])
+                find_lobes(packet, lanes, *lobes);
+            else
+                for_each_pixel(packet, lanes, [&](std::size_t i) { find_lobes(packet, i); });
+            if (with_emission_ && emitter(scene_.materials[material]) != nullptr)
+                for_each_pixel(packet, lanes, [&](std::size_t i) { find_emission(packet, i); });
+        });
+        store_lobes(x, y);
+        store_packets(emitted_.r, emitted_.g, emitted_.b, x, y, emission_);
     }
 
     /// Marks a packet as background; its other attributes are not read.
@@ -114,26 +115,31 @@ private:
         store_packet(kZero, x, y, gbuffer_.reversed_depth);
         store_packet(none, x, y, gbuffer_.object);
         store_packet(none, x, y, gbuffer_.material);
-        clear_emission(x, y);
-    }
-    void clear_emission(int x, int y) {
-        static const PacketOf<float> kZero{};
         store_packets(kZero, kZero, kZero, x, y, emission_);
     }
 
-    template <typename Visit> void for_each_visible(const SamplePacket& packet, const Visit& visit) const {
-        const PixelRect& rect = rect_;
-        for (std::uint32_t left = samples_.visible; left != 0; left &= left - 1) {
-            const auto i = static_cast<std::size_t>(std::countr_zero(left));
+    /// Calls visit(material, lanes) for each material that the packet sees.
+    template <typename Visit> void for_each_material(const Visit& visit) const {
+        for (std::uint32_t left = samples_.visible; left != 0;) {
+            const std::int32_t material = material_[static_cast<std::size_t>(std::countr_zero(left))];
+            const std::uint32_t lanes = lanes_equal(material_, material) & left;
+            left &= ~lanes;
+            visit(static_cast<std::uint32_t>(material), lanes);
+        }
+    }
+    /// Calls visit(i) for those samples of the packet that lie in the tile.
+    template <typename Visit>
+    void for_each_pixel(const SamplePacket& packet, std::uint32_t lanes, const Visit& visit) const {
+        for (; lanes != 0; lanes &= lanes - 1) {
+            const auto i = static_cast<std::size_t>(std::countr_zero(lanes));
             const int x = packet.x + static_cast<int>(i % kPacketWidth),
                       y = packet.y + static_cast<int>(i / kPacketWidth);
-            if (x < rect.x1 && y < rect.y1) visit(x, y, i);
+            if (x < rect_.x1 && y < rect_.y1) visit(i);
         }
     }
 
     /// Finds each sample's object and material. Most packets see one object with one material.
     void find_materials() {
-        one_material_ = true;
         if (samples_.object != nullptr) {
             const std::uint32_t object = samples_.object->object;
             if (const auto& materials = scene_.objects[object].materials; materials.size() == 1) {
@@ -143,14 +149,11 @@ private:
             }
         }
         object_.fill(-1), material_.fill(-1);
-        std::int32_t first = -1;
         for (std::uint32_t left = samples_.visible; left != 0; left &= left - 1) {
             const auto i = static_cast<std::size_t>(std::countr_zero(left));
             const auto [object, primitive] = geometry_.primitive(reader_.run_of(samples_.id(i)), samples_.id(i));
             object_[i] = static_cast<std::int32_t>(object);
             material_[i] = static_cast<std::int32_t>(material_index(scene_, object, primitive));
-            if (first < 0) first = material_[i];
-            one_material_ = one_material_ && material_[i] == first;
         }
     }
 
@@ -181,22 +184,47 @@ private:
         }
     }
 
-    /// Fills the lobes of a packet of one material with SIMD.
-    void fill_lobes(const SamplePacket& packet, const LobesOfColor& lobes) {
-        ColorPacket diffuse, specular;
-        PacketOf<float> constant;
+    /// Finds the lobes of samples of one material with SIMD.
+    void find_lobes(const SamplePacket& packet, std::uint32_t lanes, const LobesOfColor& lobes) {
         for (std::size_t i = 0; i < kPacketSize; i += Floats::size) {
+            const auto here = lanes_from<float>(lanes >> i);
+            const auto put = [&](PacketOf<float>& to, const Floats& value) {
+                store(to, i, xsimd::select(here, value, load(to, i)));
+            };
+            const auto put_color = [&](ColorPacket& to, const RgbT<Floats>& c) {
+                put(to.r, c.r), put(to.g, c.g), put(to.b, c.b);
+            };
             const ColorPacket& base = shaded_.color;
             const RgbT<Floats> color{load(base.r, i), load(base.g, i), load(base.b, i)};
-            const RgbT<Floats> d = lobes.diffuse(color, cosines(packet, i)), s = lobes.specular(color);
-            store(diffuse, i, d), store(specular, i, s);
+            put_color(lobes_.diffuse, lobes.diffuse(color, cosines(packet, i)));
+            put_color(lobes_.specular, lobes.specular(color));
+            put(lobes_.alpha, Floats(lobes.alpha));
+            put(lobes_.coat, Floats(lobes.coat)), put(lobes_.coat_alpha, Floats(lobes.coat_alpha));
         }
-        store_packets(diffuse.r, diffuse.g, diffuse.b, packet.x, packet.y, gbuffer_.diffuse);
-        store_packets(specular.r, specular.g, specular.b, packet.x, packet.y, gbuffer_.specular);
-        constant.fill(lobes.alpha), store_packet(constant, packet.x, packet.y, gbuffer_.alpha);
+    }
+
+    /// Finds the lobes of one sample, whose material has parameters that vary over the surface.
+    void find_lobes(const SamplePacket& packet, std::size_t i) {
+        const Vec2d pixel = packet.position(i);
+        const Ray ray = rounded(view_.pinhole.ray(pixel), view_.time);
+        const Hit hit = find_hit(geometry_, view_, samples_.id(i), pixel);
+        const SurfacePoint point = filtered_point(scene_, view_, ray, hit, samples_per_pixel(packet, view_));
+        const Vec3T<PacketOf<float>>& n = shaded_.normal;
+        const float cosine = clamp(-dot(Vec3(n.x[i], n.y[i], n.z[i]), ray.direction), 1e-4f, 1.0f);
+        const SurfaceLobes lobes =
+            surface_lobes(bsdf_at(scene_.materials[point.material], scene_.textures, point), cosine);
+        const auto put_color = [&](ColorPacket& to, Rgb c) { to.r[i] = c.r, to.g[i] = c.g, to.b[i] = c.b; };
+        put_color(lobes_.diffuse, lobes.diffuse), put_color(lobes_.specular, lobes.specular);
+        lobes_.alpha[i] = lobes.alpha, lobes_.coat[i] = lobes.coat, lobes_.coat_alpha[i] = lobes.coat_alpha;
+    }
+
+    void store_lobes(int x, int y) {
+        const auto& [diffuse, specular, alpha, coat, coat_alpha] = lobes_;
+        store_packets(diffuse.r, diffuse.g, diffuse.b, x, y, gbuffer_.diffuse);
+        store_packets(specular.r, specular.g, specular.b, x, y, gbuffer_.specular);
+        store_packet(alpha, x, y, gbuffer_.alpha);
         if (gbuffer_.coat.empty()) return;
-        constant.fill(lobes.coat), store_packet(constant, packet.x, packet.y, gbuffer_.coat);
-        constant.fill(lobes.coat_alpha), store_packet(constant, packet.x, packet.y, gbuffer_.coat_alpha);
+        store_packet(coat, x, y, gbuffer_.coat), store_packet(coat_alpha, x, y, gbuffer_.coat_alpha);
     }
 
     /// Returns the directions to the viewer, which do not depend on the depth.
@@ -213,30 +241,19 @@ private:
         return dot(Vec3T<Floats>{load(n.x, i), load(n.y, i), load(n.z, i)}, to_viewer(packet, i));
     }
 
-    void add_emission(int x, int y, std::size_t i, const SamplePacket& packet) {
-        if (!emits_[static_cast<std::size_t>(material_[i])]) return;
+    void find_emission(const SamplePacket& packet, std::size_t i) {
         const Vec2d pixel = packet.position(i);
         const Hit hit = find_hit(geometry_, view_, samples_.id(i), pixel);
-        emission_.set_at(x, y, hit_emission(scene_, view_, hit, pixel, samples_per_pixel(packet, view_)));
+        const Rgb c = hit_emission(scene_, view_, hit, pixel, samples_per_pixel(packet, view_));
+        emitted_.r[i] = c.r, emitted_.g[i] = c.g, emitted_.b[i] = c.b;
     }
 
-    /// Fills the lobes of one pixel, whose material has parameters that vary over the surface.
-    void fill_lobes(int x, int y, std::size_t i, const SamplePacket& packet) {
-        const Vec2d pixel = packet.position(i);
-        const Ray ray = rounded(view_.pinhole.ray(pixel), view_.time);
-        const Hit hit = find_hit(geometry_, view_, samples_.id(i), pixel);
-        const SurfacePoint point = filtered_point(scene_, view_, ray, hit, samples_per_pixel(packet, view_));
-        const float cosine = clamp(-dot(gbuffer_.normal.vector_at(x, y), ray.direction), 1e-4f, 1.0f);
-        store_lobes(surface_lobes(bsdf_at(scene_.materials[point.material], scene_.textures, point), cosine), x, y,
-                    gbuffer_);
-    }
-
+    const RasterSceneData& data_;
     const Scene& scene_;
     const Geometry& geometry_;
     const PassView& view_;
-    const std::vector<std::optional<LobesOfColor>>& of_color_;
-    const std::vector<bool>& emits_;
     PixelRect rect_;
+    bool with_emission_;
     GBuffer& gbuffer_;
     Planes3& emission_;
     PacketReader reader_;
@@ -245,7 +262,11 @@ private:
     PacketPrimitives samples_;
     PacketAttributes shaded_;
     PacketOf<std::int32_t> object_, material_;
-    bool one_material_ = false;
+    struct {
+        ColorPacket diffuse, specular;
+        PacketOf<float> alpha, coat, coat_alpha;
+    } lobes_{}; ///< SurfaceLobes of each sample
+    ColorPacket emitted_;
 };
 
 } // namespace
@@ -277,24 +298,10 @@ void clear(GBuffer& gbuffer, Planes3& emission) {
     for (PlaneFloat* plane : {&emission.x, &emission.y, &emission.z}) plane->fill(0);
 }
 
-namespace {
-
-Frame frame_of(const RasterSceneData& data, const RasterSettings& settings, const Geometry& geometry,
-               const PassView& view) {
-    Frame frame{data, geometry, view, {}, {}};
-    for (const Material& material : data.scene.materials) {
-        frame.of_color.push_back(LobesOfColor::of(material));
-        frame.emits.push_back(settings.components.emission && emitter(material) != nullptr);
-    }
-    return frame;
-}
-
-} // namespace
-
 void fill_gbuffer(const RasterSceneData& data, const RasterSettings& settings, const Geometry& geometry,
                   const PassView& view, const TileGrid& grid, SampleOffset offset, const Control& control,
                   GBuffer& gbuffer, Planes3& emission) {
-    const Frame frame = frame_of(data, settings, geometry, view);
+    const Frame frame{data, geometry, view, settings.components.emission};
     parallel_for(grid.size(), settings.threads, [&](std::size_t i) {
         if (control.stopped()) return;
         DepthTile tile;
