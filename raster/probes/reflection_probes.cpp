@@ -7,7 +7,7 @@ using Vec3s = Vec3T<Floats>;
 using Mask = Floats::batch_bool_type;
 
 /// This many points of a ray are tested, and kBisections narrow the interval between two of them.
-constexpr int kSearched = 16, kBisections = 9;
+constexpr int kSearched = 16, kBisections = 6;
 /// A relative difference of distances below kTolerance is a hit. A difference above kStep is the discontinuity at a
 /// silhouette.
 constexpr float kTolerance = 0.01f, kStep = 0.15f;
