@@ -73,6 +73,10 @@ std::pair<int, int> pixel_range(const Interval& extremes, int size) {
             std::clamp(static_cast<int>(std::ceil(high)) + 1, 0, size)};
 }
 
+/// narrowed() rounds each lane to float, and widened() is its inverse.
+Vec3T<NarrowBatch> narrowed(const Vec3T<Doubles>& v) { return {to_floats(v.x), to_floats(v.y), to_floats(v.z)}; }
+Vec3T<Doubles> widened(const Vec3T<NarrowBatch>& v) { return {to_doubles(v.x), to_doubles(v.y), to_doubles(v.z)}; }
+
 } // namespace
 
 float DrawSphere::nearest(const Ray& ray) const {
@@ -86,21 +90,14 @@ std::optional<float> DrawSphere::intersect(const Ray& ray) const {
 
 Doubles DrawSphere::intersect(const CameraRays& rays) const {
     const Doubles none(std::numeric_limits<double>::infinity());
-    if (!identity) {
-        alignas(64) std::array<double, Doubles::size> found;
-        for (std::size_t i = 0; i < found.size(); ++i) {
-            const std::optional<float> t = intersect(rays.at(i, 0));
-            found[i] = t ? static_cast<double>(*t) : std::numeric_limits<double>::infinity();
-        }
-        return Doubles::load_aligned(found.data());
+    Vec3T<Doubles> origin = rays.origin, direction = rays.direction;
+    if (!identity) { // as to_object_space() does
+        const Mat4T<NarrowBatch> m(to_world), inverse(to_object);
+        origin = widened(transform_point_inverse(m, inverse, narrowed(origin)));
+        direction = widened(transform_vector(inverse, narrowed(direction)));
     }
-    const auto to_center = [&](float center, const Doubles& origin) {
-        return Doubles(static_cast<double>(center)) - origin;
-    };
-    const Vec3T<Doubles> to{to_center(sphere.center.x, rays.origin.x), to_center(sphere.center.y, rays.origin.y),
-                            to_center(sphere.center.z, rays.origin.z)};
-    const SphereTest<Doubles> test(to, SphereTestLine<Doubles>(rays.direction),
-                                   Doubles(static_cast<double>(sphere.radius)));
+    const SphereTest<Doubles> test(broadcast<Doubles>(Vec3d(sphere.center)) - origin,
+                                   SphereTestLine<Doubles>(direction), Doubles(static_cast<double>(sphere.radius)));
     const auto met = test.discriminant >= Doubles(0.0);
     if (!xsimd::any(met)) return none;
     const auto roots = test.roots();
