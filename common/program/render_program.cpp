@@ -5,6 +5,7 @@
 #include "common/program/statistics.h"
 #include "common/program/video.h"
 #include "common/program/view_transform_options.h"
+#include "common/system/memory.h"
 #include "common/system/name_table.h"
 #include "common/system/parallel.h"
 #include "common/system/stopwatch.h"
@@ -177,6 +178,7 @@ int run_render_program(const RenderProgram& program, int argc, char** argv) {
         add_common_options(command_line, options, program.spp_help);
         program.add_options(command_line);
         const std::optional<int> exit_code = command_line.parse(argc, argv);
+        limit_memory();
         return exit_code ? *exit_code : render_all(program, options);
     });
 }

@@ -1,7 +1,7 @@
 #include "common/program/statistics.h"
 
 #include "common/system/file.h"
-#include "common/system/peak_memory.h"
+#include "common/system/memory.h"
 
 #include <nlohmann/json.hpp>
 

@@ -6,7 +6,7 @@ from catalog import figure, number, table
 SIDE = 2237  # vertices along a side of the height field, which has ten million triangles
 INSTANCES = 100_000
 LIGHTS = 10_000
-IMAGE = 16_384  # pixels along a side of the large image
+IMAGE = 8_192  # pixels along a side of the large image
 SIZE = "640x360"
 
 CAMERA = {"eye": [0, 30, 60], "look_at": [0, 0, 0], "fov_degrees": 60}
