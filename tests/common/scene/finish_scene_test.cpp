@@ -1,119 +1,14 @@
-// These tests check what finish_scene computes: baked transforms that leave the visible surface unchanged, lights on
-// the correct side, bounds, and required features.
-#include "common/scene/build_scene.h"
-
-#include "common/geometry/quad.h"
-#include "common/geometry/sphere.h"
-#include "common/geometry/triangle.h"
+// These tests check what finish_scene() refuses, and the bounds and the needs that it finds.
+#include "tests/common/scene/one_object.h"
 #include "tests/support/errors.h"
 
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <functional>
 #include <limits>
-#include <random>
 
 using namespace duet;
-using duet::test::error_of;
-using duet::test::says;
-
-namespace {
-
-Object placed(std::uint32_t shape, const Mat4d& to_world, const Mat4d& end) {
-    Object object;
-    object.name = message("object ", shape);
-    object.shape = shape;
-    object.materials = {0};
-    object.place(Mat4(to_world), Mat4(end));
-    return object;
-}
-
-Scene scene_of(const Shape& shape, const Mat4d& to_world, const Material& material = Diffuse{}) {
-    Scene scene;
-    scene.materials = {material};
-    scene.material_names = {"m"};
-    scene.shapes = {shape};
-    scene.objects = {placed(0, to_world, to_world)};
-    return scene;
-}
-
-Scene finished(Scene scene) {
-    finish_scene(scene);
-    return scene;
-}
-
-Mesh tetrahedron() {
-    Mesh mesh;
-    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
-    return mesh;
-}
-
-/// Returns the nearest hit of a ray with one object by testing all of its primitives.
-Hit nearest(const Scene& scene, const Ray& world) {
-    const Object& object = scene.objects[0];
-    const ObjectTransform transform = object_transform(object, world.time);
-    Ray ray = world;
-    if (!object.identity) ray = to_object_space(world, transform.to_world, transform.to_object);
-    const Shape& shape = scene.shapes[object.shape];
-    Hit best;
-    for (std::uint32_t p = 0; p < primitive_count(shape); ++p) {
-        std::optional<TriangleHit> hit;
-        if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-            if (const auto t = intersect_sphere(ray, *sphere)) hit = TriangleHit{*t, 0, 0};
-        } else if (const auto* list = std::get_if<QuadList>(&shape)) {
-            hit = intersect_quad(ShearedRay(ray), list->quads[p]);
-        } else {
-            const PrimitiveVertices c = primitive_vertices(shape, p);
-            hit = intersect_triangle(ShearedRay(ray), c.p[0], c.p[1], c.p[2]);
-        }
-        if (hit && hit->t < best.t) best = {0, p, hit->u, hit->v, hit->t};
-    }
-    return best;
-}
-
-Mat4d random_transform(std::mt19937& random, bool similarity, bool mirror) {
-    std::uniform_real_distribution<double> u(-1, 1);
-    const Vec3d axis = normalize(Vec3d{u(random), u(random), u(random) + 2});
-    const double s = 1.5 + u(random);
-    const Vec3d scale = similarity ? Vec3d(s, s, s) : Vec3d(s, s * 1.5, s * 0.7);
-    return translation(Vec3d{u(random), u(random), u(random)}) * rotation(axis, 3 * u(random)) *
-           scaling(mirror ? Vec3d(-scale.x, scale.y, scale.z) : scale);
-}
-
-/// Checks that rays hit the same surface whether the object's transform is baked or not.
-void check_same_surface(const Shape& shape, const Mat4d& transform, std::mt19937& random, bool with_uv) {
-    Scene plain = scene_of(shape, transform);
-    const Scene baked = finished(plain);
-    REQUIRE(baked.objects[0].identity);
-    std::uniform_real_distribution<float> u(-1, 1);
-    int hits = 0;
-    for (int i = 0; i < 300; ++i) {
-        Ray ray{{10 * u(random), 10 * u(random), 10}, {}};
-        const Vec3 local{0.25f + 0.3f * u(random), 0.25f + 0.3f * u(random), 0.25f + 0.3f * u(random)};
-        ray.direction = normalize(transform_point(Mat4(transform), local) - ray.origin);
-        const Hit a = nearest(plain, ray), b = nearest(baked, ray);
-        if (a.valid() != b.valid() || a.primitive != b.primitive) continue; // rounding at an edge; counted below
-        if (!a.valid()) continue;
-        ++hits;
-        const SurfacePoint p = surface_point(plain, ray, a), q = surface_point(baked, ray, b);
-        CHECK(length(p.p - q.p) < 1e-3f); // rays start 20 units away, at any slant
-        CHECK(dot(p.ng, q.ng) > 0.9999f);
-        CHECK(dot(p.ns, q.ns) > 0.9999f);
-        if (with_uv) CHECK(std::abs(p.uv.x - q.uv.x) + std::abs(p.uv.y - q.uv.y) < 1e-3f);
-        CHECK(p.material == q.material);
-    }
-    CHECK(hits > 50);
-}
-
-const SurfaceLight& only_light(const Scene& scene) {
-    REQUIRE(scene.lights.size() == 1);
-    REQUIRE(scene.first_surface_light == 0);
-    return std::get<SurfaceLight>(scene.lights[0]);
-}
-
-} // namespace
+using namespace duet::test;
 
 TEST_SUITE("unit") {
 
@@ -154,172 +49,6 @@ TEST_SUITE("unit") {
             {[](Scene& s) { s.shapes.edit(0) = Sphere{{}, 0}; }, "\"patch\": found the radius 0, expected one above 0"},
         };
         for (const auto& [change, expected] : cases) CHECK(says(error_after(change), expected));
-    }
-
-    TEST_CASE("Baked objects look as before, mirrored or not") {
-        std::mt19937 random(3);
-        Mesh smooth = tetrahedron();
-        for (const Vec3 p : smooth.positions) {
-            smooth.normals.push_back(normalize(p - Vec3(0.25f, 0.25f, 0.25f)));
-            smooth.uvs.push_back({p.x + p.y, p.z - p.y});
-        }
-        for (int trial = 0; trial < 6; ++trial)
-            for (const bool mirror : {false, true}) {
-                CAPTURE(mirror);
-                check_same_surface(tetrahedron(), random_transform(random, false, mirror), random, !mirror);
-                check_same_surface(smooth, random_transform(random, true, mirror), random, true);
-                check_same_surface(QuadList{{Quad{{0, 0, 0}, {1, 0, 0.3f}, {0, 1, 0.2f}}}},
-                                   random_transform(random, false, mirror), random, !mirror);
-                check_same_surface(Sphere{{0.25f, 0.25f, 0.25f}, 0.4f}, random_transform(random, true, mirror), random,
-                                   false);
-            }
-    }
-
-    TEST_CASE("What baking would change is left alone") {
-        std::mt19937 random(4);
-        const auto kept = [&](const Scene& scene) { return !finished(scene).objects[0].identity; };
-        const Mat4d similar = random_transform(random, true, false), mirrored = random_transform(random, true, true),
-                    skewed = random_transform(random, false, false);
-        const Shape ball = Sphere{{0, 0, 0}, 1}, quad = QuadList{{Quad{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}},
-                    mesh = tetrahedron();
-        CHECK(kept(scene_of(ball, skewed)));
-        CHECK_FALSE(kept(scene_of(mesh, skewed)));
-        Mesh smooth = tetrahedron();
-        smooth.normals.assign(4, Vec3(0, 0, 1));
-        CHECK(kept(scene_of(smooth, skewed)));
-        CHECK_FALSE(kept(scene_of(smooth, similar)));
-
-        const auto textured = [](Scene scene, const Texture& texture) {
-            scene.textures.textures = {texture};
-            scene.textures.images = {ImageRgb(1, 1)};
-            std::get<Diffuse>(scene.materials[0]).albedo.texture = 0;
-            return scene;
-        };
-        for (const Shape& shape : {ball, quad, mesh}) {
-            CHECK(kept(textured(scene_of(shape, similar), NoiseTexture{})));
-            CHECK(kept(textured(scene_of(shape, similar), CheckerTexture{Rgb(), Rgb(), 1, true})));
-            CHECK(kept(textured(scene_of(shape, mirrored), CheckerTexture{})));
-            CHECK_FALSE(
-                kept(textured(scene_of(shape, translation(Vec3d(1, 2, 3)) * scaling(Vec3d(2, 2, 2))), ImageTexture{})));
-        }
-        CHECK(kept(textured(scene_of(ball, similar), CheckerTexture{})));
-        CHECK_FALSE(kept(textured(scene_of(quad, similar), CheckerTexture{})));
-
-        Scene twice = scene_of(mesh, similar);
-        twice.objects.push_back(placed(0, skewed, skewed));
-        CHECK(kept(twice));
-        Scene moving = scene_of(mesh, similar);
-        moving.objects[0] = placed(0, similar, skewed);
-        CHECK(kept(moving));
-    }
-
-    TEST_CASE("A box is baked only where its corners still meet, bit by bit") {
-        std::mt19937 random(5);
-        int baked = 0;
-        for (int trial = 0; trial < 50; ++trial) {
-            const Mat4d transform =
-                trial == 0 ? translation(Vec3d(1, 2, 3)) : random_transform(random, false, trial % 2 == 1);
-            const Scene scene = finished(scene_of(box_quads({-1, -1, -1}, {1, 1, 1}), transform));
-            if (!scene.objects[0].identity) continue;
-            ++baked;
-            std::vector<std::array<float, 3>> distinct;
-            for (std::uint32_t p = 0; p < 6; ++p) {
-                const PrimitiveVertices c = primitive_vertices(scene.shapes[0], p);
-                for (const Vec3 v : c.p) {
-                    const std::array<float, 3> key{v.x, v.y, v.z};
-                    if (std::find(distinct.begin(), distinct.end(), key) == distinct.end()) distinct.push_back(key);
-                }
-            }
-            CHECK(distinct.size() == 8);
-        }
-        CHECK(baked >= 1);
-    }
-
-    TEST_CASE("A mirrored light shines on the mirror image of its front side") {
-        // In object space the front side is +z. The transform (x, y, −z) makes it −z, and (−x, y, z) leaves it at +z.
-        const Emissive area_light{Rgb(2.0f)};
-        Mesh triangle;
-        triangle.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-        triangle.triangles = {{0, 1, 2}};
-        const Shape shapes[] = {QuadList{{Quad{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}}}, triangle};
-        for (const Shape& shape : shapes)
-            for (const bool baked : {true, false}) {
-                CAPTURE(baked);
-                for (const auto& [stretch, side_of_front] :
-                     {std::pair(Vec3d(1, 1, 1), 1.0f), std::pair(Vec3d(1, 1, -1), -1.0f),
-                      std::pair(Vec3d(-1, 1, 1), 1.0f)}) {
-                    const Vec3d scale = stretch;
-                    const float front = side_of_front;
-                    Scene scene = scene_of(shape, scaling(scale), area_light);
-                    if (!baked)
-                        scene.objects.push_back(
-                            // This object moves, so it is not a light.
-                            placed(0, translation(Vec3d(5, 0, 0)), translation(Vec3d(5, 1, 0))));
-                    finish_scene(scene);
-                    const SurfaceLight& light = only_light(scene);
-                    const float x = 0.25f * static_cast<float>(scale.x);
-                    CHECK(emits_towards(light, {x, 0.25f, front}));
-                    CHECK_FALSE(emits_towards(light, {x, 0.25f, -front}));
-                    // The side that a ray hits must agree.
-                    for (const float side : {-1.0f, 1.0f}) {
-                        const Ray ray{{x, 0.25f, side}, {0, 0, -side}};
-                        const SurfacePoint point = surface_point(scene, ray, nearest(scene, ray));
-                        CHECK(is_black(emitted(scene.materials[0], scene.textures, point, -ray.direction)) ==
-                              (side != front));
-                    }
-                }
-            }
-    }
-
-    TEST_CASE("Spheres emit outwards under any similarity; as ellipsoids they are no light") {
-        const Emissive area_light{Rgb(2.0f)};
-        const Scene mirrored = finished(scene_of(Sphere{{1, 0, 0}, 0.5f}, scaling(Vec3d(-2, 2, 2)), area_light));
-        const SurfaceLight& light = only_light(mirrored);
-        CHECK(std::get<Sphere>(light.shape).center == Vec3(-2, 0, 0));
-        CHECK(std::get<Sphere>(light.shape).radius == 1);
-        CHECK(emits_towards(light, {5, 0, 0}));
-        CHECK(finished(scene_of(Sphere{{1, 0, 0}, 0.5f}, scaling(Vec3d(1, 2, 1)), area_light)).lights.empty());
-    }
-
-    TEST_CASE("Surface lights follow the described ones, sorted, and are found again") {
-        Scene scene;
-        scene.materials = {Diffuse{}, Emissive{Rgb(3.0f)}, Emissive{Rgb(0.0f)}};
-        scene.material_names = {"white", "lamp", "off"};
-        Mesh mesh = tetrahedron();
-        mesh.positions.push_back({2, 2, 2});
-        mesh.triangles.push_back({4, 4, 4}); // zero area
-        mesh.material_slots = {1, 0, 1, 2, 1};
-        scene.shapes = {mesh, box_quads({0, 0, 0}, {1, 1, 1}), Sphere{}};
-        scene.objects = {placed(0, translation(Vec3d(4, 0, 0)), translation(Vec3d(4, 0, 0))),
-                         placed(1, Mat4d(), Mat4d()), placed(2, Mat4d(), translation(Vec3d(0, 1, 0)))};
-        scene.objects[0].materials = {0, 1, 2};
-        scene.objects[1].materials = {1};
-        scene.objects[2].materials = {1};
-        scene.lights = {PointLight{{0, 5, 0}, Rgb(1.0f)}};
-        for (int repeat = 0; repeat < 2; ++repeat) { // a second call changes nothing
-            finish_scene(scene);
-            CHECK(scene.first_surface_light == 1);
-            REQUIRE(scene.lights.size() == 1 + 2 + 6);
-        }
-        for (std::uint32_t o = 0; o < 3; ++o)
-            for (std::uint32_t p = 0; p < primitive_count(scene.shapes[o]); ++p) {
-                const std::int64_t index = surface_light_index(scene, o, p);
-                const bool expected = (o == 0 && (p == 0 || p == 2)) || o == 1;
-                CHECK((index >= 0) == expected);
-                if (index < 0) continue;
-                const auto& light = std::get<SurfaceLight>(scene.lights[static_cast<std::size_t>(index)]);
-                CHECK(light.object == o);
-                CHECK(light.primitive == p);
-            }
-        CHECK(material_index(scene, 0, 3) == 2);
-        CHECK(scene.needs.delta_lights);
-        CHECK(scene.needs.surface_lights);
-        CHECK(scene.needs.motion);
-        CHECK(scene.needs.meshes);
-        CHECK(scene.needs.quads);
-        CHECK(scene.needs.spheres);
-        CHECK_FALSE(scene.needs.textures);
-        CHECK_FALSE(scene.needs.environment);
     }
 
     TEST_CASE("Bounds hold every moment of the motion") {
@@ -394,14 +123,6 @@ TEST_SUITE("unit") {
         CHECK(opacity({1, 3}).needs.alpha);
     }
 
-    TEST_CASE("Meshes are found closed, also after a mirroring bake") {
-        CHECK(std::get<Mesh>(finished(scene_of(tetrahedron(), Mat4d())).shapes[0]).closed.value());
-        CHECK(std::get<Mesh>(finished(scene_of(tetrahedron(), scaling(Vec3d(1, 1, -1)))).shapes[0]).closed.value());
-        Mesh open = tetrahedron();
-        open.triangles.pop_back();
-        CHECK_FALSE(std::get<Mesh>(finished(scene_of(open, Mat4d())).shapes[0]).closed.value());
-    }
-
     TEST_CASE("An empty scene has finite bounds; one that reaches too far is refused") {
         Scene empty;
         finish_scene(empty);
@@ -416,5 +137,4 @@ TEST_SUITE("unit") {
         });
         CHECK_MESSAGE(says(power, "a light's power is beyond"), power);
     }
-
-} // TEST_SUITE
+}
