@@ -1,9 +1,13 @@
 #include "common/system/memory.h"
 
 #include <algorithm>
+#include <fstream>
 
 #include <sys/resource.h>
 #include <unistd.h>
+#if defined(__linux__)
+#include <sys/sysinfo.h>
+#endif
 
 namespace duet {
 
@@ -14,11 +18,15 @@ std::int64_t peak_memory_bytes() {
 }
 
 void limit_memory() {
-#if defined(_SC_PHYS_PAGES) && defined(RLIMIT_AS) && !defined(__SANITIZE_ADDRESS__) && !defined(__EMSCRIPTEN__)
-    const long pages = ::sysconf(_SC_PHYS_PAGES), page = ::sysconf(_SC_PAGESIZE);
+#if defined(__linux__)
+    struct sysinfo system {};
     rlimit limit{};
-    if (pages <= 0 || page <= 0 || ::getrlimit(RLIMIT_AS, &limit) != 0) return;
-    limit.rlim_cur = std::min(limit.rlim_cur, static_cast<rlim_t>(pages) * static_cast<rlim_t>(page));
+    if (::sysinfo(&system) != 0 || ::getrlimit(RLIMIT_AS, &limit) != 0) return;
+    const rlim_t memory = rlim_t{system.totalram + system.totalswap} * system.mem_unit;
+    rlim_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages; // all that the program has reserved
+    if (pages * static_cast<rlim_t>(::sysconf(_SC_PAGESIZE)) > memory) return; // by the address sanitizer
+    limit.rlim_cur = std::min(limit.rlim_cur, memory);
     ::setrlimit(RLIMIT_AS, &limit); // a failure leaves the program without a limit, as before
 #endif
 }

@@ -9,10 +9,9 @@ namespace duet {
 /// its code, its libraries and what it read. It is 0 where the system does not tell.
 std::int64_t peak_memory_bytes();
 
-/// Makes allocations throw std::bad_alloc from where the program would hold more than the computer's memory. Without a
-/// limit, the system would end the program, or another one, without a message. The limit also holds for programs that
-/// this one starts. It has no effect with the address sanitizer, which reserves more than that, or where the system
-/// knows no such limit.
+/// Makes allocations throw std::bad_alloc from where the program would hold more than the computer's memory and swap
+/// space. Without a limit, the system would end the program, or another one, without a message. The limit also holds
+/// for programs that this one starts. It exists on Linux, but not with the address sanitizer, which reserves more.
 void limit_memory();
 
 } // namespace duet
