@@ -27,15 +27,32 @@ def lit_frames_table(run):
     return table(["scene", "ms, all cores", "one core", "scaling", "prepare, ms"], rows)
 
 
+# The bytes that a stage reads and writes per pixel: four for each plane, and a quarter of that at half resolution.
+# Surface attributes write 17 planes. Direct light reads 12 of them and writes 9, which the shadow filter reads.
+STAGE_BYTES = {"ambient occlusion": 58, "direct light and shadows": 84, "indirect light": 78, "other": 16,
+               "reflections": 56, "shadow filter": 60, "surface attributes": 68}
+# What else a stage reads per pixel, from places that lie apart.
+STAGE_GATHERS = {"ambient occlusion": "5 depths, up to 45 of occluders",
+                 "direct light and shadows": "4 to 12 texels per area light, 16 per sun",
+                 "indirect light": "22 to 44 of half resolution, 40 of probes",
+                 "reflections": "16 to 40 of a probe",
+                 "surface attributes": "4 to 128 texels per texture"}
+
+
 @figure("lit-stages", 2)
 def lit_stages(run):
-    """the stages of `lit` (the frames of lit-frames)"""
-    frames = {result["scene"]: result["rows"][-1]["stages"] for result in lit_frames(run)}
+    """the stages of `lit` (the frames of lit-frames), and the least time of each by memory"""
+    rows = {result["scene"]: result["rows"][-1] for result in lit_frames(run)}
+    frames = {name: row["stages"] for name, row in rows.items()}
     scenes = ("cornell", "veach", "demo", "spheres", "glass")
     least = 5e-4  # seconds: stages that take less in every scene are left out
     stages = sorted({stage for name in scenes for stage, seconds in frames[name].items() if seconds > least})
-    return table(["stage, ms"] + [f"`{name}`" for name in scenes],
-                 [[stage] + [ms(frames[name].get(stage, 0), 2) for name in scenes] for stage in stages])
+    bandwidth = median(row["copy_bytes_per_second"] for row in rows.values())
+    floor = lambda stage: ms(1920 * 1080 * STAGE_BYTES[stage] / bandwidth, 2) if stage in STAGE_BYTES else ""
+    heads = ["stage, ms", *(f"`{name}`" for name in scenes), "floor", "bytes a pixel", "gathers a pixel"]
+    lines = [[stage, *(ms(frames[name].get(stage, 0), 2) for name in scenes), floor(stage),
+              STAGE_BYTES.get(stage, ""), STAGE_GATHERS.get(stage, "")] for stage in stages]
+    return f"{table(heads, lines)}\n\nFloors are by a copy of memory: {number(bandwidth / 1e9)} GB/s on all cores."
 
 
 def duration(seconds):
