@@ -55,6 +55,14 @@ void store_packets(const PacketOf<float>& a, const PacketOf<float>& b, const Pac
     store_packet(a, x, y, planes.x), store_packet(b, x, y, planes.y), store_packet(c, x, y, planes.z);
 }
 
+void set_sample(ColorPacket& colors, std::size_t i, Rgb c) { colors.r[i] = c.r, colors.g[i] = c.g, colors.b[i] = c.b; }
+
+/// Holds the SurfaceLobes of a packet's samples.
+struct LobesPacket {
+    ColorPacket diffuse, specular;
+    PacketOf<float> alpha, coat, coat_alpha;
+};
+
 void store_lobes(const SurfaceLobes& lobes, int x, int y, GBuffer& gbuffer) {
     gbuffer.diffuse.set_at(x, y, lobes.diffuse);
     gbuffer.specular.set_at(x, y, lobes.specular);
@@ -186,21 +194,17 @@ private:
 
     /// Finds the lobes of samples of one material with SIMD.
     void find_lobes(const SamplePacket& packet, std::uint32_t lanes, const LobesOfColor& lobes) {
+        LobesPacket found;
         for (std::size_t i = 0; i < kPacketSize; i += Floats::size) {
-            const auto here = lanes_from<float>(lanes >> i);
-            const auto put = [&](PacketOf<float>& to, const Floats& value) {
-                store(to, i, xsimd::select(here, value, load(to, i)));
-            };
-            const auto put_color = [&](ColorPacket& to, const RgbT<Floats>& c) {
-                put(to.r, c.r), put(to.g, c.g), put(to.b, c.b);
-            };
             const ColorPacket& base = shaded_.color;
             const RgbT<Floats> color{load(base.r, i), load(base.g, i), load(base.b, i)};
-            put_color(lobes_.diffuse, lobes.diffuse(color, cosines(packet, i)));
-            put_color(lobes_.specular, lobes.specular(color));
-            put(lobes_.alpha, Floats(lobes.alpha));
-            put(lobes_.coat, Floats(lobes.coat)), put(lobes_.coat_alpha, Floats(lobes.coat_alpha));
+            store(found.diffuse, i, lobes.diffuse(color, cosines(packet, i)));
+            store(found.specular, i, lobes.specular(color));
         }
+        found.alpha.fill(lobes.alpha), found.coat.fill(lobes.coat), found.coat_alpha.fill(lobes.coat_alpha);
+        copy_lanes(lanes, found.diffuse, lobes_.diffuse), copy_lanes(lanes, found.specular, lobes_.specular);
+        copy_lanes(lanes, found.alpha, lobes_.alpha);
+        copy_lanes(lanes, found.coat, lobes_.coat), copy_lanes(lanes, found.coat_alpha, lobes_.coat_alpha);
     }
 
     /// Finds the lobes of one sample, whose material has parameters that vary over the surface.
@@ -213,8 +217,7 @@ private:
         const float cosine = clamp(-dot(Vec3(n.x[i], n.y[i], n.z[i]), ray.direction), 1e-4f, 1.0f);
         const SurfaceLobes lobes =
             surface_lobes(bsdf_at(scene_.materials[point.material], scene_.textures, point), cosine);
-        const auto put_color = [&](ColorPacket& to, Rgb c) { to.r[i] = c.r, to.g[i] = c.g, to.b[i] = c.b; };
-        put_color(lobes_.diffuse, lobes.diffuse), put_color(lobes_.specular, lobes.specular);
+        set_sample(lobes_.diffuse, i, lobes.diffuse), set_sample(lobes_.specular, i, lobes.specular);
         lobes_.alpha[i] = lobes.alpha, lobes_.coat[i] = lobes.coat, lobes_.coat_alpha[i] = lobes.coat_alpha;
     }
 
@@ -244,8 +247,7 @@ private:
     void find_emission(const SamplePacket& packet, std::size_t i) {
         const Vec2d pixel = packet.position(i);
         const Hit hit = find_hit(geometry_, view_, samples_.id(i), pixel);
-        const Rgb c = hit_emission(scene_, view_, hit, pixel, samples_per_pixel(packet, view_));
-        emitted_.r[i] = c.r, emitted_.g[i] = c.g, emitted_.b[i] = c.b;
+        set_sample(emitted_, i, hit_emission(scene_, view_, hit, pixel, samples_per_pixel(packet, view_)));
     }
 
     const RasterSceneData& data_;
@@ -262,10 +264,7 @@ private:
     PacketPrimitives samples_;
     PacketAttributes shaded_;
     PacketOf<std::int32_t> object_, material_;
-    struct {
-        ColorPacket diffuse, specular;
-        PacketOf<float> alpha, coat, coat_alpha;
-    } lobes_{}; ///< SurfaceLobes of each sample
+    LobesPacket lobes_{};
     ColorPacket emitted_;
 };
 
