@@ -56,23 +56,24 @@ def lights(run):
     return write_scene(run, "lights", [FLOOR], lamps)
 
 
-def peak(run, program, path, size, *options):
-    return run(program, path, "--size", size, "--spp", 1, *options, "--quiet", output=".ppm").data["peak_memory_bytes"]
+def peak(run, program, path, size):
+    return run(program, path, "--size", size, "--spp", 1, "--quiet", output=".ppm").data["peak_memory_bytes"]
 
 
 @figure("memory", 12)
 def memory(run):
     """the most memory that both programs take for large scenes and a large image"""
     small = write_scene(run, "floor", [FLOOR], [SUN])
-    least = {program: peak(run, program, small, SIZE) for program in ("raster", "raytrace")}
-    rows = [["a floor and a sun", "", *(cell for program in least for cell in (number(least[program] / 1e6, 3), ""))]]
-    for what, count, path, size in (("triangles of one mesh", 2 * (SIDE - 1) ** 2, triangles(run), SIZE),
+    rows, least = [], {}
+    for what, count, path, size in (("a floor and a sun", 0, small, SIZE),
+                                    ("triangles of one mesh", 2 * (SIDE - 1) ** 2, triangles(run), SIZE),
                                     ("instances of one mesh", INSTANCES, instances(run), SIZE),
                                     ("point lights", LIGHTS, lights(run), SIZE),
                                     (f"pixels, {IMAGE:,} a side", IMAGE ** 2, small, f"{IMAGE}x{IMAGE}")):
         cells = []
-        for program in least:
+        for program in ("raster", "raytrace"):
             bytes_ = peak(run, program, path, size)
-            cells += [number(bytes_ / 1e6, 3), number((bytes_ - least[program]) / count, 3)]
-        rows.append([what, f"{count:,}", *cells])
+            least.setdefault(program, bytes_)  # of the first row
+            cells += [number(bytes_ / 1e6, 3), number((bytes_ - least[program]) / count, 3) if count else ""]
+        rows.append([what, f"{count:,}" if count else "", *cells])
     return table(["", "number", "rasterizer, MB", "bytes each", "path tracer, MB", "bytes each"], rows)

@@ -13,14 +13,14 @@ WORKS = {"phong": "Phong", "depth": "depth"}
 
 
 def lit_frames(run):
-    return run("compare", "frames", *map(scene, LIT_SCENES), "--repeats", 9).data["lit"]
+    return run("compare", "frames", *map(scene, LIT_SCENES), "--repeats", 9).data
 
 
 @figure("lit-frames", 2)
 def lit_frames_table(run):
     """whole frames of `lit`, and their preparation"""
     rows = []
-    for result in lit_frames(run):
+    for result in lit_frames(run)["lit"]:
         one, every = result["rows"][0], result["rows"][-1]
         rows.append([f"`{result['scene']}`", ms(every["frame_seconds"]), ms(one["frame_seconds"]),
                      number(one["frame_seconds"] / every["frame_seconds"]), ms(result["prepare_seconds"])])
@@ -42,12 +42,12 @@ STAGE_GATHERS = {"ambient occlusion": "5 depths, up to 45 of occluders",
 @figure("lit-stages", 2)
 def lit_stages(run):
     """the stages of `lit` (the frames of lit-frames), and the least time of each by memory"""
-    rows = {result["scene"]: result["rows"][-1] for result in lit_frames(run)}
-    frames = {name: row["stages"] for name, row in rows.items()}
+    measured = lit_frames(run)
+    frames = {result["scene"]: result["rows"][-1]["stages"] for result in measured["lit"]}
     scenes = ("cornell", "veach", "demo", "spheres", "glass")
     least = 5e-4  # seconds: stages that take less in every scene are left out
     stages = sorted({stage for name in scenes for stage, seconds in frames[name].items() if seconds > least})
-    bandwidth = median(row["copy_bytes_per_second"] for row in rows.values())
+    bandwidth = measured["copy_bytes_per_second"]
     floor = lambda stage: ms(1920 * 1080 * STAGE_BYTES[stage] / bandwidth, 2) if stage in STAGE_BYTES else ""
     heads = ["stage, ms", *(f"`{name}`" for name in scenes), "floor", "bytes a pixel", "gathers a pixel"]
     lines = [[stage, *(ms(frames[name].get(stage, 0), 2) for name in scenes), floor(stage),

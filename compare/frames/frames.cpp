@@ -5,6 +5,7 @@
 #include "common/program/statistics.h"
 #include "common/system/error.h"
 #include "common/system/file.h"
+#include "compare/frames/bandwidth.h"
 #include "compare/frames/cpu_affinity.h"
 #include "compare/frames/lit_frames.h"
 #include "compare/metrics/image_metrics.h"
@@ -182,6 +183,7 @@ int frames(const FramesOptions& options) {
                                    {"width", options.settings.size.width},
                                    {"height", options.settings.size.height},
                                    {"repeats", options.settings.repeats},
+                                   {"copy_bytes_per_second", copy_bandwidth(threads.back())},
                                    {"rows", rows},
                                    {"lit", lit}});
     return code;

@@ -1,7 +1,6 @@
 #include "compare/frames/lit_frames.h"
 
 #include "common/scene/scene.h"
-#include "compare/frames/bandwidth.h"
 #include "compare/frames/cpu_affinity.h"
 #include "compare/metrics/image_metrics.h"
 #include "compare/report/text.h"
@@ -44,7 +43,7 @@ LitRow measure_row(const raster::RasterScene& prepared, const View& view, int th
             stages[name].push_back(seconds);
         }
     }
-    LitRow row{threads, median(frames), {}, copy_bandwidth(threads)};
+    LitRow row{threads, median(frames), {}};
     for (const std::string& name : names) row.stages.emplace_back(name, median(stages[name]));
     return row;
 }
@@ -102,10 +101,7 @@ nlohmann::json lit_json(const LitScene& scene) {
     for (const LitRow& row : scene.rows) {
         nlohmann::json stages = nlohmann::json::object();
         for (const auto& [name, seconds] : row.stages) stages[name] = seconds;
-        rows.push_back({{"threads", row.threads},
-                        {"frame_seconds", row.frame},
-                        {"stages", stages},
-                        {"copy_bytes_per_second", row.copy_bandwidth}});
+        rows.push_back({{"threads", row.threads}, {"frame_seconds", row.frame}, {"stages", stages}});
     }
     return {{"scene", scene.name}, {"prepare_seconds", scene.prepare}, {"rows", rows}};
 }

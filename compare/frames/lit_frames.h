@@ -19,7 +19,6 @@ struct LitRow {
     double frame = 0; ///< seconds, by the clock that FrameSettings selects
     /// These are the wall-clock times of the stages, in the order of the frame. "other" is the rest of the frame.
     std::vector<std::pair<std::string, double>> stages;
-    double copy_bandwidth = 0; ///< bytes per second, by as many threads (compare/frames/bandwidth.h)
 };
 /// Holds the frames of one scene, one row per thread count.
 struct LitScene {
@@ -37,8 +36,8 @@ LitScene measure_lit_frames(const std::filesystem::path& scene, const std::vecto
 
 /// Prints a table of frames, and one of the stages of the last row of each scene.
 void print_lit_frames(std::ostream& out, const std::vector<LitScene>& scenes, const FrameSettings& settings);
-/// Returns a JSON object with `scene`, `prepare_seconds` and `rows`, whose members are `threads`, `frame_seconds`,
-/// `stages` (the seconds of each) and `copy_bytes_per_second`.
+/// Returns a JSON object with `scene`, `prepare_seconds` and `rows`, whose members are `threads`, `frame_seconds` and
+/// `stages`, the seconds of each.
 nlohmann::json lit_json(const LitScene& scene);
 
 } // namespace duet::compare
