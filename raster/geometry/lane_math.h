@@ -18,6 +18,11 @@ inline RgbT<Floats> blend(const xsimd::batch_bool<float>& where, const RgbT<Floa
     return {xsimd::select(where, a.r, b.r), xsimd::select(where, a.g, b.g), xsimd::select(where, a.b, b.b)};
 }
 
+/// Returns the vectors scaled to length 1; lanes of zero stay zero.
+inline Vec3T<Floats> unit_of(const Vec3T<Floats>& v) {
+    return v * inverse_sqrt(max(dot(v, v), Floats(1e-30f)));
+}
+
 /// Returns Σ c[i] xⁱ.
 template <typename T, std::size_t N> T polynomial(const std::array<float, N>& c, T x) {
     T sum(c[N - 1]);

@@ -57,10 +57,7 @@ void draw_background(const RasterSceneData& data, const RasterSettings& settings
         return;
     const ScreenProjection& projection = gbuffer.projection;
     const auto directions = [&](int x, int y) {
-        if (!gbuffer.position.empty()) {
-            const Vec3T<Floats> d = gbuffer.position.vector(x, y);
-            return d * inverse_sqrt(max(dot(d, d), Floats(1e-30f))); // padding lanes hold zero
-        }
+        if (!gbuffer.position.empty()) return unit_of(gbuffer.position.vector(x, y)); // padding lanes hold zero
         return -projection.to_viewer(projection.point(Floats(static_cast<float>(x)) + load(kLanesAsFloats, 0),
                                                       Floats(static_cast<float>(y)), Floats(projection.near())));
     };

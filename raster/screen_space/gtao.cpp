@@ -35,8 +35,6 @@ Floats arc_cosine(const Floats& x) {
     return xsimd::select(x < Floats(0.0f), Floats(kPi) - result, result);
 }
 
-Vec3s unit_of(const Vec3s& v) { return v * inverse_sqrt(max(dot(v, v), Floats(1e-30f))); }
-
 /// Holds the integrals over the open arc from the viewer's direction v, θ = 0, to a horizon, in the plane of v and t.
 /// The projected normal is at the angle γ. `all` is ∫ cos(θ − γ) sin θ dθ; `along_v` and `along_t` have the additional
 /// factors cos θ and sin θ.
