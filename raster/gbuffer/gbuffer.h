@@ -32,6 +32,7 @@ struct GBuffer {
     /// (raster/shading/hit_shader.h). The planes are empty for rasterized surfaces, whose points follow from their
     /// pixels and depths.
     Planes3 position;
+    bool eye_enclosed = false;  ///< whether an object that is left out encloses the eye and hides it from the surfaces
 
     GBuffer(const ScreenProjection& view, int width, int height, bool coats);
     int width() const { return reversed_depth.width(); }

@@ -15,11 +15,13 @@ namespace duet::raster {
 AmbientLight ambient_light(const RasterSceneData& data, const RasterSettings& settings,
                            const ScreenProjection& projection);
 
-/// Adds the light of the probes that diffuse surfaces reflect. It is interpolated at every pixel, without occlusion.
-void add_indirect_light(const RasterSettings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
-                        Planes3& radiance);
-/// Adds the light of the probes as interpolated at half resolution, without what occluders hide, and the light of the
-/// occluders. `half` holds both after GtaoImage::find_light().
+/// Sets the irradiance of `half` from the probes. Afterwards, GtaoImage::find_light() searches for the occluders that
+/// the probes do not resolve, up to occluder_reach() meters away.
+void interpolate_probes(const RasterSettings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
+                            GtaoImage& half);
+/// Returns 0 without ambient occlusion.
+float occluder_reach(const RasterSettings& settings, const IrradianceProbes& probes);
+/// Adds the light that diffuse surfaces reflect: that of `half`, and that of the probes where `half` has none.
 void add_indirect_light(const RasterSettings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
                         const GtaoImage& half, Planes3& radiance);
 

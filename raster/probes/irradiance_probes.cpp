@@ -98,7 +98,7 @@ IrradianceProbes::IrradianceProbes(const RasterSceneData& data, const RasterSett
         constexpr std::size_t kMostLights = 8;
         const ChosenLights lights{kMostLights, unit_float(high_bits(mix_bits(i)))};
         for (const int side : {kSide, kFineSide}) {
-            captures[i] = std::make_unique<ProbeCapture>(data, settings, position, side, data.glass, lights);
+            captures[i] = std::make_unique<ProbeCapture>(data, settings, position, side, 0, data.glass, lights);
             if (effective_pixels(*captures[i]) >= kFewestPixels) break;
         }
         captures[i]->add_fog(data, settings, {});

@@ -50,13 +50,13 @@ ProbeCapture::Face capture(const RasterSceneData& data, const RasterSettings& se
 }
 
 std::vector<ProbeCapture::Face> capture_all(const RasterSceneData& data, RasterSettings settings, Vec3d center,
-                                            int side, const Selection& selection) {
+                                            int side, int guard, const Selection& selection) {
     settings.threads = 1;
     settings.components = {};
     settings.skips.back_faces = settings.skips.back_faces && selection.excluded; // one object is seen from within, too
     const double size = static_cast<double>(length(data.scene.bounds.diagonal())) + 1e-30;
     std::vector<ProbeCapture::Face> faces;
-    for (Camera view : cube_views(center, {}, size, 1, 0)) {
+    for (Camera view : cube_views(center, {}, size, side, guard)) {
         view.shutter_open = view.shutter_close = data.scene.camera.shutter_open;
         faces.push_back(capture(data, settings, view, side, selection, faces.size()));
     }
@@ -72,12 +72,13 @@ Vec3 point_on_face(const ProbeCapture::Pixel& p, int side) {
 } // namespace
 
 ProbeCapture::ProbeCapture(const RasterSceneData& data, const RasterSettings& settings, Vec3d center, int side,
-                           const std::vector<std::uint32_t>& excluded, const ChosenLights& chosen)
-    : side_(side), faces_(capture_all(data, settings, center, side, {excluded, true, chosen})) {}
+                           int guard, const std::vector<std::uint32_t>& excluded, const ChosenLights& chosen)
+    : side_(side), guard_(guard),
+      faces_(capture_all(data, settings, center, side + 2 * guard, guard, {excluded, true, chosen})) {}
 
 ProbeCapture::ProbeCapture(const RasterSceneData& data, const RasterSettings& settings, Vec3d center,
                            std::uint32_t object, int side)
-    : side_(side), faces_(capture_all(data, settings, center, side, {{object}, false})) {}
+    : side_(side), guard_(0), faces_(capture_all(data, settings, center, side, 0, {{object}, false})) {}
 
 void ProbeCapture::add_fog(const RasterSceneData& data, const RasterSettings& settings, const AmbientLight& ambient) {
     if (!settings.fog || data.scene.media.empty()) return;
@@ -96,7 +97,7 @@ void ProbeCapture::add_fog(const RasterSceneData& data, const RasterSettings& se
 ProbeCapture::Pixel ProbeCapture::pixel(Vec3 w) const {
     const std::size_t face = cube_face(w);
     const Vec3 f = to_face(face, w);
-    return {face, cell_of(f.x / f.z, side_), cell_of(-f.y / f.z, side_)};
+    return {face, cell_of(f.x / f.z, side_) + guard_, cell_of(-f.y / f.z, side_) + guard_};
 }
 
 Vec3 ProbeCapture::direction(const Pixel& p, int side) {
@@ -113,7 +114,7 @@ float ProbeCapture::distance(const Pixel& p) const {
     const GBuffer& gbuffer = faces_[p.face].gbuffer;
     const float reversed = gbuffer.reversed_depth(p.x, p.y);
     if (!(reversed > 0)) return kInfinity;
-    return gbuffer.projection.near() / reversed * length(point_on_face(p, side_));
+    return gbuffer.projection.near() / reversed * length(point_on_face({p.face, p.x - guard_, p.y - guard_}, side_));
 }
 
 std::size_t ProbeCapture::memory_bytes() const {

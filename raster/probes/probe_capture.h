@@ -20,9 +20,9 @@ public:
         Planes3 direct;   ///< direct light that the surfaces reflect; the background's radiance
         Planes3 haze;     ///< FogGrid::haze towards the probe; empty if there are no media
     };
-    /// Renders side × side pixels for each face, on the calling thread. The objects in `excluded`, which is sorted, are
-    /// left out. `chosen` selects the lights.
-    ProbeCapture(const RasterSceneData& data, const RasterSettings& settings, Vec3d center, int side,
+    /// Renders side × side pixels for each face, and `guard` more on each side, on the calling thread. The objects in
+    /// `excluded`, which is sorted, are left out. `chosen` selects the lights.
+    ProbeCapture(const RasterSceneData& data, const RasterSettings& settings, Vec3d center, int side, int guard,
                  const std::vector<std::uint32_t>& excluded, const ChosenLights& chosen = {});
 
     /// Renders one object alone, without light: its surface as seen from within or from outside.
@@ -35,15 +35,15 @@ public:
 
     std::vector<Face>& faces() { return faces_; }
     const std::vector<Face>& faces() const { return faces_; }
-    int side() const { return side_; } ///< pixels along a side of a face
-    /// Identifies a pixel of the capture by its face, column and row.
+    int side() const { return side_; } ///< pixels along a side of a face, without the guard
+    /// Identifies a pixel of the capture by its face, column and row. The guard's pixels count.
     struct Pixel {
         std::size_t face;
         int x, y;
     };
     /// Returns the pixel in a direction of any length except zero.
     Pixel pixel(Vec3 w) const;
-    /// Returns the unit direction of a pixel of faces of side × side.
+    /// Returns the unit direction of a pixel of faces of side × side without a guard.
     static Vec3 direction(const Pixel& pixel, int side);
     /// Returns the solid angle that a pixel subtends.
     static float solid_angle(const Pixel& pixel, int side);
@@ -52,7 +52,7 @@ public:
     std::size_t memory_bytes() const;
 
 private:
-    int side_;
+    int side_, guard_;
     std::vector<Face> faces_; ///< six faces
 };
 

@@ -67,8 +67,16 @@ std::vector<Site> sites_of(const RasterSceneData& data) {
 /// lobes.
 void add_reflected_light(const RasterSceneData& data, RasterSettings settings, ProbeCapture& capture) {
     settings.threads = 1;
+    GtaoImage occlusion;
     for (ProbeCapture::Face& face : capture.faces()) {
-        if (data.irradiance_probes) add_indirect_light(settings, face.gbuffer, *data.irradiance_probes, face.direct);
+        if (data.irradiance_probes) {
+            const IrradianceProbes& probes = *data.irradiance_probes;
+            face.gbuffer.eye_enclosed = true; // by the object that has the probe
+            interpolate_probes(settings, face.gbuffer, probes, occlusion);
+            occlusion.find_light(occluder_reach(settings, probes), 1,
+                                 [&](int x, int y) { return face.direct.color_at(x, y); });
+            add_indirect_light(settings, face.gbuffer, probes, occlusion, face.direct);
+        }
         add_reflections(data, settings, face.gbuffer, nullptr, face.direct);
     }
     capture.add_fog(data, settings, ambient_light(data, settings, capture.faces().front().gbuffer.projection));
@@ -96,10 +104,11 @@ bool shows_light(const ProbeCapture& capture) {
 /// Renders the maps of one probe, on one thread. Rough surfaces need a map without the lights, because their
 /// reflections of lights are direct light, and because a light hides surfaces from the probe that other points see.
 RadianceMap render_map(const RasterSceneData& data, const RasterSettings& settings, const Site& site) {
+    constexpr int kGuardShare = 8;
     const int side = site.side;
     const auto capture = [&](const std::vector<std::uint32_t>& excluded) {
         constexpr std::size_t kMostLights = 16; // per cluster of pixels; models/lanterns.json then takes seconds
-        ProbeCapture result(data, settings, site.center, side / 2, excluded, {kMostLights});
+        ProbeCapture result(data, settings, site.center, side / 2, side / 2 / kGuardShare, excluded, {kMostLights});
         add_reflected_light(data, settings, result);
         return result;
     };

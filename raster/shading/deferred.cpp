@@ -17,10 +17,6 @@
 namespace duet::raster {
 namespace {
 
-/// Occluders are searched within this fraction of the distance between probes. The probes see farther occluders
-/// themselves.
-constexpr float kOccluded = 0.5f;
-
 double occlusion_radius(const RasterSceneData& data, const RasterSettings& settings) {
     if (settings.occlusion_radius > 0) return settings.occlusion_radius;
     const Camera& camera = data.scene.camera;
@@ -110,12 +106,9 @@ public:
         const int threads = settings_.threads;
         const bool occluded = settings_.ambient_occlusion;
         if (uses_probes()) {
-            frame_.occlusion.start(gbuffer, threads);
-            frame_.occlusion.set_irradiance(threads, [&](const auto& p, const auto& n, const auto& lanes) {
-                return data_.irradiance_probes->irradiance(gbuffer.projection, p, n, lanes);
-            });
+            interpolate_probes(settings_, gbuffer, *data_.irradiance_probes, frame_.occlusion);
             done("indirect light");
-            const float radius = occluded ? kOccluded * data_.irradiance_probes->spacing() : 0;
+            const float radius = occluder_reach(settings_, *data_.irradiance_probes);
             if (settings_.components.direct) {
                 frame_.occlusion.find_light(radius, threads, direct);
             } else {
