@@ -6,8 +6,10 @@ namespace {
 using Vec3s = Vec3T<Floats>;
 using Mask = Floats::batch_bool_type;
 
-/// This many points of a ray are tested, and kBisections narrow the interval between two of them.
-constexpr int kSearched = 16, kBisections = 6;
+/// The tested points of a ray are at most this far apart, as a part of the distance from the center. At least
+/// kFewestSteps of them are tested, and kBisections narrow the interval between two of them.
+constexpr float kLongestStep = 0.1f, kFewestSteps = 4;
+constexpr int kBisections = 6;
 /// A relative difference of distances below kTolerance is a hit. A difference above kStep is the discontinuity at a
 /// silhouette.
 constexpr float kTolerance = 0.01f, kStep = 0.15f;
@@ -42,12 +44,16 @@ private:
     /// silhouette, in whose direction the map shows what lies behind it. (McGuire et al. 2017, §4, march through
     /// several probes with the same three outcomes: hit, miss and unknown.)
     Floats search(const Mask& lanes) const {
+        const Vec3s chord = w_ - start_ * (Floats(1.0f) / max(length_, Floats(1e-20f)));
+        const Floats steps = max(xsimd::ceil(xsimd::sqrt(dot(chord, chord)) * Floats(1 / kLongestStep)),
+                                 Floats(kFewestSteps));
         Floats before(0.0f), result(RadianceMap::kFarthest); // an unobstructed ray ends at the background
-        Mask found = ~lanes, hidden = before > before;
-        for (int i = 1; i <= kSearched && !xsimd::all(found); ++i) {
-            const Floats s(static_cast<float>(i) / kSearched);
+        Mask done = ~lanes, hidden = before > before;
+        constexpr float kMostSteps = 2 / kLongestStep; // the chord is at most a diameter
+        for (float i = 1; i <= kMostSteps && !xsimd::all(done); ++i) {
+            const Floats s = Floats(i) / steps;
             const auto [ray, surface] = depths(at_fraction(s));
-            const Mask behind = ray > surface * Floats(1 + kTolerance), enters = behind & ~(hidden | found);
+            const Mask behind = ray > surface * Floats(1 + kTolerance), enters = behind & ~(hidden | done);
             if (xsimd::any(enters)) {
                 const auto [front, back] = bisect(before, s);
                 const Floats t = at_fraction(back);
@@ -55,9 +61,10 @@ private:
                 const Mask hit = there < met * Floats(1 + kStep);
                 const Floats beside = at_fraction(max(front - Floats(kBeside), Floats(0.0f)));
                 result = xsimd::select(enters, xsimd::select(hit, t, beside), result);
-                found = found | (enters & hit);
+                done = done | (enters & hit);
             }
-            result = xsimd::select(~(behind | found), Floats(RadianceMap::kFarthest), result);
+            result = xsimd::select(~(behind | done), Floats(RadianceMap::kFarthest), result);
+            done = done | ~(s < Floats(1.0f));
             hidden = behind, before = s;
         }
         return result;
