@@ -16,8 +16,8 @@ void add_run(CommandLine& program) {
             "The folder for index.html, raster.png, raytrace.png, difference.png and report.json")
         .required();
     add_scene_options(run, options.scene_options);
-    run.add("--spp", settings.raytrace_spp, "The path tracer's samples a pixel (default 64)").range(1, 1 << 24);
-    run.add("--raster-spp", settings.raster_spp, "The rasterizer's samples a pixel (default 16)").range(1, 1 << 24);
+    run.add("--spp", settings.raytrace_spp, "The path tracer's samples per pixel (default 64)").range(1, 1 << 24);
+    run.add("--raster-spp", settings.raster_spp, "The rasterizer's samples per pixel (default 16)").range(1, 1 << 24);
     add_depth_and_threads(run, settings);
     run.add("--seed", settings.seed, "Seed of all random numbers (default 0)");
     add_view_transform(run, options.view_transform);

@@ -21,7 +21,7 @@ void add_options(CommandLine& command_line, Options& options) {
                      "normal, albedo or depth");
     command_line.add(
         "--msaa", options.settings.multisamples,
-        "Multisampling: coverage and depth at 2, 4, 8 or 16 samples a pixel, shading once a primitive (in place "
+        "Multisampling: coverage and depth at 2, 4, 8 or 16 samples per pixel, shading once per primitive (in place "
         "of --spp); lit shades each sample");
     command_line.add_flag("--edges", options.settings.edges,
                           "Draw lines over the image where depth, normals or objects change");

@@ -27,12 +27,12 @@ void validate(const View& view, const RasterSettings& settings) {
         throw Error(message("framebuffer size ", view.width, "x", view.height, ": expected 1 to ", kMaxRenderSide,
                             " pixels a side"));
     if (settings.samples_per_pixel < 1)
-        throw Error(message(settings.samples_per_pixel, " samples a pixel: expected at least 1"));
+        throw Error(message(settings.samples_per_pixel, " samples per pixel: expected at least 1"));
     if (settings.multisamples > 0 && settings.samples_per_pixel > 1)
-        throw Error(message("multisampling with ", settings.samples_per_pixel,
-                            " samples a pixel: expected 1 (sample shading takes each for itself)"));
+        throw Error(message("found both multisampling and ", settings.samples_per_pixel,
+                            " samples per pixel, expected one of them: leave out --spp or --msaa"));
     if (settings.multisamples > 0 && draws_edges(settings))
-        throw Error("edges with multisampling: expected several samples a pixel instead");
+        throw Error("edges with multisampling: expected several samples per pixel instead");
 }
 
 std::vector<Pass> plan_view(const RasterSceneData& data, const View& view, const CameraModel& camera,

@@ -57,7 +57,7 @@ std::string debug_pixel(const PathTracerScene& prepared, const View& view, const
     const Hit hit = plan.prepared.accelerator.closest(ray);
     std::ostringstream out;
     out << "pixel " << x << "," << y << ", sample " << index << " of " << sampler_name(settings.sampler) << ", seed "
-        << settings.seed << "\ncamera ray from " << text_of(ray.origin) << " towards " << text_of(ray.direction)
+        << settings.seed << "\ncamera ray from " << text_of(ray.origin) << " toward " << text_of(ray.direction)
         << ", from t " << ray.t_min << " on, time " << ray.time << "\n";
     Rgb radiance;
     if (is_path(settings.integrator)) {

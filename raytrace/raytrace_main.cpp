@@ -52,7 +52,7 @@ void add_options(CommandLine& command_line, Options& options) {
     command_line.add_flag(
         "--denoise", options.settings.denoise,
         "Blur the noise, but not what albedo, normals, depth or both halves of the samples show, "
-        "and keep the undenoised image as NAME.noisy.EXT. Needs 2 samples a pixel (default: not)");
+        "and keep the undenoised image as NAME.noisy.EXT. Needs 2 samples per pixel (default: not)");
     command_line.add(
         "--film", options.film,
         "Keep all samples in this .exr: written at intervals, at the end and when interrupted; a later run goes on "
@@ -137,7 +137,7 @@ int main(int argc, char** argv) {
     program.examples = {"raytrace models/cornell.json -o cornell.png --spp 256",
                         "raytrace mesh.obj -o mesh.png --time 60 --denoise",
                         "raytrace merge a.exr b.exr -o joined.png    (films of --film; see raytrace merge --help)"};
-    program.spp_help = "Samples a pixel (default 64; none where --time or --error ends the render)";
+    program.spp_help = "Samples per pixel (default 64; none where --time or --error ends the render)";
     program.add_options = [&](CommandLine& command_line) { add_options(command_line, options); };
     program.check = [&](const OutputOptions& output) { check_options(options, output); };
     program.wants_text_output = [&] { return !options.pixel.empty(); };

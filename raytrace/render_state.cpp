@@ -11,9 +11,9 @@ void check(const View& view, const PathTracerSettings& settings) {
     if (view.width < 1 || view.height < 1)
         throw Error(message("image of ", view.width, " x ", view.height, " pixels: expected at least 1 x 1"));
     if (settings.samples_per_pixel < 1)
-        throw Error(message(settings.samples_per_pixel, " samples a pixel: expected at least 1"));
+        throw Error(message(settings.samples_per_pixel, " samples per pixel: expected at least 1"));
     if (settings.denoise && settings.samples_per_pixel < 2)
-        throw Error("the denoiser compares samples of a pixel: found 1, expected at least 2 samples a pixel");
+        throw Error("the denoiser compares samples of a pixel: found 1, expected at least 2 samples per pixel");
     if (!settings.film.empty() &&
         (settings.aovs.depth || settings.aovs.normal || settings.aovs.albedo || settings.aovs.hit))
         throw Error("a film keeps no depth, normal, albedo or hit: expected none of these auxiliary images with it");

@@ -80,7 +80,7 @@ struct PixelShare {
     double additional(double scale) const { return std::clamp(scale * deviation - taken, 0.0, taken); }
 };
 
-constexpr double kMinVariance = 0.01; // lower bound of s, whose mean is 1
+constexpr double kMinVariance = 0.01; // lower bound of a pixel's variance, relative to the image's mean
 
 double total_additional(const std::vector<PixelShare>& shares, double scale) {
     double sum = 0;

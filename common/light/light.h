@@ -53,7 +53,7 @@ struct LightSample {
 /// (behind the emitting side, outside the cone), or where u selects a degenerate point.
 std::optional<LightSample> sample_light(const Light& light, Vec3 p, Vec2 u);
 /// Returns the density, by solid angle at p, with which sample_light draws the direction to the point q of the light.
-/// The density is 0 where the light does not emit towards p.
+/// The density is 0 where the light does not emit toward p.
 float light_pdf(const SurfaceLight& light, Vec3 p, Vec3 q);
 /// Returns whether p lies on an emitting side. A point in a flat light's own plane does not.
 bool emits_towards(const SurfaceLight& light, Vec3 p);

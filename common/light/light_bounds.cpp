@@ -13,7 +13,7 @@ namespace {
 /// Returns the angle between two unit vectors. Unlike the arc cosine, it is accurate for nearly parallel vectors.
 float angle_between(Vec3 a, Vec3 b) { return 2 * std::atan2(length(a - b), length(a + b)); }
 
-/// Returns v rotated by an angle towards the unit vector `to`, which must not be parallel to v.
+/// Returns v rotated by an angle toward the unit vector `to`, which must not be parallel to v.
 Vec3 rotated_towards(Vec3 v, Vec3 to, float angle) {
     return normalize(v * std::cos(angle) + normalize(to - v * dot(v, to)) * std::sin(angle));
 }

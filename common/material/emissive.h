@@ -16,7 +16,7 @@ struct Emissive {
 
     /// Returns the BSDF of the light that the surface reflects at a point.
     DiffuseBsdf at(const TextureSet& textures, const SurfacePoint& point) const;
-    /// Returns the radiance that the point emits towards w (of any length), in W/(m² sr).
+    /// Returns the radiance that the point emits toward w (of any length), in W/(m² sr).
     Rgb emitted(const TextureSet& textures, const SurfacePoint& point, Vec3 w) const {
         if (!two_sided && !(dot(point.ng, w) > 0)) return Rgb();
         return evaluate(textures, RgbSlot{radiance, radiance_texture}, point);

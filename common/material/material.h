@@ -85,7 +85,7 @@ inline bool is_transmissive(const Bsdf& bsdf) {
 }
 /// Returns the index of refraction inside over outside where the surface refracts into an interior, and 1 elsewhere.
 float refraction_index(const Bsdf& bsdf);
-/// Returns the radiance that the material emits at a point towards w, in W/(m² sr). Only Emissive is not black.
+/// Returns the radiance that the material emits at a point toward w, in W/(m² sr). Only Emissive is not black.
 Rgb emitted(const Material& material, const TextureSet& textures, const SurfacePoint& point, Vec3 w);
 /// Returns the material as an emitter, or null where it is not Emissive or its radiance is black.
 const Emissive* emitter(const Material& material);

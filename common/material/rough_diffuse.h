@@ -16,7 +16,7 @@ struct RoughDiffuseBsdf {
 
     /// Returns the BSDF without the cosine; black where wo and wi are on different sides.
     Rgb eval(Vec3 wo, Vec3 wi, TransportMode mode) const;
-    /// Draws wi cosine-distributed or uniform over wo's side. The uniform fraction grows with roughness and towards
+    /// Draws wi cosine-distributed or uniform over wo's side. The uniform fraction grows with roughness and toward
     /// grazing wo.
     std::optional<BsdfSample> sample(Vec3 wo, float lobe, Vec2 u, TransportMode mode) const;
     /// Returns the density, by solid angle, with which sample draws wi.

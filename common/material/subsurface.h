@@ -95,7 +95,7 @@ struct SubsurfaceExitBsdf {
     LayeredBsdf surface; ///< layers that the light passes
     float mean_passed;   ///< surface.mean_passed()
 
-    /// Returns the fraction of the light from inside that leaves towards wi per solid angle, divided by the cosine of
+    /// Returns the fraction of the light from inside that leaves toward wi per solid angle, divided by the cosine of
     /// wi.
     Rgb eval(Vec3 wo, Vec3 wi, TransportMode mode) const;
     /// Draws a direction outside, with the density of Lambert's law.

@@ -13,36 +13,42 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <limits>
 #include <type_traits>
 
 namespace duet {
 
 namespace {
 
-// Returns a check that the text is a finite number for which accepts() is true. `expected` describes those numbers in
-// the message. CLI11's own checks print the largest double as a bound, and accept NaN.
+// Returns a check for which accepts() decides on a whole text. `name` stands in the help. CLI11's own checks do not say
+// what they expect, print the largest double as a bound, and accept NaN.
 template <typename Accepts>
-CLI::Validator number_check(const char* name, const char* expected, const Accepts& accepts) {
+CLI::Validator check(const std::string& name, const std::string& expected, const Accepts& accepts) {
     return {[=](std::string& text) -> std::string {
-                char* end = nullptr;
-                const double value = std::strtod(text.c_str(), &end);
-                if (end != text.c_str() && *end == '\0' && std::isfinite(value) && accepts(value)) return {};
-                return "found " + text + ", expected " + expected;
+                return accepts(text) ? std::string() : message("found ", text, ", expected ", expected);
             },
             name};
 }
 
-// Returns a check for decimal digits of a number below 2^64. A conversion to unsigned would skip, wrap or truncate
-// other text.
-CLI::Validator unsigned_check() {
-    return {[](std::string& text) -> std::string {
-                std::uint64_t value = 0;
-                const char *const begin = text.data(), *const end = begin + text.size();
-                if (const auto [rest, error] = std::from_chars(begin, end, value); error == std::errc() && rest == end)
-                    return {};
-                return "found " + text + ", expected a whole number from 0 to 2^64 - 1";
-            },
-            ""};
+// Returns a check that the text is a finite number for which accepts() is true.
+template <typename Accepts>
+CLI::Validator number_check(const std::string& name, const std::string& expected, const Accepts& accepts) {
+    return check(name, expected, [=](const std::string& text) {
+        char* end = nullptr;
+        const double value = std::strtod(text.c_str(), &end);
+        return end != text.c_str() && *end == '\0' && std::isfinite(value) && accepts(value);
+    });
+}
+
+// Returns a check for the digits of a number from low to high. A conversion alone would skip, wrap or truncate other
+// text.
+template <typename Integer> CLI::Validator integer_check(const std::string& name, Integer low, Integer high) {
+    return check(name, message("a whole number from ", low, " to ", high), [=](const std::string& text) {
+        Integer value = 0;
+        const char *const begin = text.data(), *const end = begin + text.size();
+        const auto [rest, error] = std::from_chars(begin, end, value);
+        return error == std::errc() && rest == end && value >= low && value <= high;
+    });
 }
 
 } // namespace
@@ -64,7 +70,7 @@ Option& Option::needs(const std::string& other) {
     return *this;
 }
 Option& Option::range(std::int64_t low, std::int64_t high) {
-    option_->check(CLI::Range(low, high));
+    option_->check(integer_check(message("in [", low, " - ", high, "]"), low, high));
     return *this;
 }
 Option& Option::number_range(double low, double high, const char* expected) {
@@ -93,7 +99,7 @@ template <typename T> Option CommandLine::add(const std::string& names, T& value
         return {*app_, *app_->add_option_function<std::string>(names, parse, help)};
     } else {
         CLI::Option* const option = app_->add_option(names, value, help);
-        if constexpr (std::is_same_v<T, std::uint64_t>) option->check(unsigned_check());
+        if constexpr (std::is_same_v<T, std::uint64_t>) option->check(integer_check<std::uint64_t>("", 0, std::numeric_limits<std::uint64_t>::max()));
         return {*app_, *option};
     }
 }

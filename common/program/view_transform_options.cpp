@@ -16,7 +16,8 @@ void add_view_transform(CommandLine& program, ViewTransformOptions& options) {
             "Tone curve of 8-bit images: none, filmic or agx (default: the scene's, or none, which clips)")
         .repeatable();
     program.add_flag("--dither,!--no-dither", options.dither,
-                     "Add noise of one code to 8-bit images, which hides the steps of slow gradients");
+                     "Add noise of one code to 8-bit images, which hides the steps of slow gradients (default: as the "
+                     "scene says, or not)");
 }
 
 } // namespace duet

@@ -63,7 +63,8 @@ std::optional<float> constant_red(const TextureSet& set, const Texture& texture)
 /// Raises the mean free paths of solids to the least that positions in float can resolve. A path below it in all
 /// channels becomes 0, which is a diffuse surface.
 void limit_mean_free_paths(Scene& scene) {
-    constexpr float kLeast = 1.0f / 65536; // of the largest coordinate; origins of rays are offset by up to 1 % of it
+    // This is a fraction of the largest coordinate. Origins of rays are offset by up to 1 % of such a length.
+    constexpr float kLeast = 1.0f / 65536;
     std::vector<float> extents(scene.materials.size());
     for (const Object& object : scene.objects) {
         const Box3 box = motion_bounds(object, scene.shapes[object.shape]);

@@ -116,7 +116,7 @@ BaselineComparison compare_with_baseline(const std::vector<SceneResult>& results
     with_json_errors([&] { compare_all(results, earlier, comparison); });
     if (comparison.rows.empty())
         throw Error("--baseline: no row of this run is in it: other scene files, sizes, techniques, samplers or "
-                    "samples a pixel");
+                    "samples per pixel");
     find_changes(comparison);
     return comparison;
 }

@@ -23,7 +23,9 @@ void add_bench(CommandLine& program) {
         .add("--samplers", options.choice.samplers,
              "For each of the path tracer's techniques, of sobol, stratified, independent (default: all)")
         .comma_separated();
-    bench.add("--spp", options.choice.spps, "Samples a pixel (default 1,4,16,64)").comma_separated().range(1, 1 << 20);
+    bench.add("--spp", options.choice.spps, "Samples per pixel (default 1,4,16,64)")
+        .comma_separated()
+        .range(1, 1 << 20);
     bench.add("--peer", options.peer,
               "Measure Blender's path tracer (cycles) or rasterizer (eevee, which also needs xvfb) beside ours");
     bench.add("--at-seconds", options.equal_times_seconds, "Compare errors at these times, too: 1,4,15")
@@ -54,19 +56,19 @@ void add_bench(CommandLine& program) {
               "photons. Only path's are checked against others");
     bench
         .add("--reference-spp", options.reference_spp,
-             "The references' samples a pixel (default: 16 times the most of --spp)")
+             "The references' samples per pixel (default: 16 times the most of --spp)")
         .range(2, 1 << 24);
     bench
         .add("--check-spp", options.check_spp,
-             "Samples a pixel of naive's and the peer's references, which check ours (default: as many as "
+             "Samples per pixel of naive's and the peer's references, which check ours (default: as many as "
              "it has)")
         .range(2, 1 << 24);
     bench.add("--baseline", options.baseline,
               "report.json of an earlier run: exit with 1 where a row is now slower or less accurate");
     bench
         .add("--drift", options.drift,
-             "By what part a machine's pace may change between runs (default 0.15): slower or faster by no "
-             "more is no finding")
+             "Fraction by which the processor's speed may differ between runs (default 0.15); smaller changes are "
+             "not reported")
         .number_range(0, 10, "a number from 0 to 10");
     bench.add("--stats", options.stats, "Write the figures of report.json to this file too (-: standard output)");
     bench.add_flag("--quiet", options.quiet, "No progress bar, no tables");

@@ -25,7 +25,7 @@ double Reference::mse() const {
 
 std::string ReferenceKey::text() const {
     return message("scene ", scene_hash, ", estimator ", estimator, " ", version, ", ", width, "x", height, ", depth ",
-                   depth, ", ", spp, " samples a pixel", program.empty() ? "" : ", by ", program);
+                   depth, ", ", spp, " samples per pixel", program.empty() ? "" : ", by ", program);
 }
 
 fs::path default_reference_folder() {

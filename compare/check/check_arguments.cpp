@@ -13,9 +13,10 @@ void add_check(CommandLine& program) {
                                        "one a line")
         .required();
     check.add("--size", options.size, "Image size WIDTHxHEIGHT (default: the scene's)");
-    check.add("--spp", options.settings.raytrace_spp, "The path tracer's samples a pixel (default 4)")
-        .range(1, 1 << 20);
-    check.add("--raster-spp", options.settings.raster_spp, "The rasterizer's samples a pixel (default 1)")
+    check.add("--spp", options.settings.raytrace_spp,
+              "The path tracer's samples per pixel (default 4); at least 2, because their variance is checked")
+        .range(2, 1 << 20);
+    check.add("--raster-spp", options.settings.raster_spp, "The rasterizer's samples per pixel (default 1)")
         .range(1, 1 << 20);
     check.add("--seed", options.settings.seed, "Seed of all random numbers (default 0)");
     check.add("--memory", options.memory_limit, "Limit of the address space in MiB (default: none)")

@@ -28,9 +28,9 @@ def lit_frames_table(run):
 
 
 # The bytes that a stage reads and writes per pixel: four for each plane, and a quarter of that at half resolution.
-# Surface attributes write 17 planes. Direct light reads 12 of them and writes 9, which the shadow filter reads.
+# Surface attributes write 17 planes. Direct light reads 12 of them and writes 9, which the shadow denoiser reads.
 STAGE_BYTES = {"ambient occlusion": 58, "direct light and shadows": 84, "indirect light": 78, "other": 16,
-               "reflections": 56, "shadow filter": 60, "surface attributes": 68}
+               "reflections": 56, "shadow denoiser": 60, "surface attributes": 68}
 # What else a stage reads per pixel, from places that lie apart.
 STAGE_GATHERS = {"ambient occlusion": "5 depths, up to 45 of occluders",
                  "direct light and shadows": "4 to 12 texels per area light, 16 per sun",

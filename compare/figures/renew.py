@@ -40,17 +40,18 @@ def others_of(used):
     return max(each.others for each in used)
 
 
-def commands(used):
+def commands(name, used):
     lines = []
     for each in used[:MOST_COMMANDS] if len(used) <= MOST_COMMANDS else used[:1]:
         line = ""
-        for word in each.command:
+        output = ["-o", "image.pfm"] if each.command[0] in ("raster", "raytrace") else []
+        for word in each.command + output:
             if line and len(line.split("\n")[-1]) + len(word) > 110:
                 line += " \\\n   "
             line += (" " if line else "") + word
         lines.append(line)
     if len(used) > MOST_COMMANDS:
-        lines.append(f"# and {len(used) - 1} more")
+        lines.append(f"# and {len(used) - 1} more; all: sh compare/figures.sh {name}")
     return "```sh\n" + "\n".join(lines) + "\n```"
 
 
@@ -66,7 +67,7 @@ def renew(name, run, busy):
         (SOURCE / path).write_text(svg, encoding="utf-8")
     body += "\n\n" + provenance(run.used)
     for page, text in read_pages(SOURCE).items():
-        shown = body if page == SOURCE / "README.md" else f"{body}\n\n{commands(run.used)}"
+        shown = body if page == SOURCE / "README.md" else f"{body}\n\n{commands(name, run.used)}"
         filled = blocks.fill(page, text, name, shown, SOURCE)
         if filled != text:
             page.write_text(filled, encoding="utf-8")

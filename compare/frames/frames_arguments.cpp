@@ -49,7 +49,7 @@ void add_frames(CommandLine& program) {
     frames.add("--repeats", options.settings.repeats, "Repeats of each row, ours and the peer's in turns (default 9)")
         .range(1, 10000);
     frames.add_flag("--processor-time", options.settings.processor_time,
-                    "Count the seconds of all processors instead of the clock's: on a machine that others use, too");
+                    "Count the seconds of all processors instead of the clock's, for a computer that others use, too");
     frames.add("--texture", options.texture,
                "An image for base color, by the meshes' texture coordinates (default: gray); the rasterizer alone is "
                "measured with it");

@@ -78,7 +78,7 @@ LitScene measure_lit_frames(const std::filesystem::path& path, const std::vector
 void print_lit_frames(std::ostream& out, const std::vector<LitScene>& scenes, const FrameSettings& settings) {
     const std::vector<int> widths{-16, 9, 9, 9, 9};
     out << "Lit frames of " << settings.size.width << "x" << settings.size.height
-        << " pixels, one sample a pixel: milliseconds ("
+        << " pixels, one sample per pixel: milliseconds ("
         << "medians of " << settings.repeats << ")\n";
     print_cells(out, widths, {"scene", "threads", "prepare", "frame", "scaling"});
     for (const LitScene& scene : scenes)

@@ -43,7 +43,7 @@ struct EdgeSearcher {
     }
 };
 
-/// Tries displacements on circles whose radii halve towards the center. This resolves most disagreements, which are
+/// Tries displacements on circles whose radii halve toward the center. This resolves most disagreements, which are
 /// ordinary edges.
 bool try_circles(EdgeSearcher& search) {
     constexpr int kAngles = 16;

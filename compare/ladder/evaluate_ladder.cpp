@@ -14,7 +14,7 @@ namespace {
 /// Holds the contributions of one camera sample to I₁ … I₇.
 using StageValues = std::array<Rgbd, kRungCount>;
 
-/// Holds the rasterizer's light towards the viewer in one pixel.
+/// Holds the rasterizer's light toward the viewer in one pixel.
 struct RasterLight {
     Rgbd emission, direct, environment, indirect, reflection, shadowed;
 

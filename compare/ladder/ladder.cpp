@@ -52,7 +52,7 @@ void write_images(const fs::path& folder, const LadderResult& result) {
     const double range = difference_range(result.images.first, result.images.image(kRungCount));
     for (std::size_t k = 0; k <= kRungCount; ++k) {
         const ImageRgb image = result.images.image(k);
-        write_image(folder / message("picture-", k, ".png"), image);
+        write_image(folder / message("image-", k, ".png"), image);
         if (k > 0)
             write_image(folder / message("change-", k, ".png"),
                         difference_image(result.images.image(k - 1), image, range));

@@ -15,9 +15,10 @@ void add_ladder(CommandLine& program) {
     add_scene_options(ladder, options.scene_options);
     ladder
         .add("--spp", settings.raytrace_spp,
-             "The path tracer's samples a pixel, in two halves (default 64; odd numbers are rounded up)")
+             "The path tracer's samples per pixel, in two halves (default 64; odd numbers are rounded up)")
         .range(1, 1 << 24);
-    ladder.add("--raster-spp", settings.raster_spp, "The rasterizer's samples a pixel (default 16)").range(1, 1 << 24);
+    ladder.add("--raster-spp", settings.raster_spp, "The rasterizer's samples per pixel (default 16)")
+        .range(1, 1 << 24);
     add_depth_and_threads(ladder, settings);
     ladder.add("--seed", settings.seed, "Seed of all random numbers (default 0)");
     ladder.add("--stats", options.stats, "Write the figures of report.json to this file too (-: standard output)");

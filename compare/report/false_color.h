@@ -7,7 +7,7 @@ namespace duet::compare {
 
 /// Returns the color (sRGB-encoded components in [0, 1]) of a signed value, clamped to [−1, 1]: blue for negative
 /// values, near white for 0, and orange for positive values. Blue and orange can be distinguished with every common
-/// kind of color vision. Lightness decreases evenly towards both ends.
+/// kind of color vision. Lightness decreases evenly toward both ends.
 Rgb diverging_color(double value);
 
 /// Returns A − B in luminance, mapped by diverging_color over [−range, range], as linear values for

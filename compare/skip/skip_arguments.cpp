@@ -13,8 +13,9 @@ void add_skip(CommandLine& program) {
     skip.add("SCENE", options.scene, "A scene file (.json) or a bare mesh (.obj)").required();
     skip.add("--size", options.size,
              "Image size WIDTHxHEIGHT (default: the scene's shape, its longer side 128 pixels)");
-    skip.add("--spp", options.settings.raytrace_spp, "The path tracer's samples a pixel (default 4)").range(1, 1 << 20);
-    skip.add("--raster-spp", options.settings.raster_spp, "The rasterizer's samples a pixel (default 4)")
+    skip.add("--spp", options.settings.raytrace_spp, "The path tracer's samples per pixel (default 4)")
+        .range(1, 1 << 20);
+    skip.add("--raster-spp", options.settings.raster_spp, "The rasterizer's samples per pixel (default 4)")
         .range(1, 1 << 20);
     skip.add("--repeats", options.measure.repeats, "Images each way, in turns (default 5)").range(1, 10000);
     skip.add("--budget", options.measure.budget,

@@ -61,21 +61,21 @@ void leak_random(Trial& trial) {
     check_ray(trial, closed_mesh, {inside(closed_mesh, trial), trial.random.direction()});
 }
 
-Ray towards(Vec3 origin, Vec3 target) { return {origin, normalize_scaled(target - origin)}; }
+Ray toward(Vec3 origin, Vec3 target) { return {origin, normalize_scaled(target - origin)}; }
 
 void leak_edges(Trial& trial) {
     const ClosedMesh& closed_mesh = chosen(trial);
     const Mesh& mesh = closed_mesh.mesh();
     const auto& t = mesh.triangles[trial.random.below(static_cast<std::uint32_t>(mesh.triangles.size()))];
     const Vec3 target = lerp(mesh.positions[t[0]], mesh.positions[t[1]], trial.random.uniform());
-    check_ray(trial, closed_mesh, towards(inside(closed_mesh, trial), target));
+    check_ray(trial, closed_mesh, toward(inside(closed_mesh, trial), target));
 }
 
 void leak_vertices(Trial& trial) {
     const ClosedMesh& closed_mesh = chosen(trial);
     const auto& positions = closed_mesh.mesh().positions;
     const Vec3 vertex = positions[trial.random.below(static_cast<std::uint32_t>(positions.size()))];
-    check_ray(trial, closed_mesh, towards(inside(closed_mesh, trial), vertex));
+    check_ray(trial, closed_mesh, toward(inside(closed_mesh, trial), vertex));
 }
 
 StressResult leak_from_outside(const StressTest& test, const StressSetting& setting) {
@@ -93,7 +93,7 @@ StressResult leak_from_outside(const StressTest& test, const StressSetting& sett
         const Vec3 target = lerp(mesh.positions[t[0]], mesh.positions[t[1]], along);
         const Vec3 outwards = normalize_scaled(target);
         const Vec3 side = normalize(outwards + trial.random.direction() * 0.6f);
-        const Ray ray = towards(target + side * (kScales[which] * trial.random.log_uniform(0.1f, 1e3f)), target);
+        const Ray ray = toward(target + side * (kScales[which] * trial.random.log_uniform(0.1f, 1e3f)), target);
         const auto leaks = [&](std::optional<std::uint32_t> primitive) {
             if (!primitive) return true;
             const auto& [a, b, c] = mesh.triangles[*primitive];
@@ -126,7 +126,7 @@ void leak_boxes(Trial& trial) {
         Vec3 target(random.coin() ? low.x : high.x, random.coin() ? low.y : high.y, random.coin() ? low.z : high.z);
         const std::uint32_t axis = random.below(4); // 3: a corner
         if (axis < 3) target[axis] = lerp(low[axis], high[axis], random.uniform());
-        const Ray ray = towards(lerp(low, high, random.uniform(0.2f, 0.8f)), target);
+        const Ray ray = toward(lerp(low, high, random.uniform(0.2f, 0.8f)), target);
         const Hit hit = accelerated.accelerator.closest(ray);
         if (!hit.valid())
             trial.note("box ", exact(low), " to ", exact(high), ", ray from ", exact(ray.origin), " along ",
@@ -147,7 +147,7 @@ void leak_instances(Trial& trial) {
     for (int shot = 0; shot < 64; ++shot) {
         const auto& t = mesh.triangles[random.below(static_cast<std::uint32_t>(mesh.triangles.size()))];
         const Vec3 on_edge = lerp(mesh.positions[t[0]], mesh.positions[t[1]], random.coin() ? 0 : random.uniform());
-        const Ray ray = towards(transform_point(to_world, random.vector() * 0.3f), transform_point(to_world, on_edge));
+        const Ray ray = toward(transform_point(to_world, random.vector() * 0.3f), transform_point(to_world, on_edge));
         const Hit hit = accelerated.accelerator.closest(ray), expected = brute_force_hit(*accelerated.scene, ray);
         const bool wrong = hit.object != 0 || !(hit == expected);
         if (wrong)

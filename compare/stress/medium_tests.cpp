@@ -143,7 +143,7 @@ void columns(Trial& trial) {
     const double terms = static_cast<double>(largest) * ((end - begin) * cells + end);
     const auto error = [&](double found, double expected) { return in_roundoffs((found - expected) / terms); };
     const float found = column_of(medium, ray.origin, ray.direction, inside);
-    trial.note("box ", exact(medium.box.low), " to ", exact(medium.box.high), ", ray ", exact(ray.origin), " towards ",
+    trial.note("box ", exact(medium.box.low), " to ", exact(medium.box.high), ", ray ", exact(ray.origin), " toward ",
                exact(ray.direction), ", ", grid->size()[0], " x ", grid->size()[1], " x ", grid->size()[2],
                " points: column ", found, ", in double ", truth);
     trial.record(error(static_cast<double>(found), truth));
@@ -190,7 +190,7 @@ void collisions(Trial& trial) {
     const auto sum = [](Rgb color) { return static_cast<double>(color.r) + static_cast<double>(color.g + color.b); };
     const double ratio = sum(after) / sum(before);
     const bool absorbs = std::ranges::any_of(media, [](const Medium& m) { return !is_black(m.absorption); });
-    trial.note(media.size(), " media from ", exact(media.front().box.low), ", ray ", exact(ray.origin), " towards ",
+    trial.note(media.size(), " media from ", exact(media.front().box.low), ", ray ", exact(ray.origin), " toward ",
                exact(ray.direction), ": throughput ", exact(Vec3(before.r, before.g, before.b)), " becomes ",
                exact(Vec3(after.r, after.g, after.b)));
     const bool valid = std::min({after.r, after.g, after.b}) >= 0 && is_black(emitted);
@@ -249,7 +249,7 @@ void walks(Trial& trial) {
         const auto exit = raytrace::random_walk(plan, {interior, 0}, ray, hit, random.uniform(), path, emitted,
                                                 counts);
         trial.note("size ", size, ", center ", exact(center), ", mean free path ", mean_free_path, ", from ",
-                   exact(ray.origin), " towards ", exact(direction), ": ", exit ? exit->collisions : -1,
+                   exact(ray.origin), " toward ", exact(direction), ": ", exit ? exit->collisions : -1,
                    " collisions, throughput ", exact(path.throughput.g));
         if (!exit) return trial.record(kWrong);
         const double grown = static_cast<double>(path.throughput.g) - 1;

@@ -14,9 +14,9 @@ void add_view(CommandLine& program) {
     add_scene_options(view, options.scene_options);
     view.add("--window", options.window, "Size of the window WIDTHxHEIGHT (default 1600x900)");
     view.add("-o,--output", options.folder, "The folder for screenshots and images (default: the current one)");
-    view.add("--spp", options.settings.raytrace_spp, "The path tracer's samples a pixel at most (default 4096)")
+    view.add("--spp", options.settings.raytrace_spp, "The path tracer's samples per pixel at most (default 4096)")
         .range(1, 1 << 24);
-    view.add("--raster-spp", options.settings.raster_spp, "The rasterizer's samples a pixel (default 1)")
+    view.add("--raster-spp", options.settings.raster_spp, "The rasterizer's samples per pixel (default 1)")
         .range(1, 1 << 16);
     add_depth_and_threads(view, options.settings);
     add_view_transform(view, options.view_transform);

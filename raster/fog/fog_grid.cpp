@@ -241,7 +241,7 @@ private:
         }
     }
 
-    /// Returns the fraction of the light from direction wi that the slice scatters towards the viewer in an octave,
+    /// Returns the fraction of the light from direction wi that the slice scatters toward the viewer in an octave,
     /// 1/sr.
     Color scattered(const Vec3s& direction, const Vec3s& wi, int octave) const {
         Color sum(kNone);

@@ -1,4 +1,4 @@
-// Renders fog in real time. The light that media scatter towards the viewer is computed in froxels, the cells of a grid
+// Renders fog in real time. The light that media scatter toward the viewer is computed in froxels, the cells of a grid
 // that is aligned with the view, and summed from front to back (Wronski 2014, "Volumetric Fog: Unified Compute Shader
 // Based Solution to Atmospheric Scattering").
 #pragma once

@@ -12,7 +12,7 @@ struct Control;
 namespace duet::raster {
 
 /// Fills the G-buffer of a view whose samples lie at `offset` in their pixels. `emission` receives the radiance that
-/// the visible surfaces emit towards the viewer, 0 elsewhere. Every pixel is written, unless `control` stops the pass:
+/// the visible surfaces emit toward the viewer, 0 elsewhere. Every pixel is written, unless `control` stops the pass:
 /// then the remaining tiles keep their old contents.
 void fill_gbuffer(const RasterSceneData& data, const RasterSettings& settings, const Geometry& geometry,
                   const PassView& view, const TileGrid& grid, SampleOffset offset, const Control& control,

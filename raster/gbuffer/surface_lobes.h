@@ -15,7 +15,7 @@ struct SurfaceLobes {
     float alpha = 1, coat = 0, coat_alpha = 1;
 };
 
-/// Returns the lobes of a BSDF towards a viewer at this cosine from the normal, in (0, 1]. Glass keeps only its outer
+/// Returns the lobes of a BSDF toward a viewer at this cosine from the normal, in (0, 1]. Glass keeps only its outer
 /// reflection; its transmission is a stage of its own.
 SurfaceLobes surface_lobes(const Bsdf& bsdf, float cosine);
 

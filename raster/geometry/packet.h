@@ -235,7 +235,7 @@ inline Ints gather(const std::int32_t* from, const Ints& indices) {
     for (std::int32_t& value : values) value = from[value];
     return Ints::load_aligned(values.data());
 }
-/// Truncates towards zero.
+/// Truncates toward zero.
 inline Ints truncated(const Floats& x) { return xsimd::batch_cast<std::int32_t>(x); }
 
 /// This constant holds the index of each sample of a packet.

@@ -11,7 +11,7 @@
 
 namespace duet::raster {
 
-/// Holds the radiance towards the viewer for each pixel; 0 for the background.
+/// Holds the radiance toward the viewer for each pixel; 0 for the background.
 struct DirectLight {
     Planes3 exact; ///< from lights without shadows, and lights whose shadows are not noisy
     /// This is the radiance from lights with noisy shadows, as if nothing shaded them. It is empty if there are none.

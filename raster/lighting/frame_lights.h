@@ -20,7 +20,7 @@ struct FrameLight {
     Rgb emitted;           ///< radiance, W/(m² sr); intensity of a point or spot light, W/sr; irradiance of a sun, W/m²
     Vec3 position;         ///< corner of a flat light, center of a sphere, position of a point or spot light
     Vec3 u, v;             ///< edges of a flat light; its front is the side to which u × v points
-    Vec3 axis;             ///< unit normal of a flat light, direction of a spot, direction towards a sun
+    Vec3 axis;             ///< unit normal of a flat light, direction of a spot, direction toward a sun
     float radius = 0;      ///< radius of a sphere
     bool two_sided = false;
     /// A spot's intensity rises from 0 at the cosine cos_outer to its full value at cos_outer + 1 / inverse_range.
@@ -35,7 +35,7 @@ struct FrameLight {
     }
 };
 
-/// Returns `fraction` dimmed by the falloff of the spot's cone, for unit directions wi towards the spot.
+/// Returns `fraction` dimmed by the falloff of the spot's cone, for unit directions wi toward the spot.
 inline Floats dimmed_by_cone(const FrameLight& spot, const Vec3T<Floats>& wi, const Floats& fraction) {
     const Floats cosine = -dot(wi, broadcast<Floats>(spot.axis)), three(3.0f);
     const Floats s = clamp((cosine - Floats(spot.cos_outer)) * Floats(spot.inverse_range), Floats(0.0f), Floats(1.0f));

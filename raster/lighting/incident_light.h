@@ -9,7 +9,7 @@ namespace duet::raster {
 
 /// Holds the light that arrives at a point from one light.
 template <typename T> struct IncidentT {
-    Vec3T<T> wi;        ///< unit, towards the light
+    Vec3T<T> wi;        ///< unit, toward the light
     RgbT<T> irradiance; ///< on a surface facing the light, without occlusion
 };
 

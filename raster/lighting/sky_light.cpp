@@ -18,13 +18,13 @@ void add_sky_light(const RasterSceneData& data, const RasterSettings& settings, 
         const auto lit = gbuffer.visible(x, y) & (albedo.r + albedo.g + albedo.b > Floats(0.0f));
         if (!xsimd::any(lit)) return;
         const SkyVisibility<Floats> sky = occlusion != nullptr ? occlusion->at(x, y) : SkyVisibility<Floats>{};
-        const std::array<Floats, 9> towards = harmonics(gbuffer.normal.vector(x, y)), blocked = harmonics(sky.hidden);
+        const std::array<Floats, 9> toward = harmonics(gbuffer.normal.vector(x, y)), blocked = harmonics(sky.hidden);
         RgbT<Floats> sum = broadcast<Floats>(coefficients[0]) * sky.visible;
         // The coefficients of order 1 include the factor 2/3 of the cosine lobe, but those of a hidden direction must
         // not.
         for (std::size_t i = 1; i < 4; ++i)
-            sum += broadcast<Floats>(coefficients[i]) * (towards[i] - Floats(1.5f) * blocked[i]);
-        for (std::size_t i = 4; i < 9; ++i) sum += broadcast<Floats>(coefficients[i]) * (towards[i] * sky.visible);
+            sum += broadcast<Floats>(coefficients[i]) * (toward[i] - Floats(1.5f) * blocked[i]);
+        for (std::size_t i = 4; i < 9; ++i) sum += broadcast<Floats>(coefficients[i]) * (toward[i] * sky.visible);
         const Floats none(0.0f);
         RgbT<Floats> irradiance{max(sum.r, none), max(sum.g, none), max(sum.b, none)};
         if (!media.empty()) // the transmittance along the normal approximates all directions

@@ -62,7 +62,7 @@ private:
 
     float alpha_ = -1;
     std::array<PacketOf<float>, 5> matrix_;
-    std::array<PacketOf<float>, 2> lost_, share_; ///< 32 columns each
+    std::array<PacketOf<float>, 2> lost_, share_; ///< each has 32 columns
     float mean_lost_ = 0;
 };
 

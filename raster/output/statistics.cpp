@@ -88,11 +88,11 @@ std::vector<std::string> approximations(const RasterSceneData& data, const Raste
     };
     const bool many = settings.samples_per_pixel > 1;
     const bool moving = needs.motion && scene.camera.shutter_open != scene.camera.shutter_close;
-    add_if(needs.lens && !many, "The lens is a pinhole at its center: one sample a pixel sees no depth of field.");
+    add_if(needs.lens && !many, "The lens is a pinhole at its center: one sample per pixel sees no depth of field.");
     add_if(needs.lens && many,
            "Depth of field is the mean of one view a sample, through the same lens points in every pixel.");
     add_if(moving && !many,
-           "Moving objects stand where they are when the shutter opens: one sample a pixel sees no motion.");
+           "Moving objects stand where they are when the shutter opens: one sample per pixel sees no motion.");
     add_if(moving && many, "Motion blur is the mean of one moment a sample, the same moments in every pixel.");
     if (settings.shading != Shading::kLit || scene.objects.empty()) return result;
 

@@ -16,7 +16,7 @@ namespace {
 using Mask = Floats::batch_bool_type;
 using Vec3s = Vec3T<Floats>;
 
-/// Points are moved off their surface and towards the viewer before their visibility is tested, because the distance
+/// Points are moved off their surface and toward the viewer before their visibility is tested, because the distance
 /// maps are coarse (Majercik et al. 2021, "Scaling Probe-Based Real-Time Dynamic Global Illumination for Production",
 /// §4.1). The constants are fractions of the distance between probes. A move along the normal alone does not lead away
 /// from a corner, such as that of a wall with a roof, and light would leak in there.

@@ -6,7 +6,7 @@
 #include "raster/shadows/cube_map.h"
 #include "raster/shadows/light_views.h"
 #include "raster/shadows/shadow_map_lookup.h"
-#include "raster/lighting/shadow_filter.h"
+#include "raster/lighting/shadow_denoiser.h"
 
 #include "common/system/control.h"
 

@@ -18,7 +18,7 @@ public:
         GBuffer gbuffer;
         Planes3 emission; ///< radiance that the visible surfaces emit
         Planes3 direct;   ///< direct light that the surfaces reflect; the background's radiance
-        Planes3 haze;     ///< FogGrid::haze towards the probe; empty if there are no media
+        Planes3 haze;     ///< FogGrid::haze toward the probe; empty if there are no media
     };
     /// Renders side × side pixels for each face, and `guard` more on each side, on the calling thread. The objects in
     /// `excluded`, which is sorted, are left out. `chosen` selects the lights.

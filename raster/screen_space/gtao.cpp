@@ -69,7 +69,7 @@ public:
         x_ = home_[0] * over_w, y_ = home_[1] * over_w;
     }
 
-    /// Returns the horizon towards the unit vector t, which is perpendicular to the view; at least `lowest`.
+    /// Returns the horizon toward the unit vector t, which is perpendicular to the view; at least `lowest`.
     Horizon operator()(const Vec3s& t, const Floats& lowest, const Floats& jitter) const {
         const std::array<Floats, 4> change = gbuffer_.projection.homogeneous_change(t);
         const Floats over_w = Floats(1.0f) / home_[3];

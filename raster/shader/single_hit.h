@@ -33,7 +33,7 @@ Rgb hit_color(const Scene& scene, const PassView& view, const Ray& ray, const Hi
 /// sample's footprint.
 Vec3 hit_normal(const Scene& scene, const PassView& view, const Hit& hit, Vec2d pixel, int samples_per_pixel);
 
-/// Returns the radiance emitted at a hit towards the viewer. Textures are filtered over the sample's footprint.
+/// Returns the radiance emitted at a hit toward the viewer. Textures are filtered over the sample's footprint.
 Rgb hit_emission(const Scene& scene, const PassView& view, const Hit& hit, Vec2d pixel, int samples_per_pixel);
 
 /// Returns the color of a hit of the ray through `pixel`. `reversed_depth` may be null, if it is not known.

@@ -3,7 +3,7 @@
 #include "raster/gbuffer/gbuffer_pass.h"
 #include "raster/lighting/background.h"
 #include "raster/lighting/direct_light.h"
-#include "raster/lighting/shadow_filter.h"
+#include "raster/lighting/shadow_denoiser.h"
 #include "raster/lighting/sky_light.h"
 #include "raster/probes/indirect_light.h"
 #include "raster/probes/reflections.h"
@@ -97,7 +97,7 @@ public:
             compute_direct_light(data_, settings_, gbuffer, nullptr, frame_.direct);
             recorder.record_shadowed(frame_.direct);
         }
-        done("shadow filter");
+        done("shadow denoiser");
     }
     /// Finds what the image's surfaces hide from each other, and the light that they send instead. `direct` returns the
     /// direct light of a pixel.

@@ -17,7 +17,7 @@
 
 namespace duet::raster {
 
-/// Holds the radiance towards the viewer, split by its source. The components sum to the color of the image.
+/// Holds the radiance toward the viewer, split by its source. The components sum to the color of the image.
 struct LightComponentImages {
     Planes3 emission;    ///< from visible emissive surfaces, and from the environment as background
     Planes3 direct;      ///< reflected light of Scene::lights
@@ -53,7 +53,7 @@ struct ShadeOptions {
     LightComponentImages* components = nullptr; ///< receives the components without fog; may be null
 };
 /// Shades the surfaces in frame.gbuffer. On entry, frame.radiance holds the radiance that they emit; on return, the
-/// radiance towards the viewer.
+/// radiance toward the viewer.
 void shade_gbuffer(const RasterSceneData& data, const RasterSettings& settings, const ShadeOptions& options,
                    DeferredFrame& frame);
 

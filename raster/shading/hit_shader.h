@@ -23,7 +23,7 @@ public:
     /// that of the ray at the hit; if it is null, textures are not filtered.
     void set(int x, int y, const Ray& ray, const Hit& hit, const RayFootprint* footprint);
 
-    /// Returns the light towards the viewer, by component. The component `indirect` is the change of the environment's
+    /// Returns the light toward the viewer, by component. The component `indirect` is the change of the environment's
     /// light by RasterSettings::indirect_light. It may be negative, where the probes replace an estimate that was too
     /// bright. The surfaces must be set again before the next call.
     LightComponentImages shade();

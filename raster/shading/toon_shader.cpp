@@ -38,7 +38,7 @@ struct ToonShader {
         const Vec3T<T> along = turn(f.dx.n), down = turn(f.dy.n);
         PhongLight<T> sum{RgbT<T>(T(0)), RgbT<T>(T(0))};
         for_each_incident(f.lights(), [&] { return f.p(); }, [&](const IncidentT<T>& arriving) {
-            const auto width = [&](Vec3T<T> towards) { return abs(dot(along, towards)) + abs(dot(down, towards)); };
+            const auto width = [&](Vec3T<T> toward) { return abs(dot(along, toward)) + abs(dot(down, toward)); };
             T band(0);
             const T cosine = dot(n, arriving.wi), cosine_width = width(arriving.wi);
             for (const float border : kBorders)

@@ -74,8 +74,8 @@ SharpShadowMap::Plane SharpShadowMap::plane(const Floats& x, const Floats& y, co
     const bool flat = map_.orthographic();
     const Vec3T<Floats> ray = broadcast<Floats>(direction_) + broadcast<Floats>(direction_dx_) * x +
                               broadcast<Floats>(direction_dy_) * y; // vector to depth 1
-    const Floats towards = max(-dot(n, ray), Floats(1e-6f));
-    const Floats over_ray = inverse_sqrt(dot(ray, ray)), cosine = towards * over_ray, one(1.0f);
+    const Floats toward = max(-dot(n, ray), Floats(1e-6f));
+    const Floats over_ray = inverse_sqrt(dot(ray, ray)), cosine = toward * over_ray, one(1.0f);
     const Floats sine = xsimd::sqrt(max(one - cosine * cosine, Floats(0.0f)));
     const auto tangent = [&](float of_elevation) {
         return min(Floats(kSteepest), Floats(of_elevation) * cosine / max(sine, Floats(1e-6f)));
@@ -84,10 +84,10 @@ SharpShadowMap::Plane SharpShadowMap::plane(const Floats& x, const Floats& y, co
     const Floats width = flat ? Floats(length(origin_dx_)) : Floats(length(direction_dx_)) * depth;
     const Floats at = flat ? -depth : Floats(near_) / depth, per_depth = flat ? one : at / depth;
     const Floats unit = width * over_ray * per_depth;
-    const Floats slope = (flat ? one : at) / -towards;
+    const Floats slope = (flat ? one : at) / -toward;
     return {at, dot_constant(n, flat ? origin_dx_ : direction_dx_) * slope,
             dot_constant(n, flat ? origin_dy_ : direction_dy_) * slope,
-            Floats(kRounding) * depth * per_depth / towards,
+            Floats(kRounding) * depth * per_depth / toward,
             t / (cosine - t * sine) * unit, falling / (cosine - falling * sine) * unit,
             Floats(kSteepest) / (cosine + Floats(kSteepest) * sine) * unit};
 }

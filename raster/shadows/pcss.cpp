@@ -131,10 +131,10 @@ SoftShadowMap::SoftShadowMap(const CellMaps& maps, const Emitter& emitter)
 
 SoftShadowMap::Outline SoftShadowMap::outline_from(const Vec3s& p) const {
     if (kind_ != Emitter::Kind::kSphere) {
-        const Floats towards = xsimd::select(p.z < Floats(0.0f), Floats(1.0f), Floats(-1.0f));
+        const Floats toward = xsimd::select(p.z < Floats(0.0f), Floats(1.0f), Floats(-1.0f));
         return {broadcast<Floats>(corner_), broadcast<Floats>(u_), broadcast<Floats>(v_),
                 broadcast<Floats>(dual_u_), broadcast<Floats>(dual_v_), Floats(length(dual_u_)),
-                Floats(length(dual_v_)), kind_, {Floats(0.0f), Floats(0.0f), towards}};
+                Floats(length(dual_v_)), kind_, {Floats(0.0f), Floats(0.0f), toward}};
     }
     // A sphere is replaced by the disk through its center that fills the cone tangent to it.
     const Floats distance = xsimd::sqrt(max(dot(p, p), Floats(1e-30f)));

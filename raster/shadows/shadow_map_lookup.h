@@ -35,7 +35,7 @@ public:
     }
     bool noisy(std::size_t source) const override { return !soft_.of(source, moment_).empty(); }
     /// Returns a noisy estimate. Each pixel of a block of 4 × 4 samples one cell of an area light, with taps of its
-    /// own, and add_direct_light() (raster/lighting/shadow_filter.h) averages over the block.
+    /// own, and add_direct_light() (raster/lighting/shadow_denoiser.h) averages over the block.
     Floats visibility(std::size_t source, const Vec3T<Floats>& p, const Vec3T<Floats>& n, int x, int y,
                       const xsimd::batch_bool<float>& mask) const override;
 

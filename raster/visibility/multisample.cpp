@@ -36,7 +36,7 @@ const std::vector<SampleOffset>& multisample_pattern(int count) {
                                      {-7, -8}});
     for (const auto* known : {&k2, &k4, &k8, &k16})
         if (static_cast<int>(known->size()) == count) return *known;
-    throw Error(message("multisampling: found ", count, " samples a pixel, expected 2, 4, 8 or 16"));
+    throw Error(message("multisampling: found ", count, " samples per pixel, expected 2, 4, 8 or 16"));
 }
 
 Layer& LayeredTile::layer_at(std::size_t i) {

@@ -144,7 +144,7 @@ public:
         return {r, g, b};
     }
     virtual Vec3 mapped_normal(std::size_t sample) const = 0; ///< in world space, unit, on the visible side
-    virtual Rgb emitted(std::size_t sample) const = 0; ///< emitted radiance towards the viewer
+    virtual Rgb emitted(std::size_t sample) const = 0; ///< emitted radiance toward the viewer
 };
 
 /// Is empty unless a shader requests derivatives.
@@ -169,7 +169,7 @@ template <typename T, typename V, bool kDerivatives> struct FragmentInput : Scre
 
     Vec3T<T> p() const { return origin + direction * depth; } ///< in world space
     std::span<const Light> lights() const { return object.data.scene.lights; }
-    Direction<T> wo() const { return {direction, -inverse_sqrt(dot(direction, direction))}; } ///< towards the viewer
+    Direction<T> wo() const { return {direction, -inverse_sqrt(dot(direction, direction))}; } ///< toward the viewer
     /// Returns the world-space shading normal on the visible side from an interpolated object-space normal n. A
     /// normal or bump map overrides n.
     Direction<T> normal(Vec3T<T> n) const {

@@ -20,7 +20,7 @@ public:
     /// Builds all hierarchies. `threads` is the number of build threads (0 = all); the result does not depend on it.
     Accelerator(const Scene& scene, int threads) : Accelerator(scene, threads, nullptr) {}
     /// Builds the hierarchies of an edited scene. Each mesh has a bottom-level BVH, so that it can be used again after
-    /// the next edit. Those of meshes that `before` has as well are taken from there (see Transforms::kKept). Rays are
+    /// the next edit. BVHs of meshes that `before` has, too, are reused (see Transforms::kKept). Rays are
     /// a little slower than with the other constructor.
     Accelerator(const Scene& scene, int threads, const Accelerator& before) : Accelerator(scene, threads, &before) {}
 

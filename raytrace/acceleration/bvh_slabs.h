@@ -28,8 +28,8 @@ struct SlabError {
         return (extent + extent + greatest_extent + magnitude) * B(kRelative) + B(std::numeric_limits<float>::min());
     }
     /// Returns the number whose reciprocal scales distances along one axis. `size` is the absolute component of the
-    /// direction, and `greatest_size` the largest over all three axes. No product of the reciprocal with `coordinates`
-    /// is infinite, because an infinite product would pass for the distance of a plane.
+    /// direction, and `greatest_size` the largest over all three axes. It is so large that no product of the
+    /// reciprocal with `coordinates` overflows, because infinity would be mistaken for the distance of a plane.
     template <typename B> static B divisor(B size, B greatest_size, B coordinates) {
         return max(max(size, greatest_size * B(kSmallest)), max(coordinates * B(0x1p-120f), B(0x1p-125f)));
     }

@@ -223,7 +223,7 @@ Rgb BidirectionalTracer::light_sample(const SubpathVertex& at, const VertexRando
     const Vertex& vertex = at.vertex;
     const auto s = sample_li(plan_.scene, *plan_.lights, light_receiver(vertex), u.light_choice, u.light);
     if (!s) return Rgb();
-    const Rgb scattered = light_towards_viewer(vertex, *s);
+    const Rgb scattered = light_toward_viewer(vertex, *s);
     if (is_black(scattered)) return Rgb();
     ++counts_.shadow;
     if (!unoccluded(plan_, vertex, *s)) return Rgb();

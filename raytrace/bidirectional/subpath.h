@@ -6,9 +6,6 @@
 
 namespace duet::raytrace {
 
-/// Returns the contribution of a ratio of densities to MIS weights: its square (the power heuristic with β = 2).
-inline double mis(double ratio) { return ratio * ratio; }
-
 /// Stores partial sums of MIS weights. A path of several segments can be drawn by many strategies: any of its edges may
 /// be the connection of a light subpath with a camera subpath. The weight of the strategy that drew the path is 1 / (1
 /// + sum of the other strategies' densities over its own). MisSums are the terms of that sum that a subpath knows

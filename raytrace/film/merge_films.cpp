@@ -77,7 +77,7 @@ int merge(const Options& options) {
     write_image(options.output, all.film.image(), {.view = options.view_transform.applied_to({})});
     if (options.quiet) return kExitOk;
     std::cerr << options.output << ": " << all.film.width() << " x " << all.film.height() << ", " << count << " films, "
-              << all.film.min_samples_taken() << (contiguous ? "" : " or more") << " samples a pixel";
+              << all.film.min_samples_taken() << (contiguous ? "" : " or more") << " samples per pixel";
     if (const double error = all.film.estimated_relmse(); error >= 0) std::cerr << ", estimated relMSE " << error;
     std::cerr << '\n';
     return kExitOk;
@@ -106,7 +106,7 @@ int run_merge(int argc, char** argv) {
     return run_program("raytrace merge", [&] {
         CommandLine command_line("raytrace merge",
                                  "Joins films of the same image, of different samples, into one image.");
-        command_line.set_footer("Example, two machines a half each:\n"
+        command_line.set_footer("Example: two computers render half of the samples each:\n"
                                 "  raytrace models/cornell.json -o a.png --samples 0:128 --film a.exr\n"
                                 "  raytrace models/cornell.json -o b.png --samples 128:256 --film b.exr\n"
                                 "  raytrace merge -o cornell.png a.exr b.exr\n\n"

@@ -66,8 +66,4 @@ float pdf_li(const Scene& scene, const LightSampler& lights, const LightReceiver
 /// Returns the density by solid angle with which sample_li draws the direction w to the environment.
 float pdf_li(const Environment& environment, const LightSampler& lights, const LightReceiver& receiver, Vec3 w);
 
-/// Returns the MIS weight of a sample that was drawn with density `own` and could have been drawn with density
-/// `other`: the power heuristic with β = 2 (Veach 1997, §9.2.4). `own` must be positive.
-template <typename T> T mis_weight(T own, T other) { return T(1.0f) / (T(1.0f) + sqr(other / own)); }
-
 } // namespace duet::raytrace

@@ -1,4 +1,4 @@
-// Declares the media of a scene along one ray. Scattering of the path and scattering of light towards it both depend on
+// Declares the media of a scene along one ray. Scattering of the path and scattering of light toward it both depend on
 // the columns of the media, so the ray is followed only once.
 #pragma once
 

@@ -11,6 +11,7 @@
 #include "raytrace/integrator/light_sampling.h"
 #include "raytrace/integrator/medium_sampling.h"
 #include "raytrace/integrator/medium_stack.h"
+#include "raytrace/integrator/mis.h"
 #include "raytrace/integrator/path_footprint.h"
 #include "raytrace/integrator/path_state.h"
 #include "raytrace/integrator/random_walk.h"
@@ -25,7 +26,7 @@ namespace duet::raytrace {
 /// Returns the light of a light sample that the vertex scatters to the viewer, unless the light is occluded. It is not
 /// divided by the sample's density yet.
 template <typename AnyVertex, typename T>
-inline RgbT<T> light_towards_viewer(const AnyVertex& vertex, const LightLiSampleT<T>& light) {
+inline RgbT<T> light_toward_viewer(const AnyVertex& vertex, const LightLiSampleT<T>& light) {
     return scattering(vertex, light.wi) * light.radiance;
 }
 
@@ -184,10 +185,10 @@ private:
         if (!light_sample) return log_no_light_sample("the chosen light does not shine here");
         if constexpr (std::is_same_v<AnyVertex, MediumVertex>)
             if (light_sample->delta) return log_no_light_sample("the chosen light is sampled along the whole ray");
-        Rgb scattered = light_towards_viewer(vertex, *light_sample);
+        Rgb scattered = light_toward_viewer(vertex, *light_sample);
         if constexpr (kHasMedia) scattered *= transmittance_to_light(vertex, *light_sample, u.light.y);
         if (is_black(scattered) && !plan_.black_shadow_rays)
-            return log_no_light_sample("the surface does not scatter the chosen light towards here");
+            return log_no_light_sample("the surface does not scatter the chosen light toward here");
         const LightSource source = light_sample->light < 0 ? LightSource::kEnvironment : LightSource::kLight;
         ++counts_.shadow;
         if (!unoccluded(plan_, vertex, *light_sample)) {
@@ -284,7 +285,7 @@ private:
     }
 
     // Carries the path through the media on [0, t_end] of the ray. Adds the light that they emit, and the light from
-    // delta lights that they scatter towards the path. Returns where they scatter the path itself, if they do.
+    // delta lights that they scatter toward the path. Returns where they scatter the path itself, if they do.
     std::optional<MediumCollision> pass_media(const Ray& ray, float t_end, int depth, const VertexRandomSamples& u) {
         if (!plan_.scene.needs.media || medium_stack_.in_dielectric()) return std::nullopt;
         MediaOnRay media(plan_.scene.media, ray, t_end);

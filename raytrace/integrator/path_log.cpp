@@ -58,7 +58,7 @@ void PathLog::walk(const SolidExit& exit) {
 }
 
 void PathLog::escape(const Ray& ray, int depth) {
-    out_ << "\nvertex " << depth << ": none, the ray escapes towards " << text_of(ray.direction) << "\n";
+    out_ << "\nvertex " << depth << ": none, the ray escapes toward " << text_of(ray.direction) << "\n";
 }
 
 void PathLog::light_found(Rgb emission, float weight, Rgb light) {
@@ -68,7 +68,7 @@ void PathLog::light_found(Rgb emission, float weight, Rgb light) {
 void PathLog::no_light_sample(const char* why) { out_ << "  light sample none: " << why << "\n"; }
 
 void PathLog::light_sample(const LightLiSample& light_sample, Rgb scattered, bool visible, float weight, Rgb light) {
-    out_ << "  light sample " << light_name(scene_, light_sample.light) << " towards " << text_of(light_sample.wi)
+    out_ << "  light sample " << light_name(scene_, light_sample.light) << " toward " << text_of(light_sample.wi)
          << ", distance " << light_sample.distance << ", density " << light_sample.pdf
          << (light_sample.delta ? " (from this direction only)" : "") << "\n               scatters "
          << text_of(scattered)
@@ -76,7 +76,7 @@ void PathLog::light_sample(const LightLiSample& light_sample, Rgb scattered, boo
 }
 
 void PathLog::scattered(const BsdfSample& sample, const Ray& next, const PathState& state) {
-    out_ << "  scatters     towards " << text_of(next.direction) << (sample.transmitted ? ", through the surface" : "")
+    out_ << "  scatters     toward " << text_of(next.direction) << (sample.transmitted ? ", through the surface" : "")
          << (sample.specular ? ", as a mirror or lens does" : message(", density ", sample.pdf)) << "\n"
          << "               weight " << text_of(sample.weight) << ", throughput " << text_of(state.throughput)
          << ", next ray from " << text_of(next.origin) << "\n";

@@ -1,4 +1,4 @@
-// Samples the light of point, spot and sun lights that media scatter towards a path, along a whole ray.
+// Samples the light of point, spot and sun lights that media scatter toward a path, along a whole ray.
 #pragma once
 
 #include "raytrace/integrator/media_on_ray.h"

@@ -24,7 +24,7 @@ Rgb light_by_light_sampling(const RenderPlan& plan, const Vertex& vertex, const 
     if (plan.lights == nullptr || is_specular(vertex.bsdf)) return Rgb();
     const auto light_sample = sample_li(plan.scene, *plan.lights, light_receiver(vertex), u.light_choice, u.light);
     if (!light_sample) return Rgb();
-    const Rgb light = light_towards_viewer(vertex, *light_sample) / light_sample->pdf;
+    const Rgb light = light_toward_viewer(vertex, *light_sample) / light_sample->pdf;
     return light_sample->light >= 0 ? light : light * light_sample_weight(vertex, *light_sample);
 }
 

@@ -12,7 +12,7 @@ Rgb light_from_center(const RenderPlan& plan, const Vertex& vertex, std::size_t 
     const std::optional<LightSample> s = sample_light(plan.scene.lights[index], vertex.point.p, {0.5f, 0.5f});
     if (!s) return Rgb();
     const LightLiSample light = light_sample(*s, {index, 1, 0});
-    const Rgb scattered = light_towards_viewer(vertex, light) / light.pdf;
+    const Rgb scattered = light_toward_viewer(vertex, light) / light.pdf;
     if (is_black(scattered)) return Rgb();
     ++counts.shadow;
     return unoccluded(plan, vertex, light) ? scattered : Rgb();

@@ -105,7 +105,7 @@ public:
         store_receivers();
         const BatchLightSamples samples(plan_, paths_, vertex_.point.p);
         const LightLiSampleT<Floats> light = samples.lanes();
-        const Color scattered = light_towards_viewer(vertex_, light);
+        const Color scattered = light_toward_viewer(vertex_, light);
         unsigned lit = samples.valid() & ~lane_bits(is_black(scattered));
         if (lit == 0) return;
         const Floats weight = light_sample_weight(vertex_, light);

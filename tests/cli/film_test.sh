@@ -57,7 +57,7 @@ cmp "$scratch/stopped.pfm" "$scratch/again.pfm" || fail \
 render a.png --samples 0:16 --film "$scratch/a.exr"
 render b.png --samples 16:32 --film "$scratch/b.exr"
 expect 0 "$bin/raytrace" merge -o "$scratch/joined.pfm" --film "$scratch/joint.exr" "$scratch/b.exr" "$scratch/a.exr"
-grep -q "2 films, 32 samples a pixel" "$scratch/stderr" || fail "merge does not say what it joined"
+grep -q "2 films, 32 samples per pixel" "$scratch/stderr" || fail "merge does not say what it joined"
 render one.pfm --spp 32
 "$bin/compare" images "$scratch/joined.pfm" "$scratch/one.pfm" --fail-above rmse=1e-9 >/dev/null ||
     fail "shards do not join to the image of one run"

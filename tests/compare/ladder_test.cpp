@@ -256,11 +256,11 @@ TEST_SUITE("unit") {
         for (const json& share : report["shares"]) sum += share["share"].get<double>();
         CHECK(sum == doctest::Approx(1).epsilon(1e-12));
         REQUIRE(report["rungs"].size() == kRungCount);
-        std::vector<std::string> shown_images = {"cause.png", "picture-0.png"};
+        std::vector<std::string> shown_images = {"cause.png", "image-0.png"};
         for (std::size_t k = 0; k < kRungCount; ++k) {
             const json& rung = report["rungs"][k];
             CHECK(rung["code"]["raytrace"].contains("lines"));
-            shown_images.push_back(message("picture-", k + 1, ".png"));
+            shown_images.push_back(message("image-", k + 1, ".png"));
             shown_images.push_back(message("change-", k + 1, ".png"));
             for (const json& q : rung["quantities"]) {
                 CHECK(q.contains(q["name"] == "hits" ? "hits" : "metrics"));

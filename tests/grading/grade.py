@@ -96,6 +96,8 @@ def grade_one(arguments):
     path = start(arguments.lab) if arguments.start else arguments.submission
     if path is None:
         raise labs.Unusable("no submission was named; expected a .cpp file, a folder, or --start")
+    if not path.exists():
+        raise labs.Unusable(f"{path} does not exist; expected a .cpp file or a folder of them")
     folder = arguments.page
     if folder is None and arguments.start:
         folder = arguments.build / "lessons" / f"{arguments.lab}-lab"

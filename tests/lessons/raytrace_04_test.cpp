@@ -81,7 +81,7 @@ TEST_SUITE("lesson") {
         };
         const Stopwatch watch;
         const Rendering full = raytrace::render(prepared, {scene.camera, 1920, 1080}, settings, control);
-        MESSAGE("1920 x 1080 pixels, ", kPerPixel, " samples a pixel: ", watch.seconds(), " s");
+        MESSAGE("1920 x 1080 pixels, ", kPerPixel, " samples per pixel: ", watch.seconds(), " s");
         REQUIRE(full.radiance.width() == 1920);
         REQUIRE(full.radiance.height() == 1080);
         CHECK(full.statistics.samples_per_pixel == kPerPixel);

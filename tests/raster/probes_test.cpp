@@ -155,7 +155,7 @@ TEST_SUITE("unit") {
         for (const auto projection : {Camera::Projection::kPerspective, Camera::Projection::kOrthographic}) {
             scene.camera.projection = projection;
             const ImageRgb image = render(scene, {scene.camera, 96, 96}, {}).radiance;
-            // Measured: 0.03 and 0.08, where points that were not moved towards the viewer had 0.28 and 0.25.
+            // Measured: 0.03 and 0.08, where points that were not moved toward the viewer had 0.28 and 0.25.
             CHECK(std::ranges::max(image.pixels(), {}, &Rgb::g).g < 0.15f);
         }
     }

@@ -151,14 +151,14 @@ private:
 
     static void test(const Rayd& ray, const Facet& f, ReferenceHit& nearest) {
         const Vec3d n = cross(f.a, f.b);
-        const double towards = dot(ray.direction, n);
-        if (towards == 0) return;
-        const double t = dot(f.p - ray.origin, n) / towards;
+        const double toward = dot(ray.direction, n);
+        if (toward == 0) return;
+        const double t = dot(f.p - ray.origin, n) / toward;
         if (!(t >= ray.t_min) || !nearer(t, f.object, f.primitive, nearest)) return;
         const Vec3d q = ray.at(t) - f.p;
         const double u = dot(cross(q, f.b), n) / dot(n, n), v = dot(cross(f.a, q), n) / dot(n, n);
         if (u < 0 || v < 0 || (f.quad ? u > 1 || v > 1 : u + v > 1)) return;
-        nearest = {f.object, f.primitive, u, v, t, std::abs(towards) / length(n)};
+        nearest = {f.object, f.primitive, u, v, t, std::abs(toward) / length(n)};
     }
 
     static void test(const Rayd& ray, const Ball& ball, ReferenceHit& nearest) {

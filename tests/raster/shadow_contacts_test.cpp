@@ -345,7 +345,7 @@ TEST_SUITE("unit") {
     // The plate hides the lower part of the spherical light. Its lower edge occludes the light first, but the map
     // shows little of that edge because the surface behind it is not an occluder. The reference traces lines to
     // points uniformly distributed over the sphere's disk.
-    TEST_CASE("a plate that leans towards a light: its shadow begins without a large step and is about as deep as the "
+    TEST_CASE("a plate that leans toward a light: its shadow begins without a large step and is about as deep as the "
               "part it hides") {
         const Vec3d area_light(0, 3.9, -5.4), edge(0, 1.35, -2.6), lean(0, 0.4, -1.2);
         Scene scene;

@@ -151,12 +151,12 @@ TEST_SUITE("unit") {
         const std::vector<Light> lights{PointLight{{1, 0, 0}, Rgb(1.0f)}, PointLight{{10, 0, 0}, Rgb(1.0f)},
                                         PointLight{{-1, 0, 0}, Rgb(100.0f)}, PointLight{{1, 1, 0}, Rgb(0.0f)}};
         const LightSampler chooser(lights, 0);
-        const LightReceiver towards{{}, {1, 0, 0}};
-        CHECK(chooser.probability(towards, 0) == doctest::Approx(100.0 / 101));
-        CHECK(chooser.probability(towards, 1) == doctest::Approx(1.0 / 101));
-        CHECK(chooser.probability(towards, 2) == 0);
-        CHECK(chooser.probability(towards, 3) == 0); // its emission is black
-        CHECK(chooser.probability(towards, 4) == 0);
+        const LightReceiver toward{{}, {1, 0, 0}};
+        CHECK(chooser.probability(toward, 0) == doctest::Approx(100.0 / 101));
+        CHECK(chooser.probability(toward, 1) == doctest::Approx(1.0 / 101));
+        CHECK(chooser.probability(toward, 2) == 0);
+        CHECK(chooser.probability(toward, 3) == 0); // its emission is black
+        CHECK(chooser.probability(toward, 4) == 0);
         CHECK(chooser.probability({{}, {}}, 2) > 0.9f);
         CHECK_FALSE(chooser.sample({{20, 0, 0}, {1, 0, 0}}, 0.5f).has_value());
     }

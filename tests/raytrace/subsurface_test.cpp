@@ -16,7 +16,7 @@ using namespace duet::raytrace;
 
 namespace {
 
-/// Returns the fraction of diffuse light that a half space reflects towards cosines in [from, to]. Under the radiance 1
+/// Returns the fraction of diffuse light that a half space reflects toward cosines in [from, to]. Under the radiance 1
 /// from everywhere it reflects the radiance 1 − √(1 − ϖ) H(μ) (Chandrasekhar, §38 and the principle of reciprocity).
 double reflected_between(const HFunction& h, double albedo, double from, double to) {
     constexpr int kSteps = 200;

@@ -95,7 +95,7 @@ TEST_SUITE("unit") {
             const Ray down{{u, 1, -v}, {0, -1, 0}};
             return surface_point(Shape(mesh), Hit{0, 0, u, v, 1}, down, Mat4(), Mat4(), true).terminator_offset;
         };
-        // The surface falls towards x, and rises towards -z.
+        // The surface falls toward x, and rises toward -z.
         const std::array<Vec3, 3> saddle{Vec3(0, 1, 0), Vec3(0.2f, 1, 0), Vec3(0, 1, 0.2f)};
         CHECK(offset_at(saddle, 0.5f, 0).y > 0.04f); // (n₁ − n₀)·(v₁ − v₀)/4
         CHECK(offset_at(saddle, 0.5f, 0).y < 0.05f);

@@ -61,7 +61,7 @@ function sceneSection(scene) {
   const spps = [...new Set(scene.rows.map(row => row.spp))].sort((a, b) => a - b);
   const figures = [
     ["against seconds", "seconds, render alone", row => row.seconds.value, null],
-    ["against samples", "samples a pixel", row => row.spp, spps]
+    ["against samples", "samples per pixel", row => row.spp, spps]
   ];
   const plots = put(
       "div", {class: "plots"},
@@ -82,7 +82,7 @@ function sceneSection(scene) {
       put("h2", {}, scene.scene),
       put("p", {},
           `${scene.width} × ${scene.height} pixels, paths of up to ${report.depth} scatterings, ${
-              report.threads} threads. Reference: ${report.reference_spp} samples a pixel, its own MSE about ${
+              report.threads} threads. Reference: ${report.reference_spp} samples per pixel, its own MSE about ${
               figure(scene.reference.mse)}.`),
       ...(scene.processor_share < 0.9 ?
               [put(

@@ -16,7 +16,7 @@ struct Object {
     const ImageRgb& texture;
 };
 
-/// Draws objects into an image of that width, with n × n samples a pixel.
+/// Draws objects into an image of that width, with n × n samples per pixel.
 ImageRgb view(const std::vector<Object>& objects, Vec3 eye, Sample* sample, int n = 4, int width = 320) {
     Framebuffer large(n * width, n * width * 23 / 32, Rgb(0.25f, 0.45f, 0.7f));
     for (const Object& object : objects)

@@ -43,7 +43,7 @@ ImageRgb image_of(const Numbers& numbers, int width, int height) {
     return image;
 }
 
-/// What typical mistakes make of an image's numbers.
+/// Returns the numbers that typical mistakes would produce for an image.
 std::vector<Mistake<Numbers>> mistakes_in(const Numbers& numbers, int width, int height) {
     Numbers upside_down, by_columns, blue_first, linear;
     const auto copy = [&](int x, int y, Numbers& to) {

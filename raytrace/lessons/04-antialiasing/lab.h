@@ -1,4 +1,4 @@
-// Lab 04: many samples a pixel.
+// Lab 04: many samples per pixel.
 #pragma once
 
 #include "common/image/image.h"

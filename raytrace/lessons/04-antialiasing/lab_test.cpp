@@ -11,7 +11,7 @@ using namespace duet;
 using namespace duet::grading;
 using lab::Disk;
 
-LAB_TITLE("raytrace-04", "Many samples a pixel")
+LAB_TITLE("raytrace-04", "Many samples per pixel")
 
 namespace {
 

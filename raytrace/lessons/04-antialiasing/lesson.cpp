@@ -1,4 +1,4 @@
-// Lesson 04: many samples a pixel. Writes smooth edges beside jagged ones.
+// Lesson 04: many samples per pixel. Writes smooth edges beside jagged ones.
 #include "common/image/image_file.h"
 #include "common/image/plot.h"
 #include "common/image/srgb.h"
@@ -63,7 +63,7 @@ ImageRgb beside(const std::vector<ImageRgb>& images, int x, int y, int side, int
     return all;
 }
 
-/// The root of the mean squared error of green, against a picture of 4096 samples, and two lines for comparison.
+/// Plots the root of the mean squared error of green against an image of 4096 samples, and two lines for comparison.
 Plot error_plot() {
     const ImageRgb reference = render(54, 4096, in_cells);
     const auto error = [&](int samples, Offset offset) {
@@ -72,7 +72,7 @@ Plot error_plot() {
         for (std::size_t i = 0; i < image.size(); ++i) sum += sqr(static_cast<double>(image[i].g - reference[i].g));
         return std::sqrt(sum / static_cast<double>(image.size()));
     };
-    Plot plot{"Error against the number of samples", "samples a pixel, N", "root of mean squared error", true, true};
+    Plot plot{"Error against the number of samples", "samples per pixel, N", "root of mean squared error", true, true};
     plot.series = {{"random", {}}, {"N^-1/2", {}}, {"in cells", {}}, {"N^-3/4", {}}};
     for (const int n : {1, 2, 3, 4, 6, 8, 12, 16}) {
         const double first = error(1, random_offset), random = error(n * n, random_offset);

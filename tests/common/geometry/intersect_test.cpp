@@ -21,7 +21,7 @@ struct Random {
     Vec3 vector() { return {uniform(), uniform(), uniform()}; }
 };
 
-Ray towards(Vec3 origin, Vec3 target) { return {origin, normalize(target - origin)}; }
+Ray toward(Vec3 origin, Vec3 target) { return {origin, normalize(target - origin)}; }
 
 } // namespace
 
@@ -42,7 +42,7 @@ TEST_SUITE("unit") {
                     hub + Vec3(std::cos(angle), std::sin(angle), random.uniform(-0.3f, 0.3f)) * scale;
             }
             const Vec3 on_spoke = lerp(hub, rim[static_cast<std::size_t>(trial % kSpokes)], random.uniform(0, 0.5f));
-            const ShearedRay ray(towards(eye, trial % 3 ? on_spoke : hub));
+            const ShearedRay ray(toward(eye, trial % 3 ? on_spoke : hub));
             bool hit = false;
             for (std::size_t i = 0; i < kSpokes; ++i)
                 hit = hit || intersect_triangle(ray, hub, rim[i], rim[(i + 1) % kSpokes]).has_value();
@@ -60,7 +60,7 @@ TEST_SUITE("unit") {
             const float u = random.uniform(0, 1), v = random.uniform(0, 1 - u);
             const Vec3 target = a * (1 - u - v) + b * u + c * v;
             const Vec3d n = cross(Vec3d(b) - Vec3d(a), Vec3d(c) - Vec3d(a));
-            const Ray ray = towards(random.vector() * (3 * scale), target);
+            const Ray ray = toward(random.vector() * (3 * scale), target);
             const Vec3d d(ray.direction);
             const double cosine = dot(n, d) / length(n);
             if (std::abs(cosine) < 1e-3 || length(n) < 1e-3 * static_cast<double>(scale) * static_cast<double>(scale))
@@ -113,7 +113,7 @@ TEST_SUITE("unit") {
         Random random;
         for (int trial = 0; trial < 20000; ++trial) {
             const Vec3 a = random.vector(), b = random.vector(), c = random.vector();
-            const Ray unit = towards(random.vector() * 3.0f, a * 0.3f + b * 0.3f + c * 0.4f);
+            const Ray unit = toward(random.vector() * 3.0f, a * 0.3f + b * 0.3f + c * 0.4f);
             const auto expected = intersect_triangle(ShearedRay(unit), a, b, c);
             for (const int power : {-20, -10, 10, 20}) { // scaling by a power of two changes only the exponents
                 Ray ray = unit;
@@ -137,7 +137,7 @@ TEST_SUITE("unit") {
             const Vec3 along = normalize(a - origin), aside = normalize(cross(along, random.vector()));
             const Vec3 off = cross(along, aside) * (1e-5f * random.uniform());
             const Vec3 b = a + (along + aside * random.uniform() + off) * 0.03f, c = a + (along - aside + off) * 0.02f;
-            const ShearedRay ray(towards(origin, a));
+            const ShearedRay ray(toward(origin, a));
             const auto hit = intersect_triangle(ray, a, b, c);
             if (!hit) continue;
             ++hits;
@@ -203,7 +203,7 @@ TEST_SUITE("unit") {
         for (int trial = 0; trial < 2000; ++trial) {
             const float u = random.uniform(0.001f, 0.999f), v = random.uniform(0.001f, 0.999f);
             const Vec3 target = quad.corner + quad.u * u + quad.v * v;
-            const auto hit = intersect_quad(ShearedRay(towards({0, 3, -8}, target)), quad);
+            const auto hit = intersect_quad(ShearedRay(toward({0, 3, -8}, target)), quad);
             REQUIRE(hit.has_value());
             CHECK(hit->u == doctest::Approx(u).epsilon(1e-4));
             CHECK(hit->v == doctest::Approx(v).epsilon(1e-4));
@@ -218,14 +218,14 @@ TEST_SUITE("unit") {
             const float distance = std::pow(10.0f, random.uniform(0.1f, 4));
             const Vec3 eye = sphere.center + normalize(random.vector()) * (radius * distance);
             const Vec3 aim = sphere.center + random.vector() * (0.5f * radius);
-            const Ray ray = towards(eye, aim);
+            const Ray ray = toward(eye, aim);
             const auto t = intersect_sphere(ray, sphere);
             REQUIRE(t.has_value());
             const Vec3d p = Vec3d(ray.origin) + Vec3d(ray.direction) * static_cast<double>(*t);
             // t is rounded once, so the point may be off the sphere by half an ulp of t.
             const double off = std::abs(length(p - Vec3d(sphere.center)) - static_cast<double>(radius));
             CHECK(off <= 6.0e-8 * static_cast<double>(*t) + 1e-12 * static_cast<double>(radius));
-            const auto from_inside = intersect_sphere(towards(aim, eye), sphere);
+            const auto from_inside = intersect_sphere(toward(aim, eye), sphere);
             CHECK(from_inside.has_value());
         }
     }

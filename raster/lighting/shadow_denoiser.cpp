@@ -1,4 +1,4 @@
-#include "raster/lighting/shadow_filter.h"
+#include "raster/lighting/shadow_denoiser.h"
 
 #include "raster/gbuffer/neighbors.h"
 
