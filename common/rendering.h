@@ -98,7 +98,7 @@ struct Rendering {
     ImageRgb radiance; ///< linear radiance
     ImageRgb denoised; ///< radiance without most of its noise; empty unless denoising was requested (path tracer)
     // Auxiliary images are empty unless requested. Depth, normal and albedo are means over the samples that hit a
-    // surface; hit is the hit of sample 0.
+    // surface; hit is the hit of the first sample.
     ImageFloat depth;   ///< camera-space −z in meters; infinity on a miss
     Image<Vec3> normal; ///< shading normal in world space, facing the camera; (0, 0, 0) on a miss
     ImageRgb albedo;    ///< base color; black on a miss

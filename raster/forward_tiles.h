@@ -10,7 +10,6 @@ namespace duet::raster {
 /// Renders one tile: determines the coverage of each sample, then shades it with the program.
 void render_tile(const FrameContext& frame, const PassView& view, std::size_t index, Framebuffer& framebuffer);
 /// Renders one tile with multisampling: determines the coverage of all samples, then shades each primitive once.
-/// Without a program only the auxiliary values are added.
 void render_multisampled_tile(const FrameContext& frame, const PassView& view, std::size_t index,
                               Framebuffer& framebuffer);
 /// Visits the samples of a tile one by one. Adds their auxiliary values and, in front of transparent layers, the

@@ -10,8 +10,7 @@
 
 namespace duet::raster {
 
-/// Derives limits from the number of pixels of the scene's image. For an image of at least 256 × 256 pixels, only the
-/// largest radiance maps are limited.
+/// Derives limits from the number of pixels of the scene's image.
 struct PrepareLimits {
     explicit PrepareLimits(const Scene& scene)
         : pixels_(static_cast<std::int64_t>(scene.width) * scene.height) {}
@@ -24,7 +23,7 @@ struct PrepareLimits {
     int radiance_map_side(int finest) const {
         return std::min({finest, power_of_two(4), std::max(256, power_of_two(1))});
     }
-    /// Returns the number of irradiance probes, at most one per 16 pixels.
+    /// Returns the number of irradiance probes, about one per 16 pixels at most.
     int irradiance_probes(int most) const { return at_most(most, pixels_ / 16); }
     /// Returns the number of reflection probes, at most one per 64 pixels.
     int reflection_probes(int most) const { return at_most(most, pixels_ / 64); }

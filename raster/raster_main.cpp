@@ -35,7 +35,7 @@ void add_options(CommandLine& command_line, Options& options) {
     command_line.add("--shadow-map", options.settings.shadow_map_side,
                      "Texels along a shadow map's side, 64 to 8192; a face of a cube map has half as many, of an "
                      "area light's a quarter (default 2048); fewer where there would be too many for memory, and "
-                     "for an image of less than 256 x 256 pixels, which cannot show them");
+                     "at most eight times the side of a square image of as many pixels, which shows no more");
     command_line.add(
         "--shadow-cells", options.settings.shadow_cells,
         "Pieces along each side of a rectangular light, 1 to 8, each with a map of its own (default 2)");

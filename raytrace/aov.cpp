@@ -4,14 +4,15 @@
 
 namespace duet::raytrace {
 
-AovBuffers::AovBuffers(const RenderPlan& plan, const View& view, const AovSet& requested)
-    : plan_(plan), forward_(CameraModel(view).pinhole().forward), requested_(requested) {
+AovBuffers::AovBuffers(const RenderPlan& plan, const View& view, const PathTracerSettings& settings)
+    : plan_(plan), forward_(CameraModel(view).pinhole().forward), requested_(settings.aovs),
+      first_sample_(settings.first_sample) {
     if (requested_.depth || requested_.normal || requested_.albedo) sums_ = Image<Sums>(view.width, view.height);
     if (requested_.hit) hits_ = Image<Hit>(view.width, view.height);
 }
 
 void AovBuffers::add(int x, int y, std::uint32_t index, const Ray& ray, const Hit& hit) {
-    if (requested_.hit && index == 0) hits_(x, y) = hit;
+    if (requested_.hit && index == first_sample_) hits_(x, y) = hit;
     if (sums_.empty() || !hit.valid()) return;
     Sums& sums = sums_(x, y);
     ++sums.hits;

@@ -10,7 +10,7 @@ namespace duet::raytrace {
 /// pixels at the same time.
 class AovBuffers {
 public:
-    AovBuffers(const RenderPlan& plan, const View& view, const AovSet& requested);
+    AovBuffers(const RenderPlan& plan, const View& view, const PathTracerSettings& settings);
 
     /// Returns whether any image that this class accumulates is requested, so that add() has to be called.
     bool any() const { return requested_.depth || requested_.normal || requested_.albedo || requested_.hit; }
@@ -30,6 +30,7 @@ private:
     const RenderPlan& plan_;
     Vec3d forward_; // view direction of the camera
     AovSet requested_;
+    std::uint32_t first_sample_;
     Image<Sums> sums_;
     Image<Hit> hits_;
 };

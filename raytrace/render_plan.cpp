@@ -48,7 +48,7 @@ bool enters_solids(Integrator integrator) {
 
 RenderPlan::RenderPlan(const PathTracerSceneData& prepared_, const View& view, const PathTracerSettings& settings)
     : prepared(prepared_), scene(prepared_.scene), filter(settings.filter), batched(scene.objects.size()),
-      max_depth(depth(settings)), russian_roulette(settings.russian_roulette && max_depth > 1) {
+      max_depth(depth(settings)), russian_roulette(settings.russian_roulette && max_depth > 1 && settings.integrator != Integrator::kWhitted) {
     const SkipFlags& skips = settings.skips;
     const CameraModel camera(view);
     lens = camera.has_lens() || !skips.lens;
@@ -139,7 +139,10 @@ std::vector<std::string> approximations(const RenderPlan& plan, const PathTracer
     if (merges(settings.integrator))
         list.emplace_back("photons blur light over a radius that shrinks with every sample");
     if (settings.integrator == Integrator::kWhitted)
-        list.emplace_back("lights shine from their centers, and surfaces do not light each other");
+        list.emplace_back("lights shine from their centers with their mean radiance, and surfaces do not light each "
+                          "other");
+    if (settings.integrator == Integrator::kWhitted && plan.scene.needs.interiors)
+        list.emplace_back("glass does not absorb, and glass inside glass bends light as in air");
     if (settings.integrator == Integrator::kDirect) list.emplace_back("light arrives after one scattering at most");
     const bool leaves_out_media =
         settings.integrator == Integrator::kUnshadowed || settings.integrator == Integrator::kWhitted;

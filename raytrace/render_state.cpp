@@ -39,7 +39,7 @@ const View& checked(const Scene& scene, const View& view, const PathTracerSettin
 
 RenderState::RenderState(const PathTracerSceneData& prepared, const View& view_, const PathTracerSettings& settings_)
     : view(checked(prepared.scene, view_, settings_)), settings(settings_), plan(prepared, view, settings),
-      checkpoint(plan.scene, view, settings), aovs(plan, view, settings.aovs) {}
+      checkpoint(plan.scene, view, settings), aovs(plan, view, settings) {}
 
 bool RenderState::run_pass(Control& control, double begin, double end) {
     const PassContext context{plan, view, settings, control, checkpoint, aovs, rays, first_invalid};

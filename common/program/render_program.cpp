@@ -5,6 +5,7 @@
 #include "common/program/statistics.h"
 #include "common/program/video.h"
 #include "common/program/view_transform_options.h"
+#include "common/system/file.h"
 #include "common/system/memory.h"
 #include "common/system/name_table.h"
 #include "common/system/parallel.h"
@@ -69,7 +70,7 @@ void check_output(const Options& options) {
         throw Error(message("--orbit: the output's name must hold %04d for the frame's number, or end in .mp4, found ",
                             options.output));
     check_writable_image(name);
-    if (options.ascii && std::filesystem::path(options.output).extension() != ".ppm")
+    if (options.ascii && lower_case_extension(options.output) != ".ppm")
         throw Error(message("--ascii: only a .ppm can be written as text, found ", options.output));
     check_json_path(options.stats);
 }

@@ -53,7 +53,7 @@ Rgb mean_radiance(const Scene& scene, std::uint32_t object, std::uint32_t primit
     return sum * (1.0f / (kGrid * kGrid));
 }
 
-Rgb radiance_towards(const Scene& scene, const SurfaceLight& light, Vec3 p, Vec3 w, float distance) {
+Rgb radiance_toward(const Scene& scene, const SurfaceLight& light, Vec3 p, Vec3 w, float distance) {
     const Material& material = scene.materials[material_index(scene, light.object, light.primitive)];
     const Emissive* emissive = emitter(material);
     if (emissive == nullptr || emissive->radiance_texture < 0) return light.radiance;

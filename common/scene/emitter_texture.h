@@ -13,6 +13,6 @@ Rgb mean_radiance(const Scene& scene, std::uint32_t object, std::uint32_t primit
 /// Returns the radiance that a light emits back along the ray from p in direction w (unit), which hits it at
 /// `distance`. Where the light has no texture, or where the ray misses it because of rounding, this is the light's
 /// mean radiance.
-Rgb radiance_towards(const Scene& scene, const SurfaceLight& light, Vec3 p, Vec3 w, float distance);
+Rgb radiance_toward(const Scene& scene, const SurfaceLight& light, Vec3 p, Vec3 w, float distance);
 
 } // namespace duet

@@ -7,6 +7,8 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <map>
+#include <set>
 
 namespace duet::compare {
 
@@ -153,10 +155,42 @@ std::array<Vec3d, 3> local_axes(const ordered_json& scene, const JsonPath& eleme
     return {x, cross(z, x), z};
 }
 
+namespace {
+
+bool is_group(const ordered_json& element) { return element.value("type", "") == "group"; }
+
+/// Calls visit for the elements of a list and of its groups.
+template <typename Elements, typename Visit> void for_each_element(Elements& elements, const Visit& visit) {
+    for (auto& element : elements) {
+        visit(element);
+        if (is_group(element) && element.contains("objects")) for_each_element(element.at("objects"), visit);
+    }
+}
+
+} // namespace
+
+// Names of groups are unique, so those of the copy are new, and its instances refer to them.
 std::string duplicated(const std::string& text, const JsonPath& element) {
-    ordered_json copy = parsed(text, element);
-    if (copy.value("type", "") == "group") copy.erase("name"); // names of groups are unique
-    return appended(text, element.front(), copy);
+    const ordered_json scene = ordered_json::parse(text);
+    ordered_json copy = ordered_json::array({value_at(scene, element)});
+    std::set<std::string> used;
+    if (scene.contains("objects"))
+        for_each_element(scene.at("objects"), [&](const ordered_json& each) {
+            if (is_group(each)) used.insert(each.value("name", ""));
+        });
+    std::map<std::string, std::string> renamed;
+    for_each_element(copy, [&](ordered_json& each) {
+        if (!is_group(each) || !each.contains("name")) return;
+        const std::string name = each.at("name");
+        std::string own = name;
+        for (int i = 2; used.contains(own); ++i) own = name + " " + std::to_string(i);
+        used.insert(own), renamed[name] = own;
+        each["name"] = own;
+    });
+    for_each_element(copy, [&](ordered_json& each) {
+        if (each.contains("of") && renamed.contains(each.at("of"))) each["of"] = renamed.at(each.at("of"));
+    });
+    return appended(text, element.front(), copy.front());
 }
 
 std::string with_own_material(const std::string& text, const JsonPath& element) {

@@ -96,7 +96,7 @@ unsigned LiveView::load(const View& view, SceneReader read, bool edited) {
         start(preparer_, [=, this, scene = next.scene](const std::atomic<bool>& stop) {
             if (seen && !rests(stop)) return;
             if (edited)
-                prepare_whole(load, seen_in(view, read(Transforms::kBaked)));
+                prepare_whole(load, seen_in(view, read(Transforms::kBaked)), stop);
             else
                 prepare_raster(load, scene);
         });
@@ -125,14 +125,14 @@ std::shared_ptr<const LiveView::Traced> LiveView::prepare_traced(unsigned load,
 }
 
 // Prepares an edited scene as the programs do, for both pipelines.
-void LiveView::prepare_whole(unsigned load, const std::shared_ptr<const Scene>& scene) {
+void LiveView::prepare_whole(unsigned load, const std::shared_ptr<const Scene>& scene, const std::atomic<bool>& stop) {
     const std::shared_ptr<const Traced> traced = prepare_traced(load, scene, nullptr);
     publish([&] {
         if (loaded_.load != load) return;
         loaded_.scene = scene;
         loaded_.raytrace = traced;
     });
-    prepare_raster(load, scene);
+    if (!stop) prepare_raster(load, scene);
 }
 
 void LiveView::prepare_raster(unsigned load, const std::shared_ptr<const Scene>& scene) {

@@ -107,7 +107,7 @@ private:
     std::shared_ptr<const Traced> hierarchies() const { return edited_ ? edited_ : loaded().raytrace; } // on loader_
     std::shared_ptr<const Traced> prepare_traced(unsigned load, const std::shared_ptr<const Scene>& scene,
                                                  const std::shared_ptr<const Traced>& before);
-    void prepare_whole(unsigned load, const std::shared_ptr<const Scene>& scene);
+    void prepare_whole(unsigned load, const std::shared_ptr<const Scene>& scene, const std::atomic<bool>& stop);
     void prepare_raster(unsigned load, const std::shared_ptr<const Scene>& scene);
     bool prepare_edited_raster(unsigned load, const std::shared_ptr<const Scene>& scene);
     void set_raster(PreparedScene<raster::RasterScene> next);

@@ -8,6 +8,12 @@
 
 namespace duet::raster {
 
+/// Selects the planes that only some scenes need.
+struct OptionalPlanes {
+    bool coat = false; ///< a material has a clear coat
+    bool tint = false; ///< the tint of a glass varies
+};
+
 /// Holds one visible surface per pixel as a structure of arrays. Every opaque material is reduced to the same lobes:
 /// Lambert's diffuse lobe, a GGX specular lobe with Schlick's Fresnel term, and a clear coat. Each stage thus has one
 /// formula for all materials.
@@ -26,15 +32,16 @@ struct GBuffer {
     PlaneFloat alpha;           ///< GGX width of the specular lobe, in [0, 1]; below MetalBsdf::kSmoothAlpha a mirror
     PlaneFloat coat;            ///< fraction covered by the clear coat, in [0, 1]; empty if no material has one
     PlaneFloat coat_alpha;      ///< GGX width of the coat; empty if no material has one
-    PlaneInt object;            ///< index into Scene::objects; −1 for the background
-    PlaneInt material;          ///< index into Scene::materials; −1 for the background
+    Planes3 tint;               ///< fraction of light that glass transmits at a crossing; empty if no tint varies
+    PlaneInt object;            ///< index into Scene::objects; unspecified in the background
+    PlaneInt material;          ///< index into Scene::materials; unspecified in the background
     /// These are points relative to the eye, for surfaces that a caller found along its own rays
     /// (raster/shading/hit_shader.h). The planes are empty for rasterized surfaces, whose points follow from their
     /// pixels and depths.
     Planes3 position;
     bool eye_enclosed = false;  ///< whether an object that is left out encloses the eye and hides it from the surfaces
 
-    GBuffer(const ScreenProjection& view, int width, int height, bool coats);
+    GBuffer(const ScreenProjection& view, int width, int height, OptionalPlanes planes);
     int width() const { return reversed_depth.width(); }
     int height() const { return reversed_depth.height(); }
     /// Returns the points of a batch of pixels, relative to the eye. Those of the background are at a finite distance.

@@ -3,6 +3,7 @@
 #include "raster/gbuffer/surface_lobes.h"
 #include "raster/shader/shader_program.h"
 #include "raster/shader/single_hit.h"
+#include "raster/visibility/hit_lists.h"
 #include "raster/visibility/hit_tile.h"
 #include "raster/visibility/packet_primitives.h"
 #include "raster/visibility/rasterize_tile.h"
@@ -61,6 +62,7 @@ void set_sample(ColorPacket& colors, std::size_t i, Rgb c) { colors.r[i] = c.r, 
 struct LobesPacket {
     ColorPacket diffuse, specular;
     PacketOf<float> alpha, coat, coat_alpha;
+    ColorPacket tint;
 };
 
 void store_lobes(const SurfaceLobes& lobes, int x, int y, GBuffer& gbuffer) {
@@ -68,6 +70,7 @@ void store_lobes(const SurfaceLobes& lobes, int x, int y, GBuffer& gbuffer) {
     gbuffer.specular.set_at(x, y, lobes.specular);
     gbuffer.alpha(x, y) = lobes.alpha;
     if (!gbuffer.coat.empty()) gbuffer.coat(x, y) = lobes.coat, gbuffer.coat_alpha(x, y) = lobes.coat_alpha;
+    if (!gbuffer.tint.x.empty()) gbuffer.tint.set_at(x, y, lobes.tint);
 }
 
 /// Holds the state that all tiles share.
@@ -205,6 +208,7 @@ private:
         copy_lanes(lanes, found.diffuse, lobes_.diffuse), copy_lanes(lanes, found.specular, lobes_.specular);
         copy_lanes(lanes, found.alpha, lobes_.alpha);
         copy_lanes(lanes, found.coat, lobes_.coat), copy_lanes(lanes, found.coat_alpha, lobes_.coat_alpha);
+        copy_lanes(lanes, shaded_.color, lobes_.tint); // that of glass is its base color
     }
 
     /// Finds the lobes of one sample, whose material has parameters that vary over the surface.
@@ -219,13 +223,15 @@ private:
             surface_lobes(bsdf_at(scene_.materials[point.material], scene_.textures, point), cosine);
         set_sample(lobes_.diffuse, i, lobes.diffuse), set_sample(lobes_.specular, i, lobes.specular);
         lobes_.alpha[i] = lobes.alpha, lobes_.coat[i] = lobes.coat, lobes_.coat_alpha[i] = lobes.coat_alpha;
+        set_sample(lobes_.tint, i, lobes.tint);
     }
 
     void store_lobes(int x, int y) {
-        const auto& [diffuse, specular, alpha, coat, coat_alpha] = lobes_;
+        const auto& [diffuse, specular, alpha, coat, coat_alpha, tint] = lobes_;
         store_packets(diffuse.r, diffuse.g, diffuse.b, x, y, gbuffer_.diffuse);
         store_packets(specular.r, specular.g, specular.b, x, y, gbuffer_.specular);
         store_packet(alpha, x, y, gbuffer_.alpha);
+        if (!gbuffer_.tint.x.empty()) store_packets(tint.r, tint.g, tint.b, x, y, gbuffer_.tint);
         if (gbuffer_.coat.empty()) return;
         store_packet(coat, x, y, gbuffer_.coat), store_packet(coat_alpha, x, y, gbuffer_.coat_alpha);
     }
@@ -270,11 +276,15 @@ private:
 
 } // namespace
 
-bool any_clear_coat(const Scene& scene) {
-    return std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& material) {
-        const auto* p = std::get_if<Principled>(&material);
-        return p != nullptr && (p->clearcoat.value > 0 || !p->clearcoat.constant());
-    });
+OptionalPlanes optional_planes(const Scene& scene) {
+    OptionalPlanes planes;
+    for (const Material& material : scene.materials) {
+        if (const auto* p = std::get_if<Principled>(&material))
+            planes.coat = planes.coat || p->clearcoat.value > 0 || !p->clearcoat.constant();
+        if (const auto* glass = std::get_if<Dielectric>(&material))
+            planes.tint = planes.tint || glass->tint.texture >= 0;
+    }
+    return planes;
 }
 
 void store_surface(const Scene& scene, const VisibleSurface& surface, bool emits, int x, int y, GBuffer& gbuffer,
@@ -297,15 +307,40 @@ void clear(GBuffer& gbuffer, Planes3& emission) {
     for (PlaneFloat* plane : {&emission.x, &emission.y, &emission.z}) plane->fill(0);
 }
 
-void fill_gbuffer(const RasterSceneData& data, const RasterSettings& settings, const Geometry& geometry,
-                  const PassView& view, const TileGrid& grid, SampleOffset offset, const Control& control,
-                  GBuffer& gbuffer, Planes3& emission) {
-    const Frame frame{data, geometry, view, settings.components.emission};
-    parallel_for(grid.size(), settings.threads, [&](std::size_t i) {
-        if (control.stopped()) return;
+void store_hit(const SampleView& sample, int x, int y, const Hit& hit, float reversed_depth, GBuffer& gbuffer,
+               Planes3& emission) {
+    const Scene& scene = sample.data.scene;
+    const Ray ray = rounded(sample.view.pinhole.ray(sample.offset.position(x, y)), sample.view.time);
+    const SurfacePoint point = filtered_point(scene, sample.view, ray, hit, sample.view.samples_per_pixel);
+    const Bsdf bsdf = bsdf_at(scene.materials[point.material], scene.textures, point);
+    store_surface(scene, {point, bsdf, -ray.direction, reversed_depth}, sample.settings.components.emission, x, y,
+                  gbuffer, emission);
+}
+
+void fill_gbuffer(const SampleView& sample, GBuffer& gbuffer, Planes3& emission) {
+    const Frame frame{sample.data, sample.geometry, sample.view, sample.settings.components.emission};
+    parallel_for(sample.grid.size(), sample.settings.threads, [&](std::size_t i) {
+        if (sample.control.stopped()) return;
         DepthTile tile;
-        rasterize_tile(geometry, view, offset, grid.tile(i), i, tile);
+        rasterize_tile(sample.geometry, sample.view, sample.offset, sample.grid.tile(i), i, tile);
         TileFiller(frame, tile.rect(), gbuffer, emission).run(tile);
+    });
+}
+
+void add_alpha_surfaces(const SampleView& sample, GBuffer& gbuffer, Planes3& emission) {
+    parallel_for(sample.grid.size(), sample.settings.threads, [&](std::size_t i) {
+        if (sample.control.stopped() || !sample.layers->overlaps_tile(i)) return;
+        DepthTile depths;
+        rasterize_tile(sample.geometry, sample.view, sample.offset, sample.grid.tile(i), i, depths);
+        HitTile tile(depths, sample.geometry, sample.view);
+        const auto stops = [](int x, int y, float left) {
+            return left * kDitherSide * kDitherSide <= static_cast<float>(dither_rank(x, y)) + 0.5f;
+        };
+        HitLists(*sample.layers, sample.view, sample.offset, i, tile)
+            .for_each_blocking_hit(sample.data.scene, stops, [&](int x, int y, const Hit& hit) {
+                tile.exchange(x, y, hit);
+                store_hit(sample, x, y, hit, tile.reversed_depth(x, y), gbuffer, emission);
+            });
     });
 }
 

@@ -11,12 +11,28 @@ struct Control;
 
 namespace duet::raster {
 
-/// Fills the G-buffer of a view whose samples lie at `offset` in their pixels. `emission` receives the radiance that
-/// the visible surfaces emit toward the viewer, 0 elsewhere. Every pixel is written, unless `control` stops the pass:
-/// then the remaining tiles keep their old contents.
-void fill_gbuffer(const RasterSceneData& data, const RasterSettings& settings, const Geometry& geometry,
-                  const PassView& view, const TileGrid& grid, SampleOffset offset, const Control& control,
-                  GBuffer& gbuffer, Planes3& emission);
+/// Describes one sample per pixel of a view. All functions that fill a G-buffer take it.
+struct SampleView {
+    const RasterSceneData& data;
+    const RasterSettings& settings;
+    const Geometry& geometry; ///< geometry of the opaque surfaces
+    const Geometry* layers;   ///< geometry of the surfaces with alpha; null if there are none
+    const PassView& view;
+    const TileGrid& grid;
+    SampleOffset offset; ///< position of the samples in their pixels
+    const Control& control;
+};
+
+/// Fills the G-buffer with the opaque surfaces. `emission` receives the radiance that the visible surfaces emit toward
+/// the viewer, 0 elsewhere. Every pixel is written, unless the control stops the pass: then the remaining tiles keep
+/// their old contents.
+void fill_gbuffer(const SampleView& sample, GBuffer& gbuffer, Planes3& emission);
+/// Adds the surfaces with alpha. A surface replaces what lies behind it in as many pixels as it blocks of the light, in
+/// an ordered dither (stochastic transparency), because the G-buffer has room for one surface.
+void add_alpha_surfaces(const SampleView& sample, GBuffer& gbuffer, Planes3& emission);
+/// Stores a hit in a pixel.
+void store_hit(const SampleView& sample, int x, int y, const Hit& hit, float reversed_depth, GBuffer& gbuffer,
+               Planes3& emission);
 
 /// Describes a visible surface, evaluated by the functions that both pipelines share.
 struct VisibleSurface {
@@ -31,7 +47,7 @@ void store_surface(const Scene& scene, const VisibleSurface& surface, bool emits
 /// Marks all pixels as background.
 void clear(GBuffer& gbuffer, Planes3& emission);
 
-/// Returns whether any material has a clear coat, which requires additional planes in the G-buffer.
-bool any_clear_coat(const Scene& scene);
+/// Returns the planes that the scene's materials need.
+OptionalPlanes optional_planes(const Scene& scene);
 
 } // namespace duet::raster

@@ -3,11 +3,16 @@
 #pragma once
 
 #include "raster/gbuffer/plane.h"
+#include "raster/gbuffer/screen_projection.h"
 
 namespace duet::raster {
 
-/// Two pixels may be averaged if their points lie within this many pixel widths of each other's planes.
-inline constexpr float kPlaneTolerance = 2;
+/// Returns the greatest distance in meters between a point of reversed depth `depth` and the plane of another point, if
+/// the two may be averaged.
+inline Floats plane_tolerance(const ScreenProjection& projection, const Floats& depth) {
+    constexpr float kPixels = 2;
+    return Floats(kPixels) * projection.pixel_size(Floats(projection.near()) / max(depth, Floats(1e-30f)));
+}
 
 /// Loads a batch that starts at any column, with columns and rows beyond the plane's edges clamped.
 inline Floats load_at(const PlaneFloat& plane, int x, int y) {

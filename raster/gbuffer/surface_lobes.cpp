@@ -20,12 +20,12 @@ struct LobesOf {
                 .coat_alpha = b.coat_alpha};
     }
     SurfaceLobes operator()(const RoughDielectricBsdf& b) const {
-        return {.specular = outer_reflectance(b.eta), .alpha = b.alpha};
+        return {.specular = outer_reflectance(b.eta), .alpha = b.alpha, .tint = b.tint};
     }
     SurfaceLobes operator()(const DielectricBsdf& b) const {
-        return {.specular = outer_reflectance(b.eta), .alpha = 0};
+        return {.specular = outer_reflectance(b.eta), .alpha = 0, .tint = b.tint};
     }
-    SurfaceLobes operator()(const ThinDielectricBsdf&) const { return {.alpha = 0}; }
+    SurfaceLobes operator()(const ThinDielectricBsdf& b) const { return {.alpha = 0, .tint = b.tint}; }
     /// bsdf_at() returns neither of these subsurface BSDFs, but std::visit needs their overloads.
     SurfaceLobes operator()(const SubsurfaceBsdf& b) const { return (*this)(b.surface); }
     SurfaceLobes operator()(const SubsurfaceExitBsdf& b) const { return (*this)(b.surface); }

@@ -13,6 +13,7 @@ namespace duet::raster {
 struct SurfaceLobes {
     Rgb diffuse{}, specular{};
     float alpha = 1, coat = 0, coat_alpha = 1;
+    Rgb tint{};
 };
 
 /// Returns the lobes of a BSDF toward a viewer at this cosine from the normal, in (0, 1]. Glass keeps only its outer

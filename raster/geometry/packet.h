@@ -200,6 +200,19 @@ template <typename T> xsimd::batch_bool<T> lanes_from(std::uint32_t bits) {
 #endif
 }
 
+/// Calls use(value, lanes) for each value that the keys have in the lanes `left`. `lanes` are those of `left` with that
+/// value.
+template <typename T, typename Use> void for_each_value(const xsimd::batch<T>& keys, std::uint32_t left, const Use& use) {
+    alignas(64) std::array<T, xsimd::batch<T>::size> each;
+    keys.store_aligned(each.data());
+    while (left != 0) {
+        const T value = each[static_cast<std::size_t>(std::countr_zero(left))];
+        const std::uint32_t own = (lane_bits(keys == xsimd::batch<T>(value)) & left) | (left & -left); // NaN is unequal
+        left &= ~own;
+        use(value, lanes_from<float>(own));
+    }
+}
+
 /// Returns the column of each sample of a packet.
 template <typename T> PacketOf<T> packet_columns() {
     PacketOf<T> result;

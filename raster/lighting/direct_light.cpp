@@ -136,7 +136,7 @@ private:
             if (source == ShadowLookup::kUnshadowed)
                 sum.exact += all;
             else
-                one_source.add(all, direction_to_middle(batch, its));
+                one_source.add(all, direction_to(its, batch.p()).wi);
         }
         add_shadowed(batch, one_source, facet, x, y, sum);
         for (const LightField& field : std::span(fields_).first(field_count_))
@@ -185,13 +185,6 @@ private:
     static Vec3T<Floats> receiving_normal(const LitBatch& batch, const Vec3T<Floats>& wi, const Vec3T<Floats>& facet) {
         constexpr float kLeastCosine = 0.05f;
         return select(dot(facet, wi) > Floats(kLeastCosine), facet, batch.n());
-    }
-
-    /// Returns the unit directions from the points to the middle of the light.
-    static Vec3T<Floats> direction_to_middle(const LitBatch& batch, const FrameLight& light) {
-        const Vec3T<Floats> wi = light.kind == FrameLight::Kind::kSun ? broadcast<Floats>(light.axis)
-                                                                      : broadcast<Floats>(light.position) - batch.p();
-        return wi * inverse_sqrt(max(dot(wi, wi), Floats(1e-20f)));
     }
 
     Sum& sum_at(int x, int y) {

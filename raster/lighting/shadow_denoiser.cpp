@@ -26,8 +26,8 @@ Shade shade_of(const RgbT<Floats>& lit) {
 RgbT<Floats> mean_of_block(const GBuffer& gbuffer, const Planes3& lit, int x, int y) {
     const ScreenProjection& projection = gbuffer.projection;
     const Vec3s p = gbuffer.points(x, y), n = gbuffer.normal.vector(x, y);
-    const Floats least(1e-30f), zero(0.0f), depth = max(load(gbuffer.reversed_depth, x, y), least);
-    const Floats tolerance = Floats(kPlaneTolerance) * projection.pixel_size(Floats(projection.near()) / depth);
+    const Floats least(1e-30f), zero(0.0f);
+    const Floats tolerance = plane_tolerance(projection, load(gbuffer.reversed_depth, x, y));
     RgbT<Floats> sum(zero);
     Floats weights(zero);
     for (int dy = -kDitherSide / 2; dy < kDitherSide / 2; ++dy)

@@ -81,26 +81,13 @@ void LobeLookup::set_rows(float alpha) {
     mean_lost_ = GgxAlbedoTables::look_up(albedo.mean_energy_loss, place);
 }
 
-/// Sets the table rows for each value of alpha in turn, and calls use(lanes) for the lanes with that value.
-template <typename Use>
-void LobeLookup::for_each_alpha(const Floats& alpha, const xsimd::batch_bool<float>& lanes, const Use& use) {
-    alignas(64) std::array<float, Floats::size> each;
-    alpha.store_aligned(each.data());
-    for (std::uint32_t left = lane_bits(lanes); left != 0;) {
-        const float own = each[static_cast<std::size_t>(std::countr_zero(left))];
-        set_rows(own);
-        const xsimd::batch_bool<float> equal = alpha == Floats(own);
-        use(equal);
-        left &= ~lane_bits(equal);
-    }
-}
-
 LobeTables LobeLookup::operator()(const Floats& alpha, const Floats& cosine, const xsimd::batch_bool<float>& lanes) {
     const Columns by_angle(xsimd::sqrt(max(Floats(1.0f) - cosine, Floats(0.0f))), kLobeSide);
     const Columns by_height(xsimd::sqrt(cosine), GgxAlbedoTables::kSize);
     const Columns by_steepness = steepness_columns(alpha, cosine);
     LobeTables result{};
-    for_each_alpha(alpha, lanes, [&](const xsimd::batch_bool<float>& equal) {
+    for_each_value(alpha, lane_bits(lanes), [&](float own, const xsimd::batch_bool<float>& equal) {
+        set_rows(own);
         const auto set = [&](Floats& to, const Floats& value) { to = xsimd::select(equal, value, to); };
         set(result.m11, by_angle(matrix_[0])), set(result.m13, by_angle(matrix_[1]));
         set(result.m22, by_angle(matrix_[2])), set(result.m31, by_angle(matrix_[3]));
@@ -114,7 +101,8 @@ LobeTables LobeLookup::operator()(const Floats& alpha, const Floats& cosine, con
 Floats LobeLookup::lost(const Floats& alpha, const Floats& cosine, const xsimd::batch_bool<float>& lanes) {
     const Columns by_steepness = steepness_columns(alpha, cosine);
     Floats result(0.0f);
-    for_each_alpha(alpha, lanes, [&](const xsimd::batch_bool<float>& equal) {
+    for_each_value(alpha, lane_bits(lanes), [&](float own, const xsimd::batch_bool<float>& equal) {
+        set_rows(own);
         result = xsimd::select(equal, by_steepness(lost_), result);
     });
     return result;

@@ -57,8 +57,6 @@ public:
 
 private:
     void set_rows(float alpha);
-    template <typename Use>
-    void for_each_alpha(const Floats& alpha, const xsimd::batch_bool<float>& lanes, const Use& use);
 
     float alpha_ = -1;
     std::array<PacketOf<float>, 5> matrix_;

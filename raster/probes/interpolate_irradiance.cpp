@@ -44,17 +44,6 @@ Floats visibility(const OctahedralMap& distances, const Vec3s& to_probe, const V
     return (front * front + Floats(kBehind)) * (seen * seen * seen + Floats(kHidden));
 }
 
-/// Calls use(first, own) for each cell that contains given lanes: `first` is the cell's first probe, `own` its lanes.
-/// Cells are large, so a batch mostly lies in one.
-template <typename Cells, typename Use> void for_each_cell(const Cells& cells, std::uint32_t left, const Use& use) {
-    while (left != 0) {
-        const std::int32_t first = cells[static_cast<std::size_t>(std::countr_zero(left))];
-        const auto own = xsimd::bool_cast(Ints::load_aligned(cells.data()) == Ints(first));
-        left &= ~lane_bits(own);
-        use(first, own);
-    }
-}
-
 } // namespace
 
 /// Returns the weight of the sky's irradiance at a distance from the grid, in cells.
@@ -72,9 +61,9 @@ RgbT<Floats> IrradianceProbes::faded_to_sky(const RgbT<Floats>& irradiance, cons
 
 /// Locates a batch of points between the probes.
 struct IrradianceProbes::Place {
-    alignas(64) std::array<std::int32_t, Ints::size> cells; ///< the first probe of each cell
-    std::array<Floats, 3> f;                                ///< position in the cell
-    Floats beyond;                                          ///< distance from the grid, in cells
+    Ints cells;              ///< the first probe of each cell
+    std::array<Floats, 3> f; ///< position in the cell
+    Floats beyond;           ///< distance from the grid, in cells
 
     /// Returns the weight of a corner of the cell in the linear interpolation.
     Floats weight(unsigned corner) const {
@@ -85,7 +74,7 @@ struct IrradianceProbes::Place {
 
 IrradianceProbes::Place IrradianceProbes::place_of(const Vec3d& eye, const Vec3s& p) const {
     const Vec3 first(origin_ - eye), step(step_);
-    Place result{{}, {}, Floats(0.0f)};
+    Place result{Ints(0), {}, Floats(0.0f)};
     std::array<Ints, 3> cell;
     const std::array<Floats, 3> at{p.x, p.y, p.z};
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -96,14 +85,14 @@ IrradianceProbes::Place IrradianceProbes::place_of(const Vec3d& eye, const Vec3s
         cell[axis] = xsimd::min(truncated(g), Ints(size_[axis] - 2));
         result.f[axis] = g - xsimd::batch_cast<float>(cell[axis]);
     }
-    (cell[0] + Ints(size_[0]) * (cell[1] + Ints(size_[1]) * cell[2])).store_aligned(result.cells.data());
+    result.cells = cell[0] + Ints(size_[0]) * (cell[1] + Ints(size_[1]) * cell[2]);
     return result;
 }
 
 RgbT<Floats> IrradianceProbes::mean_radiance(const Vec3d& eye, const Vec3s& p, const AmbientLight& sky) const {
     const Place place = place_of(eye, p);
     RgbT<Floats> result(Floats(0.0f));
-    for_each_cell(place.cells, lane_bits(Mask(true)), [&](std::int32_t first, const Mask& own) {
+    for_each_value(place.cells, lane_bits(Mask(true)), [&](std::int32_t first, const Mask& own) {
         RgbT<Floats> sum(Floats(0.0f));
         for (unsigned i = 0; i < 8; ++i) {
             const Probe& probe = probes_[corner_of(static_cast<std::size_t>(first), i)];
@@ -151,7 +140,7 @@ IrradianceProbes::Weights IrradianceProbes::weights(const Vec3d& eye, const Vec3
     const Place place = place_of(eye, p);
     const Vec3s at = p + bias(n, to_viewer);
     Weights result{place.cells, {}, Floats(0.0f), place.beyond};
-    for_each_cell(place.cells, lane_bits(mask), [&](std::int32_t base, const Mask& own) {
+    for_each_value(place.cells, lane_bits(mask), [&](std::int32_t base, const Mask& own) {
         const auto cell = static_cast<std::size_t>(base);
         std::array<Floats, 8> corners;
         for (unsigned i = 0; i < 8; ++i) {
@@ -174,7 +163,7 @@ IrradianceProbes::Weights IrradianceProbes::weights(const Vec3d& eye, const Vec3
 RgbT<Floats> IrradianceProbes::irradiance(const Weights& weights, const Vec3s& n, const Mask& mask) const {
     const std::array<Floats, 9> basis = harmonics(n);
     RgbT<Floats> result(Floats(0.0f));
-    for_each_cell(weights.cells, lane_bits(mask), [&](std::int32_t base, const Mask& own) {
+    for_each_value(weights.cells, lane_bits(mask), [&](std::int32_t base, const Mask& own) {
         RgbT<Floats> light(Floats(0.0f));
         for (unsigned i = 0; i < 8; ++i) {
             const Probe& probe = probes_[corner_of(static_cast<std::size_t>(base), i)];

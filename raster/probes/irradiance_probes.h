@@ -50,8 +50,8 @@ private:
     void set_distances(const ProbeCapture& capture, Probe& probe) const;
     /// Holds the weights of the eight probes around each point of a batch.
     struct Weights {
-        alignas(64) std::array<std::int32_t, Ints::size> cells; ///< the first probe of each point's cell
-        std::array<Floats, 8> corners;                          ///< weights by corner of the cell
+        Ints cells;                    ///< the first probe of each point's cell
+        std::array<Floats, 8> corners; ///< weights by corner of the cell
         Floats sum;
         Floats beyond; ///< distance from the grid, in cells
     };

@@ -28,13 +28,20 @@ ProbeCapture::Face capture(const RasterSceneData& data, const RasterSettings& se
     const PassView pass = center_view({camera, side, side});
     const SampleOffset offset = pass.samples.front();
     const TileGrid grid{{0, 0, side, side}};
-    const auto geometry = data.geometries->take();
-    process_geometry(data, grid, pass, settings, *geometry, [&](std::uint32_t object) {
+    const auto geometry = data.geometries->take(), layers = data.geometries->take();
+    const auto selected = [&](std::uint32_t object) {
         return std::binary_search(selection.objects.begin(), selection.objects.end(), object) != selection.excluded;
-    });
-    ProbeCapture::Face face{GBuffer(ScreenProjection(pass.pinhole, offset), side, side, any_clear_coat(data.scene)),
+    };
+    process_geometry(data, grid, pass, settings, *geometry, selected);
+    ProbeCapture::Face face{GBuffer(ScreenProjection(pass.pinhole, offset), side, side, optional_planes(data.scene)),
                             Planes3(side, side), Planes3(side, side), {}};
-    fill_gbuffer(data, settings, *geometry, pass, grid, offset, Control{}, face.gbuffer, face.emission);
+    const Control control;
+    const SampleView sample{data, settings, *geometry, &*layers, pass, grid, offset, control};
+    fill_gbuffer(sample, face.gbuffer, face.emission);
+    if (data.has_layers()) {
+        process_layers(data, grid, pass, settings, *layers, selected);
+        add_alpha_surfaces(sample, face.gbuffer, face.emission);
+    }
     if (!selection.excluded) return face;
     draw_background(data, settings, face.gbuffer, face.direct);
     if (data.scene.lights.empty()) return face;
@@ -115,13 +122,6 @@ float ProbeCapture::distance(const Pixel& p) const {
     const float reversed = gbuffer.reversed_depth(p.x, p.y);
     if (!(reversed > 0)) return kInfinity;
     return gbuffer.projection.near() / reversed * length(point_on_face({p.face, p.x - guard_, p.y - guard_}, side_));
-}
-
-std::size_t ProbeCapture::memory_bytes() const {
-    std::size_t sum = 0;
-    for (const Face& face : faces_)
-        sum += face.gbuffer.memory_bytes() + face.emission.memory_bytes() + face.direct.memory_bytes();
-    return sum;
 }
 
 } // namespace duet::raster

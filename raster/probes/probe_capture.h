@@ -49,7 +49,6 @@ public:
     static float solid_angle(const Pixel& pixel, int side);
     /// Returns the distance of the surface at a pixel, in meters; infinity for the background.
     float distance(const Pixel& pixel) const;
-    std::size_t memory_bytes() const;
 
 private:
     int side_, guard_;

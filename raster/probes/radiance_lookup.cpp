@@ -37,7 +37,14 @@ struct RadianceLookup::Query {
 RadianceLookup::RadianceLookup(const RasterSceneData& data, const GBuffer& gbuffer, const ReflectionProbes* probes,
                                int x, int y)
     : data_(data), gbuffer_(gbuffer), probes_(probes) {
-    load(gbuffer.object, x, y).store_aligned(objects_.data());
+    if (probes == nullptr) return;
+    alignas(64) std::array<std::int32_t, Ints::size> each;
+    load(gbuffer.object, x, y).store_aligned(each.data());
+    for (std::uint32_t left = lane_bits(gbuffer.visible(x, y)); left != 0; left &= left - 1) {
+        std::int32_t& lane = each[static_cast<std::size_t>(std::countr_zero(left))];
+        lane = static_cast<std::int32_t>(probes->probe_of(lane));
+    }
+    probe_ = Ints::load_aligned(each.data());
 }
 
 Rgbs RadianceLookup::operator()(const Vec3s& p, const Vec3s& n, const Vec3s& w, const Floats& alpha,
@@ -45,17 +52,9 @@ Rgbs RadianceLookup::operator()(const Vec3s& p, const Vec3s& n, const Vec3s& w, 
     const Query query(p, n, w, alpha);
     if (probes_ == nullptr) return query.at(*data_.environment_map, w, query.axis);
     Rgbs result(Floats(0.0f));
-    for (std::uint32_t left = lane_bits(lanes); left != 0;) {
-        const std::size_t probe = probes_->probe_of(objects_[static_cast<std::size_t>(std::countr_zero(left))]);
-        std::uint32_t own = 0;
-        for (std::uint32_t rest = left; rest != 0; rest &= rest - 1) {
-            const int i = std::countr_zero(rest);
-            if (probes_->probe_of(objects_[static_cast<std::size_t>(i)]) == probe) own |= 1u << i;
-        }
-        left &= ~own;
-        const Mask of_probe = lanes_from<float>(own);
-        result = blend(of_probe, from_probe(probe, query, of_probe), result);
-    }
+    for_each_value(probe_, lane_bits(lanes), [&](std::int32_t probe, const Mask& own) {
+        result = blend(own, from_probe(static_cast<std::size_t>(probe), query, own), result);
+    });
     return result;
 }
 

@@ -27,7 +27,7 @@ private:
     const RasterSceneData& data_;
     const GBuffer& gbuffer_;
     const ReflectionProbes* probes_;
-    alignas(64) std::array<std::int32_t, Ints::size> objects_;
+    Ints probe_ = Ints(0); ///< of each visible lane
 };
 
 } // namespace duet::raster

@@ -8,7 +8,6 @@
 #include "common/vec/frame.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 namespace duet::raster {

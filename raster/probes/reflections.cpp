@@ -3,8 +3,6 @@
 #include "raster/probes/radiance_lookup.h"
 #include "raster/lighting/specular_lobe.h"
 
-#include "common/material/metal.h"
-
 #include <algorithm>
 
 namespace duet::raster {
@@ -32,10 +30,10 @@ void add_reflections(const RasterSceneData& data, const RasterSettings& settings
                 const Floats coat = gbuffer.coat.empty() ? zero : load(gbuffer.coat, x, y);
                 const Mask coated = seen & (coat > zero);
                 if (!xsimd::any(lanes | coated)) continue;
-                const Vec3s n = gbuffer.normal.vector(x, y), wo = gbuffer.projection.to_viewer(gbuffer.points(x, y));
+                const Vec3s p = gbuffer.points(x, y), n = gbuffer.normal.vector(x, y),
+                            wo = gbuffer.projection.to_viewer(p);
                 const Floats cosine = viewer_cosine(n, wo);
                 const Vec3s mirrored = n * (Floats(2.0f) * cosine) - wo;
-                const Vec3s p = gbuffer.points(x, y);
                 const RadianceLookup lookup(data, gbuffer, probes, x, y);
                 const Floats alpha = load(gbuffer.alpha, x, y);
                 Rgbs sum(zero);

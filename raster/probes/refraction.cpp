@@ -41,13 +41,15 @@ public:
     GlassBatch(const RasterSceneData& data, const GBuffer& gbuffer, const RadianceLookup& lookup, int x, int y)
         : data_(data), gbuffer_(gbuffer), lookup_(lookup), p_(gbuffer.points(x, y)), n_(gbuffer.normal.vector(x, y)),
           w_(gbuffer.projection.to_viewer(p_) * Floats(-1.0f)), alpha_(load(gbuffer.alpha, x, y)),
-          f0_(gbuffer.specular.color(x, y)) {}
+          f0_(gbuffer.specular.color(x, y)) {
+        if (!gbuffer.tint.x.empty()) tint_ = gbuffer.tint.color(x, y);
+    }
 
     Rgbs through(std::int32_t object, const Dielectric& glass, const Mask& lanes) const {
-        const Rgbs tint = broadcast<Floats>(glass.tint.value);
+        const Rgbs tint = tint_.value_or(broadcast<Floats>(glass.tint.value));
         const Floats eta(glass.ior);
         const Refracted in = refract(w_, n_, eta);
-        if (glass.thin) return sheet(glass, Floats(1.0f) - in.through, lanes);
+        if (glass.thin) return sheet(glass.ior, tint, Floats(1.0f) - in.through, lanes);
         // Light that add_reflections() does not reflect enters the glass.
         const Floats cosine = viewer_cosine(n_, -w_);
         const Floats entering =
@@ -71,16 +73,15 @@ public:
 
 private:
     /// Returns the light that arrives through a thin sheet, and the light that it mirrors.
-    Rgbs sheet(const Dielectric& glass, const Floats& reflected, const Mask& lanes) const {
+    Rgbs sheet(float ior, const Rgbs& tint, const Floats& reflected, const Mask& lanes) const {
         const Floats one(1.0f), cosine = clamp(-dot(w_, n_), Floats(0.0f), one);
-        const Floats inner = xsimd::sqrt(max(cos2_refracted(cosine, Floats(glass.ior)), Floats(1e-6f)));
+        const Floats inner = xsimd::sqrt(max(cos2_refracted(cosine, Floats(ior)), Floats(1e-6f)));
         const Rgbs behind = lookup_(p_, n_, w_, Floats(0.0f), lanes),
                    before = lookup_(p_, n_, w_ + n_ * (Floats(2.0f) * cosine), Floats(0.0f), lanes);
-        const auto channel = [&](float tint, const Floats& b, const Floats& f) {
-            const auto part = sheet_fractions(reflected, xsimd::pow(Floats(max(tint, 1e-6f)), one / inner));
+        const auto channel = [&](const Floats& passed, const Floats& b, const Floats& f) {
+            const auto part = sheet_fractions(reflected, xsimd::pow(max(passed, Floats(1e-6f)), one / inner));
             return b * part.transmitted + f * part.reflected;
         };
-        const Rgb tint = glass.tint.value;
         return {channel(tint.r, behind.r, before.r), channel(tint.g, behind.g, before.g),
                 channel(tint.b, behind.b, before.b)};
     }
@@ -91,6 +92,7 @@ private:
     Vec3s p_, n_, w_; ///< w_ is the direction of the camera's rays
     Floats alpha_;
     Rgbs f0_; ///< reflectance at normal incidence
+    std::optional<Rgbs> tint_; ///< if it varies
 };
 
 } // namespace

@@ -26,15 +26,6 @@ constexpr float kLeastCosine = 0.02f; ///< least cosine between normal and viewe
 /// hall.json and demo.json have the least error with 0.6 of it, cornell.json and open-sky.json with 0.4.
 constexpr float kOccluderVisibility = 0.5f;
 
-/// Returns arccos with an error of at most 7e-5 (Abramowitz and Stegun 1964, 4.4.45).
-Floats arc_cosine(const Floats& x) {
-    const Floats a = min(abs(x), Floats(1.0f));
-    const Floats polynomial = Floats(1.5707288f) +
-        a * (Floats(-0.2121144f) + a * (Floats(0.0742610f) + a * Floats(-0.0187293f)));
-    const Floats result = xsimd::sqrt(Floats(1.0f) - a) * polynomial;
-    return xsimd::select(x < Floats(0.0f), Floats(kPi) - result, result);
-}
-
 /// Holds the integrals over the open arc from the viewer's direction v, θ = 0, to a horizon, in the plane of v and t.
 /// The projected normal is at the angle γ. `all` is ∫ cos(θ − γ) sin θ dθ; `along_v` and `along_t` have the additional
 /// factors cos θ and sin θ.
@@ -224,6 +215,11 @@ void GtaoImage::start(const GBuffer& gbuffer, int threads) {
 }
 
 void GtaoImage::search(float radius, const Occluders* occluders, int threads) {
+    if (radius == 0) {
+        smooth_.visible.fill(1);
+        for (PlaneFloat* plane : {&smooth_.hidden.x, &smooth_.hidden.y, &smooth_.hidden.z}) plane->fill(0);
+        return;
+    }
     const auto for_each_row = [&](const auto& use) {
         parallel_for(static_cast<std::size_t>(depth_.height()), threads,
                      [&](std::size_t y) { use(static_cast<int>(y)); });
@@ -280,8 +276,7 @@ void GtaoImage::sum_neighbors(const Lines& from, int y, int step_x, int step_y, 
         const Floats depth = load(depth_, x, y);
         if (!xsimd::any(depth > Floats(0.0f))) continue;
         const Vec3s p = point(x, y, depth), n = occluders_.normals.vector(x, y);
-        const Floats tolerance =
-            Floats(kPlaneTolerance) * projection.pixel_size(Floats(projection.near()) / max(depth, Floats(1e-30f)));
+        const Floats tolerance = plane_tolerance(projection, depth);
         Floats all(0.0f), lost(0.0f);
         Vec3s directions{Floats(0.0f), Floats(0.0f), Floats(0.0f)};
         for (int i = 1 - kDitherSide; i < kDitherSide; ++i) {
@@ -319,8 +314,7 @@ GtaoImage::Upsampled GtaoImage::upsampled(int x, int y) const {
     const Vec3s p = gbuffer_->points(x, y), n = gbuffer_->normal.vector(x, y);
     const ScreenProjection& projection = gbuffer_->projection;
     const Floats depth = load(gbuffer_->reversed_depth, x, y);
-    const Floats tolerance =
-        Floats(kPlaneTolerance) * projection.pixel_size(Floats(projection.near()) / max(depth, Floats(1e-30f)));
+    const Floats tolerance = plane_tolerance(projection, depth);
     const Ints column = Ints(x) + load(kLanes, 0), last(depth_.width() - 1);
     Floats sum(0.0f), visible(0.0f);
     Vec3s hidden{Floats(0.0f), Floats(0.0f), Floats(0.0f)}, irradiance = hidden;

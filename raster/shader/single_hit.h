@@ -36,10 +36,10 @@ Vec3 hit_normal(const Scene& scene, const PassView& view, const Hit& hit, Vec2d 
 /// Returns the radiance emitted at a hit toward the viewer. Textures are filtered over the sample's footprint.
 Rgb hit_emission(const Scene& scene, const PassView& view, const Hit& hit, Vec2d pixel, int samples_per_pixel);
 
-/// Returns the color of a hit of the ray through `pixel`. `reversed_depth` may be null, if it is not known.
+/// Returns the color of a hit of the ray through `pixel`.
 template <Shader S>
 Rgb shade_single_hit(const RasterSceneData& data, const PassView& view, const S& shader, const Hit& hit, Vec2d pixel,
-                     int samples_per_pixel, const float* reversed_depth = nullptr) {
+                     int samples_per_pixel) {
     struct Source final : ColorSource {
         const Scene& scene;
         const HitCorners& at;
@@ -80,7 +80,7 @@ Rgb shade_single_hit(const RasterSceneData& data, const PassView& view, const S&
         Vec3(pinhole.origin + pinhole.origin_dx * pixel.x + pinhole.origin_dy * pixel.y),
         direction,
         static_cast<float>(at.depth),
-        reversed_depth != nullptr ? *reversed_depth : static_cast<float>(min(pinhole.near / at.depth, 1.0)),
+        static_cast<float>(min(pinhole.near / at.depth, 1.0)),
         object,
         colors,
         0});

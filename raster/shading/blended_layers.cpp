@@ -1,7 +1,5 @@
 #include "raster/shading/blended_layers.h"
 
-#include "raster/gbuffer/gbuffer_pass.h"
-#include "raster/shader/single_hit.h"
 #include "raster/visibility/hit_lists.h"
 #include "raster/visibility/rasterize_tile.h"
 
@@ -10,20 +8,6 @@
 #include "common/system/parallel.h"
 
 namespace duet::raster {
-namespace {
-
-void store_hit(const SampleView& sample, int x, int y, const Hit& hit, float reversed_depth, GBuffer& gbuffer,
-               Planes3& emission) {
-    const Scene& scene = sample.data.scene;
-    const Ray ray = rounded(sample.view.pinhole.ray(sample.offset.position(x, y)), sample.view.time);
-    const SurfacePoint point = filtered_point(scene, sample.view, ray, hit, sample.view.samples_per_pixel);
-    const Bsdf bsdf = bsdf_at(scene.materials[point.material], scene.textures, point);
-    store_surface(scene, {point, bsdf, -ray.direction, reversed_depth}, sample.settings.components.emission, x, y,
-                  gbuffer, emission);
-}
-
-} // namespace
-
 BlendedLayers::BlendedLayers(const SampleView& sample, GBuffer& gbuffer, Planes3& emission) {
     struct TileLayers {
         std::vector<std::vector<Surface>> layers;

@@ -3,31 +3,13 @@
 // lists, in one pass).
 #pragma once
 
-#include "raster/gbuffer/gbuffer.h"
-#include "raster/geometry/geometry.h"
-#include "raster/geometry/tiles.h"
+#include "raster/gbuffer/gbuffer_pass.h"
 
 #include "common/geometry/hit.h"
 
 #include <vector>
 
-namespace duet {
-struct Control;
-}
-
 namespace duet::raster {
-
-/// Describes one sample per pixel of a view. All functions that fill a G-buffer take it.
-struct SampleView {
-    const RasterSceneData& data;
-    const RasterSettings& settings;
-    const Geometry& geometry; ///< geometry of the opaque surfaces
-    const Geometry* layers;   ///< geometry of the surfaces with alpha; null if there are none
-    const PassView& view;
-    const TileGrid& grid;
-    SampleOffset offset; ///< position of the samples in their pixels
-    const Control& control;
-};
 
 /// Holds the blended surfaces in front of the visible surface of each pixel.
 class BlendedLayers {

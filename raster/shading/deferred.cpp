@@ -66,7 +66,7 @@ void DeferredFrame::start(const Scene& scene, const ScreenProjection& projection
     if (fits) {
         gbuffer->projection = projection;
     } else {
-        gbuffer.emplace(projection, width, height, any_clear_coat(scene));
+        gbuffer.emplace(projection, width, height, optional_planes(scene));
         radiance.set_size(width, height);
     }
 }
@@ -109,7 +109,7 @@ public:
             interpolate_probes(settings_, gbuffer, *data_.irradiance_probes, frame_.occlusion);
             done("indirect light");
             const float radius = occluder_reach(settings_, *data_.irradiance_probes);
-            if (settings_.components.direct) {
+            if (settings_.components.direct || radius == 0) {
                 frame_.occlusion.find_light(radius, threads, direct);
             } else {
                 const Planes3 light = all_direct_light();
@@ -235,8 +235,7 @@ void shade_deferred(const SampleView& sample, DeferredFrame& frame) {
     frame.seconds.clear();
     frame.start(data.scene, projection, width, height);
     const Stopwatch watch;
-    fill_gbuffer(data, sample.settings, sample.geometry, sample.view, sample.grid, sample.offset, sample.control,
-                 *frame.gbuffer, frame.radiance);
+    fill_gbuffer(sample, *frame.gbuffer, frame.radiance);
     std::optional<BlendedLayers> layers;
     if (sample.layers != nullptr) layers.emplace(sample, *frame.gbuffer, frame.radiance);
     frame.seconds.emplace_back("surface attributes", watch.seconds());

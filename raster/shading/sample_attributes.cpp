@@ -8,8 +8,7 @@ ShadedSample sample_attributes(const RasterSceneData& data, const RasterSettings
     const Hit& hit = tile.hit(x, y);
     if (!hit.valid()) return {.radiance = {}, .normal = {}, .albedo = {}};
     const Scene& scene = data.scene;
-    const RayFootprint footprint =
-        scene.needs.footprints ? tile.footprint(x, y, settings.samples_per_pixel) : RayFootprint{};
+    const RayFootprint footprint = scene.needs.footprints ? tile.footprint(x, y) : RayFootprint{};
     const std::uint32_t material = material_index(scene, hit.object, hit.primitive);
     const SurfacePoint surface = surface_point(scene, ray, hit, &footprint, surface_detail(scene, material));
     const bool back = dot(surface.ng, ray.direction) > 0;

@@ -34,15 +34,16 @@ public:
         return source < shadows_.sources().size() ? source : kUnshadowed;
     }
     bool noisy(std::size_t source) const override { return !soft_.of(source, moment_).empty(); }
-    /// Returns a noisy estimate. Each pixel of a block of 4 × 4 samples one cell of an area light, with taps of its
-    /// own, and add_direct_light() (raster/lighting/shadow_denoiser.h) averages over the block.
+    /// Returns a noisy estimate. Each pixel of a block of 4 × 4 has taps of its own, and add_direct_light()
+    /// (raster/lighting/shadow_denoiser.h) averages over the block. If an area light has at most four cells, each pixel
+    /// samples one of them, else all.
     Floats visibility(std::size_t source, const Vec3T<Floats>& p, const Vec3T<Floats>& n, int x, int y,
                       const xsimd::batch_bool<float>& mask) const override;
 
 private:
     struct Source {
         std::vector<SharpShadowMap> views;              ///< tried in order
-        std::vector<std::vector<SharpShadowMap>> cubes; ///< six faces each; a missing face shades nothing
+        std::vector<std::vector<SharpShadowMap>> cubes; ///< six faces each
     };
 
     struct Receivers {

@@ -8,8 +8,8 @@
 namespace duet::raster {
 namespace {
 
-/// Represents a part of an object that casts shadows. A convex object shades itself only where its normals face away
-/// from the light.
+/// Represents a part of an object that casts shadows. A convex object that is seen from outside shades itself only where
+/// its normals face away from the light.
 struct Caster {
     Box3d box;
     std::uint32_t object;
@@ -18,18 +18,22 @@ struct Caster {
 
 Box3d doubled(const Box3& box) { return {Vec3d(box.low), Vec3d(box.high)}; }
 
-std::vector<Caster> casters_of(const RasterSceneData& data) {
+std::vector<Caster> casters_of(const RasterSceneData& data, const GBuffer& gbuffer) {
     std::vector<Caster> casters;
+    const bool from_eye = gbuffer.position.empty(); // other rays may see an object from inside
+    const auto seen_from_outside = [&](std::uint32_t object) {
+        return from_eye && !data.objects[object].bounds.contains(Vec3(gbuffer.projection.eye()));
+    };
     for (std::uint32_t i = 0; i < data.scene.objects.size(); ++i) {
         const Object& object = data.scene.objects[i];
         const auto* list = std::get_if<QuadList>(&data.scene.shapes[object.shape]);
         if (list == nullptr) {
             const bool sphere = std::holds_alternative<Sphere>(data.scene.shapes[object.shape]);
-            casters.push_back({doubled(data.objects[i].bounds), i, sphere});
+            casters.push_back({doubled(data.objects[i].bounds), i, sphere && seen_from_outside(i)});
             continue;
         }
         const bool is_box = list->quads.size() == 6 && data.objects[i].closed;
-        const bool convex = list->quads.size() == 1 || is_box;
+        const bool convex = list->quads.size() == 1 || (is_box && seen_from_outside(i));
         for (const Quad& quad : list->quads) {
             Box3d box;
             for (const Vec3& corner : corners(quad)) box.extend(transform_point(Mat4d(object.to_world), Vec3d(corner)));
@@ -137,7 +141,7 @@ bool misses_shaft(const Box3d& a, const Box3d& b, const Box3d& box) {
 
 UnblockedTiles::UnblockedTiles(const RasterSceneData& data, const GBuffer& gbuffer, int threads)
     : columns_((gbuffer.width() + kSide - 1) / kSide) {
-    const std::vector<Caster> casters = casters_of(data);
+    const std::vector<Caster> casters = casters_of(data, gbuffer);
     if (casters.size() > kMostCasters || data.scene.needs.motion) return;
     std::vector<Origin> origins;
     for (const Shadows::Source& source : data.shadows->sources()) origins.push_back(origin_of(data.scene, source));

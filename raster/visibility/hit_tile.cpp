@@ -130,7 +130,7 @@ void HitTile::allocate() {
 }
 
 HitTile::HitTile(const DepthTile& tile, const Geometry& geometry, const PassView& view)
-    : rect_(tile.rect()), pinhole_(view.pinhole) {
+    : rect_(tile.rect()), pinhole_(view.pinhole), samples_per_pixel_(view.samples_per_pixel) {
     allocate();
     Filler filler(*this, geometry, view);
     for (int y = rect_.y0; y < rect_.y1; y += DepthTile::kPacketRows)
@@ -139,7 +139,7 @@ HitTile::HitTile(const DepthTile& tile, const Geometry& geometry, const PassView
 }
 
 HitTile::HitTile(const LayeredTile& tile, std::size_t layer, const Geometry& geometry, const PassView& view)
-    : rect_(tile.rect()), pinhole_(view.pinhole) {
+    : rect_(tile.rect()), pinhole_(view.pinhole), samples_per_pixel_(view.samples_per_pixel) {
     allocate();
     Filler filler(*this, geometry, view);
     LayeredTile::LayerPacket layer_packet;

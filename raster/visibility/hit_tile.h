@@ -42,9 +42,9 @@ public:
     Hit exchange(int x, int y, const Hit& hit);
     /// Returns the camera-space −z of the visible surface, in meters; infinity on a miss.
     double depth(int x, int y) const { return static_cast<double>(hit(x, y).t) / distance_per_depth_[index(x, y)]; }
-    /// Returns the footprint of a sample that has a hit, given the number of samples per pixel.
-    RayFootprint footprint(int x, int y, int samples_per_pixel) const {
-        return PixelFootprint(pinhole_, samples_per_pixel).at(ray(x, y), hit(x, y).t);
+    /// Returns the footprint of a sample that has a hit.
+    RayFootprint footprint(int x, int y) const {
+        return PixelFootprint(pinhole_, samples_per_pixel_).at(ray(x, y), hit(x, y).t);
     }
     /// Returns the reversed depth, near / depth; 0 on a miss.
     float reversed_depth(int x, int y) const { return reversed_depth_[index(x, y)]; }
@@ -59,6 +59,7 @@ private:
 
     PixelRect rect_;
     Pinhole pinhole_;
+    int samples_per_pixel_;
     std::vector<Ray> rays_;
     std::vector<double> distance_per_depth_;
     std::vector<float> reversed_depth_;

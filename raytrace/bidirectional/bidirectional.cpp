@@ -189,7 +189,7 @@ Rgb BidirectionalTracer::trace_camera_subpath(Ray ray, Hit hit, const Pinhole& p
 // weight.
 bool BidirectionalTracer::photons_bring(double bsdf_pdf) const {
     constexpr double kFollowed = 4; // per steradian; a diffuse BSDF reaches 0.32, and a rough mirror 0.08 / alpha²
-    return !connects_ && !emission_.empty() && bsdf_pdf <= kFollowed;
+    return !connects_ && merging_ > 0 && !emission_.empty() && bsdf_pdf <= kFollowed;
 }
 
 Rgb BidirectionalTracer::environment_light(Vec3 w, int depth, const LightReceiver& previous, const MisSums& sums,

@@ -3,7 +3,7 @@
 // connection and merging also merges vertices of the two subpaths that are close (Georgiev et al. 2012; Hachisuka et
 // al. 2012). It finds caustics in a mirror, too, where no vertices can be connected. Merging blurs light over a radius,
 // which shrinks with every sample. Progressive photon mapping connects nothing: a camera subpath merges with photons at
-// the first vertex that scatters light diffusely (Hachisuka and Jensen 2009; Knaus and Zwicker 2011).
+// its vertices, up to the first that scatters light diffusely (Hachisuka and Jensen 2009; Knaus and Zwicker 2011).
 #pragma once
 
 #include "raytrace/bidirectional/camera_projection.h"

@@ -111,7 +111,7 @@ EmittedRay emit(const Scene& scene, const SurfaceLight& light, const EmissionRan
     EmittedRay emitted{{offset_origin(point.p, point.p_error, n), w}, 0, point.p, light.radiance};
     if (scene.needs.emitter_textures) {
         const float distance = std::sqrt(static_cast<float>(area(light)));
-        emitted.weight = radiance_towards(scene, light, point.p + w * distance, -w, distance);
+        emitted.weight = radiance_toward(scene, light, point.p + w * distance, -w, distance);
     }
     emitted.weight *= abs(dot(n, w));
     return emitted;

@@ -83,7 +83,10 @@ FilmCheckpoint::FilmCheckpoint(const Scene& scene, const View& view, const PathT
 
 void FilmCheckpoint::run(const std::function<void()>& work) {
     {
-        const std::shared_lock add_lock(pixels_mutex_);
+        const std::shared_lock add_lock = [&] {
+            const std::lock_guard wait_for_copy(entry_mutex_);
+            return std::shared_lock(pixels_mutex_);
+        }();
         work();
     }
     if (path_.empty()) return;
@@ -96,6 +99,7 @@ void FilmCheckpoint::run(const std::function<void()>& work) {
 void FilmCheckpoint::save() {
     if (path_.empty()) return;
     const StoredFilm snapshot = [&] {
+        const std::lock_guard stop_others(entry_mutex_);
         const std::unique_lock copy_lock(pixels_mutex_);
         return stored_;
     }();

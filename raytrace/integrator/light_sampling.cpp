@@ -23,7 +23,7 @@ std::optional<LightLiSample> sample_li(const Scene& scene, const LightSampler& l
     if (!s) return std::nullopt;
     if (scene.needs.emitter_textures)
         if (const auto* surface = std::get_if<SurfaceLight>(&scene.lights[chosen.index]))
-            s->radiance = radiance_towards(scene, *surface, receiver.p, s->wi, s->distance);
+            s->radiance = radiance_toward(scene, *surface, receiver.p, s->wi, s->distance);
     return light_sample(*s, chosen);
 }
 

@@ -41,10 +41,11 @@ Rgb whitted_radiance(const RenderPlan& plan, const Ray& camera_ray, const Hit& f
     Hit hit = first_hit;
     Rgb sum;
     PathState state;
+    PathFootprint footprint(plan, sampler.sample());
     for (int depth = 0;; ++depth) {
         if (!hit.valid())
             return plan.environment ? sum + state.throughput * radiance(*plan.environment, ray.direction) : sum;
-        const Vertex vertex(plan, ray, hit, sampler.sample());
+        const Vertex vertex(plan, ray, hit, footprint.at_hit(ray, hit.t));
         sum += state.throughput * emitted(vertex.material, plan.scene.textures, vertex.point, -ray.direction);
         if (depth == plan.max_depth) return sum;
         const VertexRandomSamples u = vertex_random_samples(sampler, depth);

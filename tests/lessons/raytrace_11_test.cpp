@@ -2,7 +2,7 @@
 // same mean, and the Cornell box has the published one.
 #include "common/light/area_sampling.h"
 #include "common/sampling/warp.h"
-#include "raytrace/integrator/light_sampling.h"
+#include "raytrace/integrator/mis.h"
 #include "raytrace/lessons/11-monte-carlo/light_sampling.h"
 #include "tests/lessons/cornell_comparison.h"
 

@@ -92,9 +92,11 @@ struct Frame1 {
         const TileGrid grid{{0, 0, width, height}};
         const auto geometry = prepared->data().geometries->take();
         process_geometry(prepared->data(), grid, pass, settings, *geometry);
-        gbuffer.emplace(ScreenProjection(pass.pinhole, SampleOffset()), width, height, any_clear_coat(scene));
+        gbuffer.emplace(ScreenProjection(pass.pinhole, SampleOffset()), width, height, optional_planes(scene));
         Planes3 emission(width, height);
-        fill_gbuffer(prepared->data(), settings, *geometry, pass, grid, SampleOffset(), Control{}, *gbuffer, emission);
+        const Control control;
+        fill_gbuffer({prepared->data(), settings, *geometry, nullptr, pass, grid, SampleOffset(), control}, *gbuffer,
+                     emission);
     }
     DirectLight light(int threads, const ShadowLookup* shadows = nullptr, std::size_t most = ChosenLights::kAll) {
         settings.threads = threads;
@@ -180,7 +182,7 @@ struct OneBatch {
     LitBatch::Tables tables;
 
     explicit OneBatch(Vec3 normal, const MetalBsdf* metal)
-        : gbuffer(ScreenProjection(pinhole(), SampleOffset()), kWidth, 1, false) {
+        : gbuffer(ScreenProjection(pinhole(), SampleOffset()), kWidth, 1, {}) {
         const Rgb diffuse = metal ? Rgb() : Rgb(0.5f, 0.25f, 0.75f);
         for (int x = 0; x < kWidth; ++x) {
             gbuffer.reversed_depth(x, 0) = gbuffer.projection.near() / 2; // at 2 m

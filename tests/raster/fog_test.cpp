@@ -139,7 +139,7 @@ TEST_SUITE("unit") {
         raster::RasterSettings settings = direct_light_only();
         settings.shadows = false;
         const raster::RasterScene prepared = raster::prepare(scene, settings);
-        raster::GBuffer gbuffer(raster::ScreenProjection(pinhole, {}), view.width, view.height, false);
+        raster::GBuffer gbuffer(raster::ScreenProjection(pinhole, {}), view.width, view.height, {});
         for (int y = 0; y < view.height; ++y)
             for (int x = 0; x < view.width; ++x) gbuffer.reversed_depth(x, y) = static_cast<float>(pinhole.near / 7.0);
         const auto integral = [&](const Rayd& ray, double length) {

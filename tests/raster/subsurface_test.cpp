@@ -21,7 +21,7 @@ Coated solid(Rgb albedo, Rgb mean_free_path) { return Coated{{albedo}, 0.3f, 1.5
 GBuffer plane(Rgb albedo) {
     const Camera camera = test::look({0, 0, 1}, {0, 0, 0}, 2 * std::atan(kPixel * kHeight / 2.0) * 180 / kPiDouble);
     GBuffer gbuffer(ScreenProjection(CameraModel(View{camera, kWidth, kHeight}).pinhole(), SampleOffset()), kWidth,
-                    kHeight, false);
+                    kHeight, {});
     gbuffer.reversed_depth.fill(gbuffer.projection.near());
     gbuffer.normal.z.fill(1);
     gbuffer.material.fill(0);

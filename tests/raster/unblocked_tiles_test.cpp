@@ -38,9 +38,11 @@ GBuffer gbuffer_of(const RasterSceneData& data, int width, int height) {
     const TileGrid grid{{0, 0, width, height}};
     const auto geometry = data.geometries->take();
     process_geometry(data, grid, pass, {}, *geometry);
-    GBuffer gbuffer(ScreenProjection(pass.pinhole, SampleOffset()), width, height, any_clear_coat(data.scene));
+    GBuffer gbuffer(ScreenProjection(pass.pinhole, SampleOffset()), width, height, optional_planes(data.scene));
     Planes3 emission(width, height);
-    fill_gbuffer(data, {}, *geometry, pass, grid, SampleOffset(), Control{}, gbuffer, emission);
+    const RasterSettings settings;
+    const Control control;
+    fill_gbuffer({data, settings, *geometry, nullptr, pass, grid, SampleOffset(), control}, gbuffer, emission);
     return gbuffer;
 }
 

@@ -1,6 +1,7 @@
 // These tests check that estimators of the same light agree: with and without light sampling, with and without
 // Russian roulette.
 #include "raytrace/integrator/light_sampling.h"
+#include "raytrace/integrator/mis.h"
 #include "raytrace/render.h"
 #include "tests/raytrace/estimates.h"
 #include "tests/raytrace/scene_builder.h"

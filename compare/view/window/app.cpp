@@ -125,7 +125,9 @@ void App::open(const std::filesystem::path& path) {
             return;
         }
         if (!may_lose_changes("opens another scene")) return;
-        document_ = SceneDocument(path, options_.scene_options);
+        SceneOptions scene_options = options_.scene_options;
+        if (lower_case_extension(path) == ".json") scene_options.up = UpAxis::kGuessed; // --up is for bare meshes
+        document_ = SceneDocument(path, scene_options);
         view_transform_ = options_.view_transform.applied_to(document_.view_transform());
         quantity_ = kWholeImage;
         use_settings();
@@ -155,8 +157,8 @@ void App::reload_if_changed() {
 void App::reload() {
     attempt([&] {
         if (!may_lose_changes("reads the file anew")) return;
+        file_time_ = write_time(document_.path()); // a later change is read again
         document_.reload();
-        file_time_ = write_time(document_.path());
         selected_ = {};
         follow_document();
         load();

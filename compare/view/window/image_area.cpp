@@ -217,6 +217,8 @@ void App::select_at(Vec2d pixel) {
     const Hit hit = trace(loaded.raytrace->prepared, ray);
     selected_ = {};
     if (hit.valid()) selected_.index = static_cast<int>(loaded.scene->objects[hit.object].entry);
+    path_log_.clear();
+    if (raytrace::traces_light_paths(wish_.raytrace.integrator)) return; // only whole images can be explained
     attempt([&] {
         path_log_ = raytrace::debug_pixel(loaded.raytrace->prepared, wish_.view, wish_.raytrace,
                                           {static_cast<int>(pixel.x), static_cast<int>(pixel.y), 0});

@@ -31,7 +31,7 @@ private:
     bool edit_value(const std::string& key, ordered_json& value) const {
         const char* label = key.c_str();
         if (value.is_boolean()) return edit_boolean(label, value);
-        if (key == "priority") return edit_whole_number(label, value);
+        if (key == "priority" || key == "octaves" || key == "resolution") return edit_whole_numbers(label, value);
         if (value.is_number()) return edit_numbers(label, value);
         if (value.is_string()) return key == "material" ? edit_material(value) : edit_text(label, value);
         const bool numbers = value.is_array() && !value.empty() && value.size() <= 4 &&
@@ -69,11 +69,14 @@ private:
         return true;
     }
 
-    static bool edit_whole_number(const char* label, ordered_json& value) {
-        int number = value.get<int>();
-        if (!ImGui::InputInt(label, &number)) return false;
-        value = number;
-        return true;
+    static bool edit_whole_numbers(const char* label, ordered_json& value) {
+        if (!value.is_array()) {
+            int number = value.get<int>();
+            return ImGui::InputInt(label, &number) && (value = number, true);
+        }
+        std::vector<int> numbers = value.get<std::vector<int>>();
+        const int count = static_cast<int>(numbers.size());
+        return ImGui::InputScalarN(label, ImGuiDataType_S32, numbers.data(), count) && (value = numbers, true);
     }
 
     static bool edit_color(const char* label, ordered_json& value) {

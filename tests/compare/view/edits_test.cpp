@@ -188,4 +188,25 @@ TEST_SUITE("unit") {
         CHECK(typed_number(1.0 / 3) == 0.3333333);
         CHECK(typed_number(0) == 0);
     }
+
+    TEST_CASE("a copy of groups has names of its own, and its instances show its own groups") {
+        const std::string text = R"({
+  "camera": {"eye": [0, 1, 6], "look_at": [0, 1, 0]},
+  "materials": {"white": {"type": "diffuse", "albedo": 0.7}},
+  "objects": [
+    {"type": "group", "name": "all", "objects": [
+      {"type": "group", "name": "ball", "hidden": true, "objects": [
+        {"type": "sphere", "center": [0, 0, 0], "radius": 1, "material": "white"}]},
+      {"type": "instance", "of": "ball", "transform": [{"translate": [3, 0, 0]}]}]},
+    {"type": "group", "name": "ball 2", "objects": [
+      {"type": "sphere", "center": [9, 0, 0], "radius": 1, "material": "white"}]}
+  ]
+})";
+        const nlohmann::json scene = nlohmann::json::parse(duplicated(text, {"objects", "0"}));
+        const nlohmann::json& copy = scene.at("objects").at(2);
+        CHECK(copy.at("name") == "all 2");
+        CHECK(copy.at("objects").at(0).at("name") == "ball 3");
+        CHECK(copy.at("objects").at(1).at("of") == "ball 3");
+        CHECK(parse_scene(kPath, scene.dump()).objects.size() == parse_scene(kPath, text).objects.size() + 1);
+    }
 }

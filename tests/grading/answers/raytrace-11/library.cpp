@@ -1,9 +1,9 @@
 // The library's densities (common/light/area_sampling.h, common/sampling/warp.h), frame (common/vec/frame.h) and weight
-// (raytrace/integrator/light_sampling.h).
+// (raytrace/integrator/mis.h).
 #include "common/light/area_sampling.h"
 #include "common/sampling/warp.h"
 #include "common/vec/frame.h"
-#include "raytrace/integrator/light_sampling.h"
+#include "raytrace/integrator/mis.h"
 #include "raytrace/lessons/11-monte-carlo/lab.h"
 
 namespace duet::lab {
