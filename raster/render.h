@@ -40,8 +40,8 @@ std::optional<RasterScene> prepare_edited(const Scene& scene, const RasterSettin
 std::vector<std::string> approximations(const RasterScene& prepared, const RasterSettings& settings);
 /// Renders one image. If `control` stops it, the result contains the completed parts, and the rest is unspecified.
 Rendering render(const RasterScene& prepared, const View& view, const RasterSettings& settings, Control& control);
-/// Renders into an earlier rendering. Images of a display or of depths that have the right size are overwritten, so that
-/// an animation at one sample per pixel allocates memory only once.
+/// Renders into an earlier rendering. Images of a display or of depths that have the right size are overwritten, so
+/// that an animation at one sample per pixel allocates memory only once.
 void render(const RasterScene& prepared, const View& view, const RasterSettings& settings, Control& control,
             Rendering& result);
 /// Renders with a program in place of RasterSettings::shading. draw() (raster/draw.h) creates a program from a shader.

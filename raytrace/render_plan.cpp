@@ -48,7 +48,8 @@ bool enters_solids(Integrator integrator) {
 
 RenderPlan::RenderPlan(const PathTracerSceneData& prepared_, const View& view, const PathTracerSettings& settings)
     : prepared(prepared_), scene(prepared_.scene), filter(settings.filter), batched(scene.objects.size()),
-      max_depth(depth(settings)), russian_roulette(settings.russian_roulette && max_depth > 1 && settings.integrator != Integrator::kWhitted) {
+      max_depth(depth(settings)),
+      russian_roulette(settings.russian_roulette && max_depth > 1 && settings.integrator != Integrator::kWhitted) {
     const SkipFlags& skips = settings.skips;
     const CameraModel camera(view);
     lens = camera.has_lens() || !skips.lens;

@@ -99,7 +99,8 @@ template <typename T> Option CommandLine::add(const std::string& names, T& value
         return {*app_, *app_->add_option_function<std::string>(names, parse, help)};
     } else {
         CLI::Option* const option = app_->add_option(names, value, help);
-        if constexpr (std::is_same_v<T, std::uint64_t>) option->check(integer_check<std::uint64_t>("", 0, std::numeric_limits<std::uint64_t>::max()));
+        if constexpr (std::is_same_v<T, std::uint64_t>)
+            option->check(integer_check<T>("", 0, std::numeric_limits<T>::max()));
         return {*app_, *option};
     }
 }

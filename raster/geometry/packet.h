@@ -202,7 +202,8 @@ template <typename T> xsimd::batch_bool<T> lanes_from(std::uint32_t bits) {
 
 /// Calls use(value, lanes) for each value that the keys have in the lanes `left`. `lanes` are those of `left` with that
 /// value.
-template <typename T, typename Use> void for_each_value(const xsimd::batch<T>& keys, std::uint32_t left, const Use& use) {
+template <typename T, typename Use>
+void for_each_value(const xsimd::batch<T>& keys, std::uint32_t left, const Use& use) {
     alignas(64) std::array<T, xsimd::batch<T>::size> each;
     keys.store_aligned(each.data());
     while (left != 0) {

@@ -24,8 +24,9 @@ struct DirectLight {
     std::size_t memory_bytes() const { return exact.memory_bytes() + unshadowed.memory_bytes() + lit.memory_bytes(); }
 };
 
-/// Limits the number of near lights per cluster of pixels. If a cluster has more than `most` in a scene
-/// of more than LightSet::kFewLights, about `most` of them are chosen at random (LightSet::choose). Images that are averaged should differ in `random`, a number in [0, 1).
+/// Limits the number of near lights per cluster of pixels, in scenes of more than LightSet::kFewLights. If a cluster
+/// has more than `most`, about `most` of them are chosen at random (LightSet::choose). Images that are averaged should
+/// differ in `random`, a number in [0, 1).
 struct ChosenLights {
     static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
     std::size_t most = kAll;

@@ -8,8 +8,8 @@
 namespace duet::raster {
 namespace {
 
-/// Represents a part of an object that casts shadows. A convex object that is seen from outside shades itself only where
-/// its normals face away from the light.
+/// Represents a part of an object that casts shadows. A convex object that is seen from outside shades itself only
+/// where its normals face away from the light.
 struct Caster {
     Box3d box;
     std::uint32_t object;

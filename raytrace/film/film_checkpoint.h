@@ -44,7 +44,7 @@ private:
     StoredFilm stored_;
     Stopwatch since_write_;
     std::shared_mutex pixels_mutex_; // shared by threads that add to pixels, exclusive to copy all pixels
-    std::mutex entry_mutex_;         // locked to lock pixels_mutex_; else new readers could keep the copy waiting forever
+    std::mutex entry_mutex_;         // held to lock pixels_mutex_; else new readers could keep the copy waiting
     std::mutex write_mutex_;
 };
 

@@ -11,8 +11,11 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 using namespace duet;
 using namespace duet::raytrace;
@@ -143,6 +146,44 @@ TEST_SUITE("unit") {
         rendered(scene, settings, watching);
         CHECK(seen > 0);
         CHECK(read_film(settings.film).film.min_samples_taken() == 64);
+    }
+
+    TEST_CASE("threads that never rest together do not keep the film from being written") {
+        const ScratchFolder folder;
+        const Scene scene = small_scene();
+        PathTracerSettings settings;
+        settings.film = folder / "film.exr";
+        FilmCheckpoint checkpoint(scene, {scene.camera, kWidth, kHeight}, settings);
+        std::atomic<bool> saved = false;
+        std::atomic<int> ended = 0; // threads that gave up before the film was saved
+        std::vector<std::thread> threads;
+        for (int i = 0; i < 3; ++i)
+            threads.emplace_back([&] {
+                for (int k = 0; k < 3000; ++k) {
+                    if (saved) return;
+                    checkpoint.run([] { std::this_thread::sleep_for(std::chrono::milliseconds(3)); });
+                }
+                ++ended;
+            });
+        std::this_thread::sleep_for(std::chrono::milliseconds(20)); // the threads overlap
+        checkpoint.save();
+        saved = true;
+        for (std::thread& thread : threads) thread.join();
+        CHECK(ended == 0);
+    }
+
+    TEST_CASE("a shard's hits are those of its own first sample") {
+        const Scene scene = small_scene();
+        PathTracerSettings settings;
+        settings.aovs.hit = settings.aovs.depth = true;
+        settings.first_sample = 8, settings.samples_per_pixel = 8;
+        const Rendering shard = rendered(scene, settings);
+        int hits = 0;
+        for (std::size_t i = 0; i < shard.hit.size(); ++i) {
+            if (shard.hit[i].valid()) CHECK(shard.depth[i] < kInfinity);
+            hits += shard.hit[i].valid();
+        }
+        CHECK(hits > kWidth * kHeight / 4);
     }
 
     TEST_CASE("shards join to the sums of one run, to 1e-12; films that do not fit are refused") {
