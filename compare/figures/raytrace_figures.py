@@ -59,7 +59,7 @@ def beside_cycles(run, name, spp, seconds, reference, *more, techniques="path,ad
 
 
 def cornell_bench(run):
-    return beside_cycles(run, "cornell-35", "8,32,128,640", "1,4", 2048, "--exclude", "0.43,0.25,0.57,0.295")
+    return beside_cycles(run, "cornell-35", "8,32,128,512,2048", "1,4", 2048, "--exclude", "0.43,0.25,0.57,0.295")
 
 
 def to_peer(result, technique, at):

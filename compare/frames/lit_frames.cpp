@@ -19,34 +19,39 @@ raster::RasterSettings lit_settings(int threads) {
     return settings;
 }
 
-LitRow measure_row(const raster::RasterScene& prepared, const View& view, int threads, const FrameSettings& settings,
-                   Rendering& image) {
-    const CpuAffinity pinned(threads);
-    const raster::RasterSettings lit = lit_settings(threads);
-    const WorkStopwatch clock(settings.processor_time);
-    Control control;
-    raster::render(prepared, view, lit, control, image); // touches the memory before it is timed
-    std::vector<double> frames;
-    std::vector<std::string> names;
-    std::map<std::string, std::vector<double>> stages;
-    for (int i = 0; i < settings.repeats && !(settings.stop != nullptr && *settings.stop); ++i) {
+/// Collects the times of the frames of one number of threads.
+class FrameTimes {
+public:
+    explicit FrameTimes(int threads) : threads_(threads) {}
+
+    void measure(const raster::RasterScene& prepared, const View& view, const WorkStopwatch& clock, Rendering& image) {
+        const CpuAffinity pinned(threads_);
+        Control control;
         const double start = clock.seconds();
         const Stopwatch watch;
-        raster::render(prepared, view, lit, control, image);
+        raster::render(prepared, view, lit_settings(threads_), control, image);
         double rest = watch.seconds();
-        frames.push_back(clock.seconds() - start);
-        std::vector<std::pair<std::string, double>> these = image.statistics.seconds;
-        for (const auto& [name, seconds] : these) rest -= seconds;
-        these.emplace_back("other", rest);
-        for (const auto& [name, seconds] : these) {
-            if (stages[name].empty()) names.push_back(name);
-            stages[name].push_back(seconds);
+        frames_.push_back(clock.seconds() - start);
+        std::vector<std::pair<std::string, double>> stages = image.statistics.seconds;
+        for (const auto& [name, seconds] : stages) rest -= seconds;
+        stages.emplace_back("other", rest);
+        for (const auto& [name, seconds] : stages) {
+            if (stages_[name].empty()) names_.push_back(name);
+            stages_[name].push_back(seconds);
         }
     }
-    LitRow row{threads, median(frames), {}};
-    for (const std::string& name : names) row.stages.emplace_back(name, median(stages[name]));
-    return row;
-}
+    LitRow medians() const {
+        LitRow row{threads_, median(frames_), {}};
+        for (const std::string& name : names_) row.stages.emplace_back(name, median(stages_.at(name)));
+        return row;
+    }
+
+private:
+    int threads_;
+    std::vector<double> frames_;
+    std::vector<std::string> names_; // of the stages, in the order of their first time
+    std::map<std::string, std::vector<double>> stages_;
+};
 
 /// Returns the speedup of a row over one processor, or "-" if that was not measured.
 std::string scaling(const LitScene& scene, const LitRow& row) {
@@ -70,7 +75,15 @@ LitScene measure_lit_frames(const std::filesystem::path& path, const std::vector
     result.prepare = clock.seconds();
     const View view{scene.camera, settings.size.width, settings.size.height};
     Rendering image;
-    for (const int count : threads) result.rows.push_back(measure_row(prepared, view, count, settings, image));
+    std::vector<FrameTimes> rows;
+    for (const int count : threads) {
+        rows.emplace_back(count);
+        FrameTimes(count).measure(prepared, view, clock, image); // touches the memory before it is timed
+    }
+    // The numbers of threads take turns, so that a change of the processor's speed meets all of them.
+    for (int i = 0; i < settings.repeats && !(settings.stop != nullptr && *settings.stop); ++i)
+        for (FrameTimes& row : rows) row.measure(prepared, view, clock, image);
+    for (const FrameTimes& row : rows) result.rows.push_back(row.medians());
     result.image = encoded_values(image.srgb);
     return result;
 }
