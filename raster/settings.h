@@ -53,8 +53,11 @@ struct RasterSettings : RenderSettings {
     /// map of an area light a quarter. Maps are smaller if all of them would take too much memory.
     int shadow_map_side = 2048;
     int shadow_cells = 2; ///< a rectangular light is divided into this many cells per side, in [1, 8], each with a map
-    bool ambient_occlusion = true; ///< Shading::kLit: GTAO on diffuse surfaces (raster/screen_space/gtao.h)
-    bool indirect_light = true;    ///< Shading::kLit: diffuse light between surfaces, from irradiance probes
+    /// Shading::kLit: GTAO on diffuse surfaces (raster/screen_space/gtao.h). prepare() must be called with this setting,
+    /// too, which mirrors show.
+    bool ambient_occlusion = true;
+    /// Shading::kLit: diffuse light between surfaces, from irradiance probes; prepare() must be called with it, too.
+    bool indirect_light = true;
     bool subsurface = true; ///< Shading::kLit: subsurface scattering of solids (raster/screen_space/subsurface.h)
     bool fog = true; ///< Shading::kLit: media (raster/fog/fog_grid.h); prepare() must be called with this setting, too
     /// Without indirect light, occluders of the environment are at most this far away, in meters. 0 stands for half of

@@ -327,14 +327,17 @@ void fill_gbuffer(const SampleView& sample, GBuffer& gbuffer, Planes3& emission)
     });
 }
 
-void add_alpha_surfaces(const SampleView& sample, GBuffer& gbuffer, Planes3& emission) {
+void add_alpha_surfaces(const SampleView& sample, bool opaque, GBuffer& gbuffer, Planes3& emission) {
     parallel_for(sample.grid.size(), sample.settings.threads, [&](std::size_t i) {
         if (sample.control.stopped() || !sample.layers->overlaps_tile(i)) return;
         DepthTile depths;
         rasterize_tile(sample.geometry, sample.view, sample.offset, sample.grid.tile(i), i, depths);
         HitTile tile(depths, sample.geometry, sample.view);
-        const auto stops = [](int x, int y, float left) {
-            return left * kDitherSide * kDitherSide <= static_cast<float>(dither_rank(x, y)) + 0.5f;
+        const auto stops = [&](int x, int y, float left) {
+            // The bits are exchanged so that every second pixel, which ambient occlusion reads, has ranks of all sizes.
+            const auto exchanged = [](int v) { return (v >> 1 & 1) | (v & 1) << 1; };
+            const auto rank = static_cast<float>(dither_rank(exchanged(x), exchanged(y)));
+            return opaque || left * kDitherSide * kDitherSide <= rank + 0.5f;
         };
         HitLists(*sample.layers, sample.view, sample.offset, i, tile)
             .for_each_blocking_hit(sample.data.scene, stops, [&](int x, int y, const Hit& hit) {

@@ -28,8 +28,9 @@ struct SampleView {
 /// their old contents.
 void fill_gbuffer(const SampleView& sample, GBuffer& gbuffer, Planes3& emission);
 /// Adds the surfaces with alpha. A surface replaces what lies behind it in as many pixels as it blocks of the light, in
-/// an ordered dither (stochastic transparency), because the G-buffer has room for one surface.
-void add_alpha_surfaces(const SampleView& sample, GBuffer& gbuffer, Planes3& emission);
+/// an ordered dither (stochastic transparency), because the G-buffer has room for one surface. If `opaque`, it does so
+/// in all pixels.
+void add_alpha_surfaces(const SampleView& sample, bool opaque, GBuffer& gbuffer, Planes3& emission);
 /// Stores a hit in a pixel.
 void store_hit(const SampleView& sample, int x, int y, const Hit& hit, float reversed_depth, GBuffer& gbuffer,
                Planes3& emission);

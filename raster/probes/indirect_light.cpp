@@ -27,7 +27,7 @@ RgbT<Floats> irradiance(const GBuffer& gbuffer, const IrradianceProbes& probes, 
 } // namespace
 
 void interpolate_probes(const RasterSettings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
-                            GtaoImage& half) {
+                        GtaoImage& half) {
     half.start(gbuffer, settings.threads);
     half.set_irradiance(settings.threads, [&](const auto& p, const auto& n, const auto& lanes) {
         return irradiance(gbuffer, probes, p, n, lanes);

@@ -18,7 +18,7 @@ AmbientLight ambient_light(const RasterSceneData& data, const RasterSettings& se
 /// Sets the irradiance of `half` from the probes. Afterwards, GtaoImage::find_light() searches for the occluders that
 /// the probes do not resolve, up to occluder_reach() meters away.
 void interpolate_probes(const RasterSettings& settings, const GBuffer& gbuffer, const IrradianceProbes& probes,
-                            GtaoImage& half);
+                        GtaoImage& half);
 /// Returns 0 without ambient occlusion.
 float occluder_reach(const RasterSettings& settings, const IrradianceProbes& probes);
 /// Adds the light that diffuse surfaces reflect: that of `half`, and that of the probes where `half` has none.

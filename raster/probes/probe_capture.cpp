@@ -40,7 +40,7 @@ ProbeCapture::Face capture(const RasterSceneData& data, const RasterSettings& se
     fill_gbuffer(sample, face.gbuffer, face.emission);
     if (data.has_layers()) {
         process_layers(data, grid, pass, settings, *layers, selected);
-        add_alpha_surfaces(sample, face.gbuffer, face.emission);
+        add_alpha_surfaces(sample, !selection.excluded, face.gbuffer, face.emission);
     }
     if (!selection.excluded) return face;
     draw_background(data, settings, face.gbuffer, face.direct);

@@ -6,8 +6,9 @@ namespace {
 using Vec3s = Vec3T<Floats>;
 using Mask = Floats::batch_bool_type;
 
-/// The tested points of a ray are at most this far apart, as a part of the distance from the center. At least
-/// kFewestSteps of them are tested, and kBisections narrow the interval between two of them.
+/// Steps divide the chord between the unit vectors from the center to the start and to the end of a ray, which is
+/// infinitely far away. They are at most this long, and there are at least kFewestSteps of them. kBisections narrow the
+/// interval between two of them.
 constexpr float kLongestStep = 0.1f, kFewestSteps = 4;
 constexpr int kBisections = 6;
 /// A relative difference of distances below kTolerance is a hit. A difference above kStep is the discontinuity at a
@@ -45,11 +46,11 @@ private:
     /// several probes with the same three outcomes: hit, miss and unknown.)
     Floats search(const Mask& lanes) const {
         const Vec3s chord = w_ - start_ * (Floats(1.0f) / max(length_, Floats(1e-20f)));
-        const Floats steps = max(xsimd::ceil(xsimd::sqrt(dot(chord, chord)) * Floats(1 / kLongestStep)),
-                                 Floats(kFewestSteps));
+        constexpr float kMostSteps = 2 / kLongestStep; // the chord is at most a diameter
+        const Floats steps = clamp(xsimd::ceil(xsimd::sqrt(dot(chord, chord)) * Floats(1 / kLongestStep)),
+                                   Floats(kFewestSteps), Floats(kMostSteps));
         Floats before(0.0f), result(RadianceMap::kFarthest); // an unobstructed ray ends at the background
         Mask done = ~lanes, hidden = before > before;
-        constexpr float kMostSteps = 2 / kLongestStep; // the chord is at most a diameter
         for (float i = 1; i <= kMostSteps && !xsimd::all(done); ++i) {
             const Floats s = Floats(i) / steps;
             const auto [ray, surface] = depths(at_fraction(s));

@@ -10,6 +10,7 @@
 #include "common/material/thin_dielectric.h"
 
 #include <bit>
+#include <optional>
 
 namespace duet::raster {
 namespace {

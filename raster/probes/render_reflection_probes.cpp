@@ -3,6 +3,7 @@
 #include "raster/prepare_limits.h"
 #include "raster/probes/indirect_light.h"
 #include "raster/probes/reflections.h"
+#include "raster/probes/solid_test.h"
 
 #include "common/system/parallel.h"
 
@@ -64,14 +65,14 @@ std::vector<Site> sites_of(const RasterSceneData& data) {
 }
 
 /// Adds to a capture the indirect light that its surfaces reflect, and the environment's reflections on their specular
-/// lobes.
-void add_reflected_light(const RasterSceneData& data, RasterSettings settings, ProbeCapture& capture) {
+/// lobes. If `enclosed`, the object that has the probe encloses its center.
+void add_reflected_light(const RasterSceneData& data, RasterSettings settings, bool enclosed, ProbeCapture& capture) {
     settings.threads = 1;
     GtaoImage occlusion;
     for (ProbeCapture::Face& face : capture.faces()) {
         if (data.irradiance_probes) {
             const IrradianceProbes& probes = *data.irradiance_probes;
-            face.gbuffer.eye_enclosed = true; // by the object that has the probe
+            face.gbuffer.eye_enclosed = enclosed;
             interpolate_probes(settings, face.gbuffer, probes, occlusion);
             occlusion.find_light(occluder_reach(settings, probes), 1,
                                  [&](int x, int y) { return face.direct.color_at(x, y); });
@@ -109,7 +110,7 @@ RadianceMap render_map(const RasterSceneData& data, const RasterSettings& settin
     const auto capture = [&](const std::vector<std::uint32_t>& excluded) {
         constexpr std::size_t kMostLights = 16; // per cluster of pixels; models/lanterns.json then takes seconds
         ProbeCapture result(data, settings, site.center, side / 2, side / 2 / kGuardShare, excluded, {kMostLights});
-        add_reflected_light(data, settings, result);
+        add_reflected_light(data, settings, is_inside(data, site.object, Vec3d(site.center)), result);
         return result;
     };
     const ProbeCapture all = capture(site.excluded);

@@ -251,7 +251,7 @@ void GtaoImage::search_row(int y, float radius, const Occluders* occluders) {
         const Floats depth = load(depth_, x, y);
         const Mask seen = depth > Floats(0.0f);
         Line found;
-        if (radius > 0 && xsimd::any(seen)) {
+        if (xsimd::any(seen)) {
             found = search_line(*gbuffer_, depth_, occluders, point(x, y, depth), occluders_.normals.vector(x, y),
                                 radius, pattern_of(x, y));
         }

@@ -20,7 +20,9 @@ Box3d doubled(const Box3& box) { return {Vec3d(box.low), Vec3d(box.high)}; }
 
 std::vector<Caster> casters_of(const RasterSceneData& data, const GBuffer& gbuffer) {
     std::vector<Caster> casters;
-    const bool from_eye = gbuffer.position.empty(); // other rays may see an object from inside
+    // Rays from elsewhere than the eye, and rays through surfaces with alpha, may see an object from inside.
+    const bool from_eye =
+        gbuffer.position.empty() && gbuffer.projection.perspective() && !data.scene.needs.alpha;
     const auto seen_from_outside = [&](std::uint32_t object) {
         return from_eye && !data.objects[object].bounds.contains(Vec3(gbuffer.projection.eye()));
     };
