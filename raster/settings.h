@@ -53,8 +53,8 @@ struct RasterSettings : RenderSettings {
     /// map of an area light a quarter. Maps are smaller if all of them would take too much memory.
     int shadow_map_side = 2048;
     int shadow_cells = 2; ///< a rectangular light is divided into this many cells per side, in [1, 8], each with a map
-    /// Shading::kLit: GTAO on diffuse surfaces (raster/screen_space/gtao.h). prepare() must be called with this setting,
-    /// too, which mirrors show.
+    /// Shading::kLit: GTAO on diffuse surfaces (raster/screen_space/gtao.h). prepare() must be called with it,
+    /// too, because mirrors show it.
     bool ambient_occlusion = true;
     /// Shading::kLit: diffuse light between surfaces, from irradiance probes; prepare() must be called with it, too.
     bool indirect_light = true;
