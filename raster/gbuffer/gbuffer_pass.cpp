@@ -334,9 +334,7 @@ void add_alpha_surfaces(const SampleView& sample, bool opaque, GBuffer& gbuffer,
         rasterize_tile(sample.geometry, sample.view, sample.offset, sample.grid.tile(i), i, depths);
         HitTile tile(depths, sample.geometry, sample.view);
         const auto stops = [&](int x, int y, float left) {
-            // The bits are exchanged so that every second pixel, which ambient occlusion reads, has ranks of all sizes.
-            const auto exchanged = [](int v) { return (v >> 1 & 1) | (v & 1) << 1; };
-            const auto rank = static_cast<float>(dither_rank(exchanged(x), exchanged(y)));
+            const auto rank = static_cast<float>(dither_rank(x, y));
             return opaque || left * kDitherSide * kDitherSide <= rank + 0.5f;
         };
         HitLists(*sample.layers, sample.view, sample.offset, i, tile)
