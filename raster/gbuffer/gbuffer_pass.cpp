@@ -70,7 +70,7 @@ void store_lobes(const SurfaceLobes& lobes, int x, int y, GBuffer& gbuffer) {
     gbuffer.specular.set_at(x, y, lobes.specular);
     gbuffer.alpha(x, y) = lobes.alpha;
     if (!gbuffer.coat.empty()) gbuffer.coat(x, y) = lobes.coat, gbuffer.coat_alpha(x, y) = lobes.coat_alpha;
-    if (!gbuffer.tint.x.empty()) gbuffer.tint.set_at(x, y, lobes.tint);
+    if (!gbuffer.tint.empty()) gbuffer.tint.set_at(x, y, lobes.tint);
 }
 
 /// Holds the state that all tiles share.
@@ -231,7 +231,7 @@ private:
         store_packets(diffuse.r, diffuse.g, diffuse.b, x, y, gbuffer_.diffuse);
         store_packets(specular.r, specular.g, specular.b, x, y, gbuffer_.specular);
         store_packet(alpha, x, y, gbuffer_.alpha);
-        if (!gbuffer_.tint.x.empty()) store_packets(tint.r, tint.g, tint.b, x, y, gbuffer_.tint);
+        if (!gbuffer_.tint.empty()) store_packets(tint.r, tint.g, tint.b, x, y, gbuffer_.tint);
         if (gbuffer_.coat.empty()) return;
         store_packet(coat, x, y, gbuffer_.coat), store_packet(coat_alpha, x, y, gbuffer_.coat_alpha);
     }
@@ -333,10 +333,7 @@ void add_alpha_surfaces(const SampleView& sample, bool opaque, GBuffer& gbuffer,
         DepthTile depths;
         rasterize_tile(sample.geometry, sample.view, sample.offset, sample.grid.tile(i), i, depths);
         HitTile tile(depths, sample.geometry, sample.view);
-        const auto stops = [&](int x, int y, float left) {
-            const auto rank = static_cast<float>(dither_rank(x, y));
-            return opaque || left * kDitherSide * kDitherSide <= rank + 0.5f;
-        };
+        const auto stops = [&](int x, int y, float left) { return opaque || blocks_in_dither(x, y, left); };
         HitLists(*sample.layers, sample.view, sample.offset, i, tile)
             .for_each_blocking_hit(sample.data.scene, stops, [&](int x, int y, const Hit& hit) {
                 tile.exchange(x, y, hit);

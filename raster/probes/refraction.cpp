@@ -43,7 +43,7 @@ public:
         : data_(data), gbuffer_(gbuffer), lookup_(lookup), p_(gbuffer.points(x, y)), n_(gbuffer.normal.vector(x, y)),
           w_(gbuffer.projection.to_viewer(p_) * Floats(-1.0f)), alpha_(load(gbuffer.alpha, x, y)),
           f0_(gbuffer.specular.color(x, y)) {
-        if (!gbuffer.tint.x.empty()) tint_ = gbuffer.tint.color(x, y);
+        if (!gbuffer.tint.empty()) tint_ = gbuffer.tint.color(x, y);
     }
 
     Rgbs through(std::int32_t object, const Dielectric& glass, const Mask& lanes) const {

@@ -105,12 +105,13 @@ bool shows_light(const ProbeCapture& capture) {
 /// Renders the maps of one probe, on one thread. Rough surfaces need a map without the lights, because their
 /// reflections of lights are direct light, and because a light hides surfaces from the probe that other points see.
 RadianceMap render_map(const RasterSceneData& data, const RasterSettings& settings, const Site& site) {
-    constexpr int kGuardShare = 8;
+    constexpr int kGuardShare = 8; // of a face's side, so that occlusion has no seam where faces meet
     const int side = site.side;
+    const bool enclosed = is_inside(data, site.object, site.center);
     const auto capture = [&](const std::vector<std::uint32_t>& excluded) {
         constexpr std::size_t kMostLights = 16; // per cluster of pixels; models/lanterns.json then takes seconds
         ProbeCapture result(data, settings, site.center, side / 2, side / 2 / kGuardShare, excluded, {kMostLights});
-        add_reflected_light(data, settings, is_inside(data, site.object, Vec3d(site.center)), result);
+        add_reflected_light(data, settings, enclosed, result);
         return result;
     };
     const ProbeCapture all = capture(site.excluded);

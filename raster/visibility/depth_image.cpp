@@ -5,18 +5,10 @@
 #include "raster/visibility/packet_primitives.h"
 #include "raster/visibility/rasterize_tile.h"
 
-#include "common/sampling/hash.h"
 #include "common/system/parallel.h"
 
 namespace duet::raster {
 namespace {
-
-/// Returns the dither threshold of a texel, in [0, 1). It is the texel's rank plus a hash within the rank's step of
-/// 1/16, so that the mean is exact for every opacity.
-float dither(int x, int y) {
-    const std::uint64_t hash = hash_combine(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
-    return unit_float(dither_rank(x, y) << 28 | high_bits(hash) >> 4);
-}
 
 /// Returns a tile whose hits lie at the given reversed depths. Only their distances are set, because no object is
 /// needed.
@@ -55,8 +47,7 @@ void add_layers(const RasterSceneData& data, const Geometry& geometry, const Geo
     const SampleOffset offset = view.samples.front();
     HitTile tile = rays_to(image, geometry, view, offset, rect);
     HitLists lists(layers, view, offset, index, tile);
-    const auto by_threshold = [](int x, int y, float left) { return 1 - left > dither(x, y); };
-    lists.for_each_blocking_hit(data.scene, by_threshold, [&](int x, int y, const Hit& hit) {
+    lists.for_each_blocking_hit(data.scene, blocks_in_dither, [&](int x, int y, const Hit& hit) {
         tile.exchange(x, y, hit);
         image(x, y) = tile.reversed_depth(x, y);
     });

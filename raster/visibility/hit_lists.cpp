@@ -1,5 +1,7 @@
 #include "raster/visibility/hit_lists.h"
 
+#include "common/sampling/hash.h"
+
 #include <algorithm>
 #include <optional>
 
@@ -12,6 +14,13 @@ bool nearer(const Hit& a, const Hit& b) {
 }
 
 } // namespace
+
+/// The threshold is the pixel's rank plus a hash within the rank's step of 1/16, so that the mean is exact for every
+/// opacity.
+bool blocks_in_dither(int x, int y, float left) {
+    const std::uint64_t hash = hash_combine(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
+    return 1 - left > unit_float(dither_rank(x, y) << 28 | high_bits(hash) >> 4);
+}
 
 HitLists::HitLists(const Geometry& geometry, const PassView& view, SampleOffset offset, std::size_t tile_index,
                    const HitTile& tile)

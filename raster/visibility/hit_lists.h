@@ -10,6 +10,10 @@
 
 namespace duet::raster {
 
+/// Returns whether surfaces of the transmittance `left` block a pixel. They block as many pixels as they stop of the
+/// light, in an ordered dither (stochastic transparency).
+bool blocks_in_dither(int x, int y, float left);
+
 /// Holds lists of Hits in front of the visible surface of each pixel, sorted front to back, one sample per pixel
 /// (Carpenter 1984, "The A-buffer, an Antialiased Hidden Surface Method"). A list stores the kStored nearest hits. If
 /// more are needed, the tile is drawn again for the hits behind these, so memory does not grow with the number of
