@@ -9,7 +9,6 @@
 #include "raster/probes/reflection_probes.h"
 #include "raster/raster_scene.h"
 #include "raster/shading/deferred.h"
-#include "raster/shadows/shadow_map_lookup.h"
 #include "raster/shadows/shadow_maps.h"
 
 #include "common/scene/alpha_mask.h"
@@ -126,7 +125,6 @@ void prepare_probes(const RasterSettings& settings, RasterSceneData& data, const
 void prepare_lit(const RasterSettings& settings, RasterSceneData& data, const RasterSceneData* before) {
     if (settings.shadows && !data.scene.lights.empty()) {
         data.shadows = std::make_shared<const Shadows>(data, settings);
-        data.soft_shadows = std::make_shared<const SoftShadowMaps>(*data.shadows);
         data.memory_bytes += data.shadows->memory_bytes();
     }
     prepare_probes(settings, data, before);

@@ -28,7 +28,6 @@ struct RasterObject {
 
 struct DeferredFrame; // raster/shading/deferred.h
 struct Geometry; // raster/geometry/geometry.h
-class SoftShadowMaps; // raster/shadows/shadow_map_lookup.h
 class Shadows;        // raster/shadows/shadow_maps.h
 class IrradianceProbes; // raster/probes/irradiance_probes.h
 class RadianceMap; // raster/probes/radiance_map.h
@@ -60,7 +59,6 @@ struct RasterSceneData {
     bool unsampled_emitters = false;
     std::int64_t memory_bytes = 0;
     std::shared_ptr<const Shadows> shadows{};   ///< null if the settings or the scene need none
-    std::shared_ptr<const SoftShadowMaps> soft_shadows{}; ///< null if the settings or the scene need none
     std::shared_ptr<const IrradianceProbes> irradiance_probes{}; ///< null if the settings need none
     std::shared_ptr<const RadianceMap> environment_map{}; ///< of the environment alone; null if the settings need none
     std::shared_ptr<const ReflectionProbes> reflection_probes{}; ///< null if the settings need none

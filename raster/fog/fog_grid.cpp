@@ -290,7 +290,7 @@ void FogGrid::compute(const RasterSceneData& data, const RasterSettings& setting
     if (settings.components.direct) lights = frame_lights(data.scene.lights, *projection_);
     const LightSet light_set(lights, nullptr);
     std::optional<SpaceShadows> shadows;
-    if (settings.shadows && data.soft_shadows) shadows.emplace(data, projection_->eye(), options.time);
+    if (settings.shadows && data.shadows) shadows.emplace(data, projection_->eye(), options.time);
     parallel_for(static_cast<std::size_t>(rows_), options.threads, [&](std::size_t y) {
         Lighter lighter(*this, lights, light_set, shadows ? &*shadows : nullptr, ambient);
         for (int x = 0; x < columns_; x += kBatch) lighter.light_columns(x, static_cast<int>(y), light_, stopped_);

@@ -15,7 +15,7 @@ constexpr int kTileSide = 16, kBatch = static_cast<int>(Floats::size);
 class PixelLighter {
 public:
     PixelLighter(const GBuffer& gbuffer, std::span<const FrameLight> lights, const LightSet& light_set,
-                 std::span<const Medium> media, const ShadowLookup* shadows, const ChosenLights& chosen,
+                 std::span<const Medium> media, const LightVisibility* shadows, const ChosenLights& chosen,
                  DirectLight& result)
         : gbuffer_(gbuffer), lights_(lights), light_set_(light_set), media_(media), shadows_(shadows), chosen_(chosen),
           result_(result) {}
@@ -62,7 +62,7 @@ private:
 
     /// Holds the light that the lights of one source send to the viewer if nothing shades them.
     struct SourceLight {
-        std::size_t source = ShadowLookup::kUnshadowed;
+        std::size_t source = LightVisibility::kUnshadowed;
         RgbT<Floats> reflected{Floats(0.0f)};
         Vec3T<Floats> direction{Floats(0.0f), Floats(0.0f), Floats(0.0f)}; ///< sum of unit vectors to the lights
 
@@ -129,11 +129,11 @@ private:
         SourceLight one_source;
         for (const WeightedLight& light : near) {
             const std::size_t source =
-                shadows_ == nullptr ? ShadowLookup::kUnshadowed : shadows_->source(lights_[light.index].index);
+                shadows_ == nullptr ? LightVisibility::kUnshadowed : shadows_->source(lights_[light.index].index);
             if (source != one_source.source) add_shadowed(batch, std::exchange(one_source, {source}), facet, x, y, sum);
             const FrameLight& its = lights_[light.index];
             const RgbT<Floats> all = reflected(batch, its, light.weight, LitBatch::Lobes::kAll);
-            if (source == ShadowLookup::kUnshadowed)
+            if (source == LightVisibility::kUnshadowed)
                 sum.exact += all;
             else
                 one_source.add(all, direction_to(its, batch.p()).wi);
@@ -158,7 +158,7 @@ private:
     void add_shadowed(const LitBatch& batch, const SourceLight& light, const Vec3T<Floats>& facet, int x, int y,
                       Sum& sum) const {
         const xsimd::batch_bool<float> lit = max_component(light.reflected) > Floats(0.0f);
-        if (light.source == ShadowLookup::kUnshadowed || lane_bits(lit) == 0) return;
+        if (light.source == LightVisibility::kUnshadowed || lane_bits(lit) == 0) return;
         const Vec3T<Floats>& to = light.direction;
         const Vec3T<Floats> wi = to * inverse_sqrt(max(dot(to, to), Floats(1e-20f)));
         const Floats visible = shadows_->visibility(light.source, receiver(batch, wi, x, y),
@@ -200,7 +200,7 @@ private:
     std::span<const FrameLight> lights_;
     const LightSet& light_set_;
     std::span<const Medium> media_; ///< relative to the eye
-    const ShadowLookup* shadows_;
+    const LightVisibility* shadows_;
     ChosenLights chosen_; ///< its random number is new for each cluster
     DirectLight& result_;
     LitBatch::Tables tables_;
@@ -219,13 +219,13 @@ private:
 } // namespace
 
 void compute_direct_light(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
-                          const ShadowLookup* shadows, DirectLight& light, const ChosenLights& chosen) {
+                          const LightVisibility* shadows, DirectLight& light, const ChosenLights& chosen) {
     const int width = gbuffer.width(), height = gbuffer.height();
     std::vector<FrameLight> lights;
     if (settings.components.direct) lights = frame_lights(data.scene.lights, gbuffer.projection);
     const bool noisy = shadows != nullptr && std::ranges::any_of(lights, [&](const FrameLight& its) {
         const std::size_t source = shadows->source(its.index);
-        return source != ShadowLookup::kUnshadowed && shadows->noisy(source);
+        return source != LightVisibility::kUnshadowed && shadows->noisy(source);
     });
     light.exact.set_size(width, height);
     for (Planes3* image : {&light.unshadowed, &light.lit}) {

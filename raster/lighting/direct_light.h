@@ -5,7 +5,7 @@
 
 #include "raster/gbuffer/gbuffer.h"
 #include "raster/raster_scene.h"
-#include "raster/shadows/shadow_lookup.h"
+#include "raster/shadows/light_visibility.h"
 
 #include <limits>
 
@@ -36,6 +36,6 @@ struct ChosenLights {
 /// Computes the direct light of all pixels. Lobes whose alpha is below MetalBsdf::kSmoothAlpha are mirrors, which the
 /// reflections show. `shadows` may be null. `light` may be that of an earlier frame, whose memory is then reused.
 void compute_direct_light(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
-                          const ShadowLookup* shadows, DirectLight& light, const ChosenLights& chosen = {});
+                          const LightVisibility* shadows, DirectLight& light, const ChosenLights& chosen = {});
 
 } // namespace duet::raster

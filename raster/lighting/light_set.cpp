@@ -47,7 +47,7 @@ void LightSet::assign(const LightSet& other, std::span<const std::uint32_t> colu
     }
 }
 
-LightSet::LightSet(std::span<const FrameLight> lights, const ShadowLookup* shadows, bool sums) {
+LightSet::LightSet(std::span<const FrameLight> lights, const LightVisibility* shadows, bool sums) {
     resize(lights.size());
     for (std::size_t i = 0; i < lights.size(); ++i) {
         const FrameLight& light = lights[i];
@@ -59,7 +59,7 @@ LightSet::LightSet(std::span<const FrameLight> lights, const ShadowLookup* shado
         float plane = -1; // with axis 0, all points are in front
         const float power = average(light.emitted);
         float area = 1, most = kHuge;
-        bool may_be_far = sums && (shadows == nullptr || shadows->source(light.index) == ShadowLookup::kUnshadowed);
+        bool may_be_far = sums && (shadows == nullptr || shadows->source(light.index) == LightVisibility::kUnshadowed);
         set(kConeCosine, 0), set(kConeSine, 0);
         switch (light.kind) {
         case FrameLight::Kind::kTriangle:

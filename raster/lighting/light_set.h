@@ -4,7 +4,7 @@
 
 #include "raster/lighting/frame_lights.h"
 #include "raster/lighting/light_clusters.h"
-#include "raster/shadows/shadow_lookup.h"
+#include "raster/shadows/light_visibility.h"
 
 namespace duet::raster {
 
@@ -52,7 +52,7 @@ public:
 
     LightSet() = default;
     /// `shadows` may be null. Lights with shadow maps never count as far, and no light does if `sums` is false.
-    LightSet(std::span<const FrameLight> lights, const ShadowLookup* shadows, bool sums = true);
+    LightSet(std::span<const FrameLight> lights, const LightVisibility* shadows, bool sums = true);
     /// Replaces this set by the given columns of another set.
     void assign(const LightSet& other, std::span<const std::uint32_t> columns);
 

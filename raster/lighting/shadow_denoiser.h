@@ -10,7 +10,7 @@
 namespace duet::raster {
 
 /// Adds the direct light to the radiance. Noisy shadows are averaged over the 4 × 4 pixels whose taps differ
-/// (MapShadows).
+/// (SurfaceShadows).
 void add_direct_light(const GBuffer& gbuffer, const DirectLight& light, int threads, Planes3& radiance);
 
 } // namespace duet::raster

@@ -5,7 +5,7 @@
 #include "raster/shader/octahedral_map.h"
 #include "raster/shadows/cube_map.h"
 #include "raster/shadows/light_views.h"
-#include "raster/shadows/shadow_map_lookup.h"
+#include "raster/shadows/surface_shadows.h"
 #include "raster/lighting/shadow_denoiser.h"
 
 #include "common/system/control.h"
@@ -45,8 +45,8 @@ ProbeCapture::Face capture(const RasterSceneData& data, const RasterSettings& se
     if (!selection.excluded) return face;
     draw_background(data, settings, face.gbuffer, face.direct);
     if (data.scene.lights.empty()) return face;
-    std::optional<MapShadows> shadows;
-    if (settings.shadows && data.soft_shadows)
+    std::optional<SurfaceShadows> shadows;
+    if (settings.shadows && data.shadows)
         shadows.emplace(data, face.gbuffer, pass.time, 1);
     ChosenLights chosen = selection.chosen;
     chosen.random = std::fmod(chosen.random + 0.381966f * static_cast<float>(face_index), 1.0f);

@@ -9,7 +9,7 @@
 #include "raster/probes/reflections.h"
 #include "raster/probes/refraction.h"
 #include "raster/screen_space/subsurface.h"
-#include "raster/shadows/shadow_map_lookup.h"
+#include "raster/shadows/surface_shadows.h"
 
 #include "common/system/control.h"
 #include "common/system/stopwatch.h"
@@ -87,8 +87,8 @@ public:
         if (!settings_.components.direct || data_.scene.lights.empty()) return;
         const GBuffer& gbuffer = *frame_.gbuffer;
         const int threads = settings_.threads;
-        std::optional<MapShadows> shadows;
-        if (settings_.shadows && data_.soft_shadows) shadows.emplace(data_, gbuffer, options_.time, threads);
+        std::optional<SurfaceShadows> shadows;
+        if (settings_.shadows && data_.shadows) shadows.emplace(data_, gbuffer, options_.time, threads);
         compute_direct_light(data_, settings_, gbuffer, shadows ? &*shadows : nullptr, frame_.direct);
         done("direct light and shadows");
         add_direct_light(gbuffer, frame_.direct, threads, radiance);

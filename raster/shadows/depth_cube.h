@@ -17,6 +17,8 @@ public:
     /// center. The point is exact, so points of a flat surface lie in its plane. It is very far away if the texel sees
     /// nothing. `texel` receives the texel's width there.
     Vec3T<Floats> surface(const Vec3T<Floats>& w, Floats& texel) const;
+    std::size_t memory_bytes() const { return depths_.size() * sizeof(float); }
+
     FrameT<double> frame;
     Vec3d center;
 

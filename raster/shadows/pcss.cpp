@@ -129,6 +129,10 @@ SoftShadowMap::SoftShadowMap(const CellMaps& maps, const Emitter& emitter)
     corner_ = (u_ + v_) * (kind_ == Emitter::Kind::kTriangle ? -1.0f / 3 : -0.5f);
 }
 
+std::size_t SoftShadowMap::memory_bytes() const {
+    return cube_.memory_bytes() + (distant_ ? distant_->memory_bytes() : 0) + near_visibility_.memory_bytes();
+}
+
 SoftShadowMap::Outline SoftShadowMap::outline_from(const Vec3s& p) const {
     if (kind_ != Emitter::Kind::kSphere) {
         const Floats toward = xsimd::select(p.z < Floats(0.0f), Floats(1.0f), Floats(-1.0f));

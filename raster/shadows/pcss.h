@@ -28,6 +28,8 @@ public:
     /// visible fraction past them.
     Floats visibility(const Vec3d& eye, const Vec3T<Floats>& p) const;
 
+    std::size_t memory_bytes() const;
+
     static constexpr int kSearchTaps = 4, kFilterTaps = 4;
 
 private:

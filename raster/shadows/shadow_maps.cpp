@@ -108,10 +108,9 @@ Shadows::Shadows(const RasterSceneData& data, const RasterSettings& settings)
     source_of_.assign(scene_.lights.size(), sources_.size());
     for (std::size_t i = 0; i < sources_.size(); ++i) {
         for (const std::size_t light : sources_[i].lights) source_of_[light] = i;
-        sources_[i].moments.resize(moments_.size());
         const std::vector<Camera> views = views_of(data, visible, sources_[i]);
-        for (std::size_t k = 0; k < moments_.size(); ++k)
-            draw(data, settings, views, sources_[i], moments_[k], sources_[i].moments[k]);
+        for (const double moment : moments_)
+            sources_[i].moments.push_back(draw(data, settings, views, sources_[i], moment));
     }
 }
 
@@ -178,33 +177,37 @@ std::vector<Shadows::Source> Shadows::find_sources(const Scene& scene, int cells
     return sources;
 }
 
-void Shadows::draw(const RasterSceneData& data, const RasterSettings& settings, std::span<const Camera> views,
-                   Source& source, double moment, Maps& maps) {
-    const Light& light = scene_.lights[source.lights.front()];
-    if (!views.empty()) {
-        for (Camera camera : views) {
-            camera.shutter_open = camera.shutter_close = moment;
-            maps.views.emplace_back(data, camera, side_, settings.threads, kNoObject);
-            memory_bytes_ += std::int64_t{4} * side_ * side_;
-        }
-        return;
+Shadows::Maps Shadows::draw(const RasterSceneData& data, const RasterSettings& settings, std::span<const Camera> views,
+                            const Source& source, double moment) const {
+    Maps maps;
+    for (Camera camera : views) {
+        camera.shutter_open = camera.shutter_close = moment;
+        maps.sharp.emplace_back(data, camera, side_, settings.threads, kNoObject);
     }
-    if (std::holds_alternative<SunLight>(light)) return;
-    const auto* surface_light = std::get_if<SurfaceLight>(&light);
-    if (surface_light == nullptr) {
-        const auto* spot = std::get_if<SpotLight>(&light);
-        const Vec3d center(spot != nullptr ? spot->position : std::get<PointLight>(light).position);
-        maps.cubes.push_back(draw_cube(data, kNoObject, center, nullptr, true, moment, cube_side_, 0,
-                                       settings.threads));
-        return;
-    }
-
     for (const Emitter& cell : source.cells)
-        maps.cells.push_back(draw_cell(data, source, cell, moment, settings.threads));
+        maps.soft.emplace_back(draw_cell(data, source, cell, moment, settings.threads), cell);
+    const Light& light = scene_.lights[source.lights.front()];
+    const auto* spot = std::get_if<SpotLight>(&light);
+    const auto* point = std::get_if<PointLight>(&light);
+    if (!views.empty() || (spot == nullptr && point == nullptr)) return maps;
+    const Vec3d center(spot != nullptr ? spot->position : point->position);
+    CubeMap cube = draw_cube(data, kNoObject, center, nullptr, true, moment, cube_side_, 0, settings.threads);
+    for (auto& face : cube.faces) maps.sharp.push_back(std::move(*face));
+    return maps;
+}
+
+std::int64_t Shadows::memory_bytes() const {
+    std::size_t sum = 0;
+    for (const Source& source : sources_)
+        for (const Maps& maps : source.moments) {
+            for (const ShadowMap& map : maps.sharp) sum += map.reversed_depth().size() * sizeof(float);
+            for (const SoftShadowMap& map : maps.soft) sum += map.memory_bytes();
+        }
+    return static_cast<std::int64_t>(sum);
 }
 
 CellMaps Shadows::draw_cell(const RasterSceneData& data, const Source& source, const Emitter& cell,
-                            double moment, int threads) {
+                            double moment, int threads) const {
     const auto& surface = std::get<SurfaceLight>(scene_.lights[source.lights.front()]);
     const bool flat = cell.kind != Emitter::Kind::kSphere;
     // Other objects may lie in the light's plane, so the camera is placed slightly in front of it.
@@ -217,15 +220,13 @@ CellMaps Shadows::draw_cell(const RasterSceneData& data, const Source& source, c
     CellMaps maps{draw_from({}, cube_side_ / 2, 0), {}, {}, static_cast<float>(kNearReach * cell.radius)};
     if (flat || !near_casters_surround(maps.all, maps.reach)) return maps;
     maps.distant = draw_from({}, cube_side_ / 2, static_cast<double>(maps.reach));
-    const std::int64_t kept = memory_bytes_;
     maps.near_visibility =
         near_visibility(cell.radius, maps.reach, [&](Vec3d offset) { return draw_from(offset, kMinSide, 0); });
-    memory_bytes_ = kept + static_cast<std::int64_t>(maps.near_visibility.memory_bytes());
     return maps;
 }
 
 CubeMap Shadows::draw_cube(const RasterSceneData& data, std::uint32_t excluded, Vec3d center, const Emitter* plane,
-                           bool back, double moment, int side, double near, int threads) {
+                           bool back, double moment, int side, double near, int threads) const {
     CubeMap cube;
     cube.center = Vec3d(Vec3(center)); // rounded in the same way as in the camera
     if (plane != nullptr) cube.frame = frame_from_normal(plane->normal);
@@ -235,7 +236,6 @@ CubeMap Shadows::draw_cube(const RasterSceneData& data, std::uint32_t excluded, 
         views[i].shutter_open = views[i].shutter_close = moment;
         views[i].near = near;
         cube.faces[i] = std::make_unique<ShadowMap>(data, views[i], side, threads, excluded);
-        memory_bytes_ += std::int64_t{4} * side * side;
     }
     cube.near = static_cast<float>(cube.faces[0]->near());
     cube.middle = static_cast<float>(side) / 2;
@@ -261,6 +261,14 @@ std::size_t Shadows::moment_at(float time) const {
     const double open = scene_.camera.shutter_open, close = scene_.camera.shutter_close;
     return static_cast<std::size_t>(
         std::clamp((static_cast<double>(time) - open) / (close - open) * kMoments, 0.0, kMoments - 1.0));
+}
+
+MapsAtTime::MapsAtTime(const Shadows& shadows, const Vec3d& eye, float time)
+    : shadows_(shadows), moment_(shadows.moment_at(time)) {
+    for (const Shadows::Source& source : shadows.sources()) {
+        std::vector<SharpShadowMap>& maps = sharp_.emplace_back();
+        for (const ShadowMap& map : source.moments[moment_].sharp) maps.emplace_back(map, eye);
+    }
 }
 
 } // namespace duet::raster

@@ -5,9 +5,9 @@
 #include "raster/shadows/cube_map.h"
 #include "raster/shadows/emitter.h"
 #include "raster/shadows/light_views.h"
-#include "raster/shadows/near_casters.h"
+#include "raster/shadows/pcf.h"
+#include "raster/shadows/pcss.h"
 
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -26,14 +26,13 @@ public:
     std::size_t moments() const { return moments_.size(); }
     /// Returns whether maps are smaller than RasterSettings::shadow_map_side requests, to limit memory.
     bool coarser() const { return coarser_; }
-    std::int64_t memory_bytes() const { return memory_bytes_; }
+    std::int64_t memory_bytes() const;
 
-    /// Holds a light's maps at one moment; a light without maps has all vectors empty. Views are tried in order; a
-    /// point light has one cube.
+    /// Holds a source's maps at one moment; a source without casters has none. Maps of suns, spots and point lights are
+    /// sharp. They overlap, and a point is looked up in the first that contains it.
     struct Maps {
-        std::vector<ShadowMap> views;
-        std::vector<CubeMap> cubes;
-        std::vector<CellMaps> cells; ///< maps of surface lights, parallel to Source::cells
+        std::vector<ShadowMap> sharp;
+        std::vector<SoftShadowMap> soft; ///< maps of surface lights, parallel to Source::cells
     };
     /// Represents lights that share maps: one point, spot or sun light, or the coplanar surface lights of one object,
     /// or all surface lights of an object that only emits.
@@ -63,14 +62,14 @@ private:
                                  const Source& source) const;
     void fit_sides(const RasterSceneData& data, const std::vector<VisiblePoint>& visible);
     /// `views` is the result of views_of for the source.
-    void draw(const RasterSceneData& data, const RasterSettings& settings, std::span<const Camera> views,
-              Source& source, double moment, Maps& maps);
+    Maps draw(const RasterSceneData& data, const RasterSettings& settings, std::span<const Camera> views,
+              const Source& source, double moment) const;
     CellMaps draw_cell(const RasterSceneData& data, const Source& source, const Emitter& cell, double moment,
-                       int threads);
+                       int threads) const;
     /// Renders a cube map. The object `excluded` casts no shadow, nor does any surface at a depth below `near`. `plane`
     /// is a planar emitter, or null; `back` says whether it also emits on its back side.
     CubeMap draw_cube(const RasterSceneData& data, std::uint32_t excluded, Vec3d center, const Emitter* plane,
-                      bool back, double moment, int side, double near, int threads);
+                      bool back, double moment, int side, double near, int threads) const;
 
     const Scene& scene_;
     double scene_size_;
@@ -80,7 +79,43 @@ private:
     std::vector<double> moments_;
     std::size_t unshadowed_ = 0;
     bool coarser_ = false;
-    std::int64_t memory_bytes_ = 0;
+};
+
+/// Holds the maps of all sources at one time, for lookups of points relative to one eye.
+class MapsAtTime {
+public:
+    /// Keeps a reference to `shadows`.
+    MapsAtTime(const Shadows& shadows, const Vec3d& eye, float time);
+
+    /// Returns the maps of the cells of a source; none if its maps are sharp.
+    std::span<const SoftShadowMap> soft(std::size_t source) const {
+        return shadows_.sources()[source].moments[moment_].soft;
+    }
+    /// Returns the visible fraction of a source: the mean of in_soft(map) over its cells, or in_sharp(map, inside) of
+    /// the first map that contains a point, which sets the lanes `inside`. Points outside of all maps are lit.
+    template <typename InSharp, typename InSoft>
+    Floats visibility(std::size_t source, const InSharp& in_sharp, const InSoft& in_soft) const {
+        if (const std::span<const SoftShadowMap> maps = soft(source); !maps.empty()) {
+            Floats sum(0.0f);
+            for (const SoftShadowMap& map : maps) sum += in_soft(map);
+            return sum * Floats(1 / static_cast<float>(maps.size()));
+        }
+        Floats result(1.0f);
+        xsimd::batch_bool<float> found(false);
+        for (const SharpShadowMap& map : sharp_[source]) {
+            xsimd::batch_bool<float> inside;
+            const Floats seen = in_sharp(map, inside);
+            result = xsimd::select((!found) & inside, seen, result);
+            found = found | inside;
+            if (xsimd::all(found)) break;
+        }
+        return result;
+    }
+
+private:
+    const Shadows& shadows_;
+    std::size_t moment_;
+    std::vector<std::vector<SharpShadowMap>> sharp_; ///< for each source
 };
 
 } // namespace duet::raster

@@ -1,8 +1,7 @@
 // Computes shadows at points in space, such as those of fog, by one shadow map lookup without a surface normal.
 #pragma once
 
-#include "raster/shadows/pcf.h"
-#include "raster/shadows/shadow_map_lookup.h"
+#include "raster/shadows/shadow_maps.h"
 
 namespace duet::raster {
 
@@ -18,10 +17,8 @@ public:
 
 private:
     const Shadows& shadows_;
-    const SoftShadowMaps& soft_;
+    MapsAtTime maps_;
     Vec3d eye_;
-    std::size_t moment_;
-    std::vector<std::vector<SharpShadowMap>> sharp_; ///< for each source: its views, then the faces of its cubes
 };
 
 } // namespace duet::raster

@@ -98,13 +98,13 @@ struct Frame1 {
         fill_gbuffer({prepared->data(), settings, *geometry, nullptr, pass, grid, SampleOffset(), control}, *gbuffer,
                      emission);
     }
-    DirectLight light(int threads, const ShadowLookup* shadows = nullptr, std::size_t most = ChosenLights::kAll) {
+    DirectLight light(int threads, const LightVisibility* shadows = nullptr, std::size_t most = ChosenLights::kAll) {
         settings.threads = threads;
         DirectLight result;
         light_into(result, threads, shadows, most);
         return result;
     }
-    void light_into(DirectLight& result, int threads, const ShadowLookup* shadows = nullptr,
+    void light_into(DirectLight& result, int threads, const LightVisibility* shadows = nullptr,
                     std::size_t most = ChosenLights::kAll) {
         settings.threads = threads;
         compute_direct_light(prepared->data(), settings, *gbuffer, shadows, result, {most});
@@ -154,7 +154,7 @@ struct Difference {
 };
 
 /// Shadows every light by a half.
-struct HalfShadows final : ShadowLookup {
+struct HalfShadows final : LightVisibility {
     std::size_t source(std::size_t light) const override { return light; }
     bool noisy(std::size_t) const override { return true; }
     Floats visibility(std::size_t, const Vec3T<Floats>&, const Vec3T<Floats>&, int, int,
@@ -164,7 +164,7 @@ struct HalfShadows final : ShadowLookup {
 };
 
 /// Takes all lights for one source, and counts how often its shadows are looked up.
-struct OneSource final : ShadowLookup {
+struct OneSource final : LightVisibility {
     mutable std::atomic<int> looks = 0;
 
     std::size_t source(std::size_t) const override { return 0; }

@@ -183,6 +183,20 @@ TEST_SUITE("unit") {
         }
     }
 
+    TEST_CASE("the statistics count the depths of an area light once: six faces of a cube for each of its cells") {
+        Scene scene = floor_scene();
+        add(scene, QuadList{{{Vec3(-0.5f, 3, -0.5f), Vec3(1, 0, 0), Vec3(0, 0, 1)}}}, Mat4(), Emissive{Rgb(5)});
+        finish_scene(scene);
+        raster::RasterSettings settings;
+        settings.shadow_map_side = 256;
+        settings.indirect_light = false; // the probes have no part in this
+        for (const int cells : {1, 2}) {
+            settings.shadow_cells = cells;
+            const raster::RasterScene prepared = raster::prepare(scene, settings);
+            CHECK(prepared.data().shadows->memory_bytes() == 4 * 6 * 64 * 64 * cells * cells);
+        }
+    }
+
     TEST_CASE("what moves does not shade itself by its own motion, and leaves a blurred shadow") {
         Scene scene = floor_scene();
         Object& ball = add(scene, Sphere{Vec3(0, 0, 0), 0.3f}, translation(Vec3(-1, 1, 0)));

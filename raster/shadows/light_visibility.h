@@ -1,4 +1,4 @@
-// Declares the interface by which direct lighting samples shadows.
+// Declares the interface by which direct lighting finds how much of a light is visible.
 #pragma once
 
 #include "raster/geometry/packet.h"
@@ -7,11 +7,11 @@ namespace duet::raster {
 
 /// Returns the visible fraction of a light at the points of a batch of pixels. Lights that lie together, such as the
 /// triangles of a mesh that glows, form one source with one visible fraction.
-class ShadowLookup {
+class LightVisibility {
 public:
     static constexpr std::size_t kUnshadowed = static_cast<std::size_t>(-1);
 
-    virtual ~ShadowLookup() = default;
+    virtual ~LightVisibility() = default;
     /// Returns the index of a light's source, or kUnshadowed. `light` is an index into Scene::lights.
     virtual std::size_t source(std::size_t light) const = 0;
     /// Returns whether visibility() is a noisy estimate. If so, it must be averaged over blocks of 4 × 4 pixels, whose
