@@ -317,28 +317,17 @@ void store_hit(const SampleView& sample, int x, int y, const Hit& hit, float rev
                   gbuffer, emission);
 }
 
-void fill_gbuffer(const SampleView& sample, GBuffer& gbuffer, Planes3& emission) {
+void fill_gbuffer(const SampleView& sample, GBuffer& gbuffer, Planes3& emission, const VisitLayers& visit_layers) {
     const Frame frame{sample.data, sample.geometry, sample.view, sample.settings.components.emission};
     parallel_for(sample.grid.size(), sample.settings.threads, [&](std::size_t i) {
         if (sample.control.stopped()) return;
-        DepthTile tile;
-        rasterize_tile(sample.geometry, sample.view, sample.offset, sample.grid.tile(i), i, tile);
-        TileFiller(frame, tile.rect(), gbuffer, emission).run(tile);
-    });
-}
-
-void add_alpha_surfaces(const SampleView& sample, bool opaque, GBuffer& gbuffer, Planes3& emission) {
-    parallel_for(sample.grid.size(), sample.settings.threads, [&](std::size_t i) {
-        if (sample.control.stopped() || !sample.layers->overlaps_tile(i)) return;
         DepthTile depths;
         rasterize_tile(sample.geometry, sample.view, sample.offset, sample.grid.tile(i), i, depths);
+        TileFiller(frame, depths.rect(), gbuffer, emission).run(depths);
+        if (!visit_layers || sample.layers == nullptr || !sample.layers->overlaps_tile(i)) return;
         HitTile tile(depths, sample.geometry, sample.view);
-        const auto stops = [&](int x, int y, float left) { return opaque || blocks_in_dither(x, y, left); };
-        HitLists(*sample.layers, sample.view, sample.offset, i, tile)
-            .for_each_blocking_hit(sample.data.scene, stops, [&](int x, int y, const Hit& hit) {
-                tile.exchange(x, y, hit);
-                store_hit(sample, x, y, hit, tile.reversed_depth(x, y), gbuffer, emission);
-            });
+        HitLists lists(*sample.layers, sample.view, sample.offset, i, tile);
+        visit_layers(i, tile, lists);
     });
 }
 

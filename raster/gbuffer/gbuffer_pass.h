@@ -5,11 +5,16 @@
 #include "raster/geometry/geometry.h"
 #include "raster/geometry/tiles.h"
 
+#include <functional>
+
 namespace duet {
 struct Control;
 }
 
 namespace duet::raster {
+
+class HitLists; // raster/visibility/hit_lists.h
+class HitTile;  // raster/visibility/hit_tile.h
 
 /// Describes one sample per pixel of a view. All functions that fill a G-buffer take it.
 struct SampleView {
@@ -23,14 +28,12 @@ struct SampleView {
     const Control& control;
 };
 
+/// Receives the surfaces with alpha in a tile: its index, its visible surfaces, and the lists of those in front.
+using VisitLayers = std::function<void(std::size_t tile_index, HitTile& tile, HitLists& lists)>;
 /// Fills the G-buffer with the opaque surfaces. `emission` receives the radiance that the visible surfaces emit toward
 /// the viewer, 0 elsewhere. Every pixel is written, unless the control stops the pass: then the remaining tiles keep
-/// their old contents.
-void fill_gbuffer(const SampleView& sample, GBuffer& gbuffer, Planes3& emission);
-/// Adds the surfaces with alpha. A surface replaces what lies behind it in as many pixels as it blocks of the light, in
-/// an ordered dither (stochastic transparency), because the G-buffer has room for one surface. If `opaque`, it does so
-/// in all pixels.
-void add_alpha_surfaces(const SampleView& sample, bool opaque, GBuffer& gbuffer, Planes3& emission);
+/// their old contents. Once a tile is filled, `visit_layers` may add its surfaces with alpha by store_hit().
+void fill_gbuffer(const SampleView& sample, GBuffer& gbuffer, Planes3& emission, const VisitLayers& visit_layers = {});
 /// Stores a hit in a pixel.
 void store_hit(const SampleView& sample, int x, int y, const Hit& hit, float reversed_depth, GBuffer& gbuffer,
                Planes3& emission);

@@ -2,11 +2,12 @@
 
 #include "raster/gbuffer/gbuffer_pass.h"
 #include "raster/lighting/background.h"
+#include "raster/lighting/shadow_denoiser.h"
 #include "raster/shader/octahedral_map.h"
 #include "raster/shadows/cube_map.h"
 #include "raster/shadows/light_views.h"
 #include "raster/shadows/surface_shadows.h"
-#include "raster/lighting/shadow_denoiser.h"
+#include "raster/visibility/hit_lists.h"
 
 #include "common/system/control.h"
 
@@ -33,15 +34,21 @@ ProbeCapture::Face capture(const RasterSceneData& data, const RasterSettings& se
         return std::binary_search(selection.objects.begin(), selection.objects.end(), object) != selection.excluded;
     };
     process_geometry(data, grid, pass, settings, *geometry, selected);
+    if (data.has_layers()) process_layers(data, grid, pass, settings, *layers, selected);
     ProbeCapture::Face face{GBuffer(ScreenProjection(pass.pinhole, offset), side, side, optional_planes(data.scene)),
                             Planes3(side, side), Planes3(side, side), {}};
     const Control control;
-    const SampleView sample{data, settings, *geometry, &*layers, pass, grid, offset, control};
-    fill_gbuffer(sample, face.gbuffer, face.emission);
-    if (data.has_layers()) {
-        process_layers(data, grid, pass, settings, *layers, selected);
-        add_alpha_surfaces(sample, !selection.excluded, face.gbuffer, face.emission);
-    }
+    const SampleView sample{data, settings, *geometry, data.has_layers() ? &*layers : nullptr,
+                            pass, grid,     offset,    control};
+    // The G-buffer has room for one surface, so a surface with alpha replaces what lies behind it in as many pixels as
+    // it blocks of the light (stochastic transparency). An object that is rendered alone replaces it in all.
+    const auto stops = [&](int x, int y, float left) { return !selection.excluded || blocks_in_dither(x, y, left); };
+    fill_gbuffer(sample, face.gbuffer, face.emission, [&](std::size_t, HitTile& tile, HitLists& lists) {
+        lists.for_each_blocking_hit(data.scene, stops, [&](int x, int y, const Hit& hit) {
+            tile.exchange(x, y, hit);
+            store_hit(sample, x, y, hit, tile.reversed_depth(x, y), face.gbuffer, face.emission);
+        });
+    });
     if (!selection.excluded) return face;
     draw_background(data, settings, face.gbuffer, face.direct);
     if (data.scene.lights.empty()) return face;

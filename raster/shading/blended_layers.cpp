@@ -1,24 +1,19 @@
 #include "raster/shading/blended_layers.h"
 
 #include "raster/visibility/hit_lists.h"
-#include "raster/visibility/rasterize_tile.h"
 
 #include "common/scene/alpha_mask.h"
-#include "common/system/control.h"
 #include "common/system/parallel.h"
 
 namespace duet::raster {
+
 BlendedLayers::BlendedLayers(const SampleView& sample, GBuffer& gbuffer, Planes3& emission) {
     struct TileLayers {
         std::vector<std::vector<Surface>> layers;
         std::vector<Attenuation> attenuations;
     };
     std::vector<TileLayers> tiles(sample.grid.size());
-    parallel_for(tiles.size(), sample.settings.threads, [&](std::size_t i) {
-        if (sample.control.stopped() || !sample.layers->overlaps_tile(i)) return;
-        DepthTile depths;
-        rasterize_tile(sample.geometry, sample.view, sample.offset, sample.grid.tile(i), i, depths);
-        HitTile tile(depths, sample.geometry, sample.view);
+    fill_gbuffer(sample, gbuffer, emission, [&](std::size_t i, HitTile& tile, HitLists& lists) {
         const PixelRect& rect = tile.rect();
         struct Pixel {
             float transmittance = 1;
@@ -26,7 +21,7 @@ BlendedLayers::BlendedLayers(const SampleView& sample, GBuffer& gbuffer, Planes3
         };
         Image<Pixel> pixels(rect.width(), rect.height());
         TileLayers& found = tiles[i];
-        HitLists(*sample.layers, sample.view, sample.offset, i, tile).for_each([&](int x, int y, const Hit& hit) {
+        lists.for_each([&](int x, int y, const Hit& hit) {
             const float alpha = opacity(sample.data.scene, tile.ray(x, y), hit);
             if (alpha == 0) return false;
             const Hit behind = tile.exchange(x, y, hit);

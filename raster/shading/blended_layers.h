@@ -14,7 +14,8 @@ namespace duet::raster {
 /// Holds the blended surfaces in front of the visible surface of each pixel.
 class BlendedLayers {
 public:
-    /// Finds the surfaces. The first fully opaque one of a pixel replaces the visible surface in the G-buffer.
+    /// Fills the G-buffer by fill_gbuffer(), and finds the blended surfaces. The first fully opaque one of a pixel
+    /// replaces the visible surface in the G-buffer.
     BlendedLayers(const SampleView& sample, GBuffer& gbuffer, Planes3& emission);
 
     /// Returns the greatest number of blended surfaces in a pixel.

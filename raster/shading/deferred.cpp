@@ -235,21 +235,19 @@ void shade_deferred(const SampleView& sample, DeferredFrame& frame) {
     frame.seconds.clear();
     frame.start(data.scene, projection, width, height);
     const Stopwatch watch;
-    fill_gbuffer(sample, *frame.gbuffer, frame.radiance);
-    std::optional<BlendedLayers> layers;
-    if (sample.layers != nullptr) layers.emplace(sample, *frame.gbuffer, frame.radiance);
+    const BlendedLayers layers(sample, *frame.gbuffer, frame.radiance);
     frame.seconds.emplace_back("surface attributes", watch.seconds());
     shade_gbuffer(data, sample.settings, {.time = sample.view.time}, frame);
-    if (!layers || layers->count() == 0) return;
-    layers->attenuate(frame.radiance);
+    if (layers.count() == 0) return;
+    layers.attenuate(frame.radiance);
     const std::unique_ptr<DeferredFrame> blended = std::make_unique<DeferredFrame>();
     blended->start(data.scene, projection, width, height);
     const Stopwatch blending;
-    for (std::size_t k = 0; k < layers->count() && !sample.control.stopped(); ++k) {
-        layers->fill(sample, k, *blended->gbuffer, blended->radiance);
+    for (std::size_t k = 0; k < layers.count() && !sample.control.stopped(); ++k) {
+        layers.fill(sample, k, *blended->gbuffer, blended->radiance);
         shade_gbuffer(data, sample.settings, {.time = sample.view.time, .background = false, .fog = &frame.fog},
                       *blended);
-        layers->add(k, blended->radiance, frame.radiance);
+        layers.add(k, blended->radiance, frame.radiance);
     }
     frame.seconds.emplace_back("blended surfaces", blending.seconds());
 }

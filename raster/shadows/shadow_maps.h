@@ -29,7 +29,7 @@ public:
     std::int64_t memory_bytes() const;
 
     /// Holds a source's maps at one moment; a source without casters has none. Maps of suns, spots and point lights are
-    /// sharp. They overlap, and a point is looked up in the first that contains it.
+    /// sharp. They overlap, and the first that contains a point is sampled.
     struct Maps {
         std::vector<ShadowMap> sharp;
         std::vector<SoftShadowMap> soft; ///< maps of surface lights, parallel to Source::cells
