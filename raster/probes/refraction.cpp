@@ -9,7 +9,6 @@
 #include "common/material/metal.h"
 #include "common/material/thin_dielectric.h"
 
-#include <bit>
 #include <optional>
 
 namespace duet::raster {
@@ -101,28 +100,19 @@ private:
 void add_refraction(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
                     Planes3& radiance) {
     for_each_batch(gbuffer.width(), gbuffer.height(), settings.threads, [&](int x, int y) {
-        alignas(64) std::array<std::int32_t, Ints::size> objects, materials;
-        load(gbuffer.object, x, y).store_aligned(objects.data());
-        load(gbuffer.material, x, y).store_aligned(materials.data());
-        std::uint32_t left = lane_bits(gbuffer.visible(x, y));
         Rgbs sum(Floats(0.0f));
         bool any = false;
-        std::optional<RadianceLookup> lookup;
-        while (left != 0) {
-            const auto i = static_cast<std::size_t>(std::countr_zero(left));
-            std::uint32_t own = 0;
-            for (std::uint32_t rest = left; rest != 0; rest &= rest - 1) {
-                const auto k = static_cast<std::size_t>(std::countr_zero(rest));
-                if (objects[k] == objects[i] && materials[k] == materials[i]) own |= 1u << k;
-            }
-            left &= ~own;
-            const auto* glass = std::get_if<Dielectric>(&data.scene.materials[static_cast<std::size_t>(materials[i])]);
-            if (glass == nullptr) continue;
-            if (!lookup) lookup.emplace(data, gbuffer, data.reflection_probes.get(), x, y);
-            const Mask lanes = lanes_from<float>(own);
-            sum = blend(lanes, GlassBatch(data, gbuffer, *lookup, x, y).through(objects[i], *glass, lanes), sum);
+        const Ints objects = load(gbuffer.object, x, y), materials = load(gbuffer.material, x, y);
+        for_each_value(materials, lane_bits(gbuffer.visible(x, y)), [&](std::int32_t material, const Mask& its_lanes) {
+            const auto* glass = std::get_if<Dielectric>(&data.scene.materials[static_cast<std::size_t>(material)]);
+            if (glass == nullptr) return;
+            const RadianceLookup lookup(data, gbuffer, data.reflection_probes.get(), x, y);
+            const GlassBatch batch(data, gbuffer, lookup, x, y);
+            for_each_value(objects, lane_bits(its_lanes), [&](std::int32_t object, const Mask& lanes) {
+                sum = blend(lanes, batch.through(object, *glass, lanes), sum);
+            });
             any = true;
-        }
+        });
         if (any) radiance.set(x, y, radiance.color(x, y) + sum);
     });
 }
