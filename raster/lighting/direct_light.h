@@ -37,5 +37,8 @@ struct ChosenLights {
 /// reflections show. `shadows` may be null. `light` may be that of an earlier frame, whose memory is then reused.
 void compute_direct_light(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
                           const LightVisibility* shadows, DirectLight& light, const ChosenLights& chosen = {});
+/// Does the same with the shadow maps of the time `time`, if the settings and the scene have any.
+void compute_shadowed_light(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
+                            float time, DirectLight& light, const ChosenLights& chosen = {});
 
 } // namespace duet::raster

@@ -6,7 +6,6 @@
 #include "raster/shader/octahedral_map.h"
 #include "raster/shadows/cube_map.h"
 #include "raster/shadows/light_views.h"
-#include "raster/shadows/surface_shadows.h"
 #include "raster/visibility/hit_lists.h"
 
 #include "common/system/control.h"
@@ -52,13 +51,10 @@ ProbeCapture::Face capture(const RasterSceneData& data, const RasterSettings& se
     if (!selection.excluded) return face;
     draw_background(data, settings, face.gbuffer, face.direct);
     if (data.scene.lights.empty()) return face;
-    std::optional<SurfaceShadows> shadows;
-    if (settings.shadows && data.shadows)
-        shadows.emplace(data, face.gbuffer, pass.time, 1);
     ChosenLights chosen = selection.chosen;
     chosen.random = std::fmod(chosen.random + 0.381966f * static_cast<float>(face_index), 1.0f);
     DirectLight light;
-    compute_direct_light(data, settings, face.gbuffer, shadows ? &*shadows : nullptr, light, chosen);
+    compute_shadowed_light(data, settings, face.gbuffer, pass.time, light, chosen);
     add_direct_light(face.gbuffer, light, 1, face.direct);
     return face;
 }

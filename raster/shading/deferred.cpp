@@ -9,7 +9,6 @@
 #include "raster/probes/reflections.h"
 #include "raster/probes/refraction.h"
 #include "raster/screen_space/subsurface.h"
-#include "raster/shadows/surface_shadows.h"
 
 #include "common/system/control.h"
 #include "common/system/stopwatch.h"
@@ -87,9 +86,7 @@ public:
         if (!settings_.components.direct || data_.scene.lights.empty()) return;
         const GBuffer& gbuffer = *frame_.gbuffer;
         const int threads = settings_.threads;
-        std::optional<SurfaceShadows> shadows;
-        if (settings_.shadows && data_.shadows) shadows.emplace(data_, gbuffer, options_.time, threads);
-        compute_direct_light(data_, settings_, gbuffer, shadows ? &*shadows : nullptr, frame_.direct);
+        compute_shadowed_light(data_, settings_, gbuffer, options_.time, frame_.direct);
         done("direct light and shadows");
         add_direct_light(gbuffer, frame_.direct, threads, radiance);
         recorder.record(&LightComponentImages::direct);
