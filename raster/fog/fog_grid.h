@@ -20,6 +20,8 @@ using AmbientLight = std::function<RgbT<Floats>(const Vec3T<Floats>& p)>;
 AmbientLight environment_in_fog(const RasterSceneData& data, const RasterSettings& settings,
                                 const ScreenProjection& projection);
 
+struct PixelRays; // raster/fog/pixel_rays.h
+
 /// Holds the settings of a FogGrid.
 struct FogOptions {
     float time = 0;         ///< time of the shadow maps
@@ -33,8 +35,8 @@ struct FogOptions {
 /// first ray passes through the first pixel. The ends of slices have equal distances from the eye on all rays.
 class FogGrid {
 public:
-    /// Computes the light of the scene's media in front of the G-buffer's surfaces. Memory of an earlier call is
-    /// reused. `ambient` may be empty.
+    /// Computes the light of the scene's media in front of the G-buffer's surfaces
+    /// (raster/fog/compute_fog_grid.cpp). Memory of an earlier call is reused. `ambient` may be empty.
     void compute(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
                  const AmbientLight& ambient, const FogOptions& options);
 
@@ -49,7 +51,6 @@ public:
     static constexpr std::size_t kMostLights = 64; ///< number of lights sampled for a cluster of froxels
 
 private:
-    struct PixelRays;
     struct Columns;
     class Lighter;
 
