@@ -7,6 +7,7 @@
 
 #include "raster/gbuffer/gbuffer.h"
 #include "raster/geometry/lane_math.h"
+#include "raster/screen_space/horizon_search.h"
 #include "raster/screen_space/sky_visibility.h"
 
 namespace duet::raster {
@@ -49,14 +50,6 @@ public:
                smooth_.visible.memory_bytes() + smooth_.hidden.memory_bytes() + irradiance_.memory_bytes() +
                occluders_.normals.memory_bytes() + occluders_.front.memory_bytes() + occluders_.back.memory_bytes();
     }
-
-    static constexpr int kSteps = 10; ///< depth samples on each side of a pixel
-
-    /// Holds surfaces at half the G-buffer's resolution, from every second pixel of every second row: their normals,
-    /// and the radiance that they send as occluders, from the side that the viewer sees and from the other.
-    struct Occluders {
-        Planes3 normals, front, back;
-    };
 
 private:
     struct Planes {
