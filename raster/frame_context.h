@@ -5,7 +5,6 @@
 #include "raster/output/statistics.h"
 #include "raster/raster_scene.h"
 #include "raster/shader/shader_program.h"
-#include "raster/visibility/hit_lists.h"
 
 namespace duet::raster {
 

@@ -304,7 +304,7 @@ void store_surface(const Scene& scene, const VisibleSurface& surface, bool emits
 
 void clear(GBuffer& gbuffer, Planes3& emission) {
     gbuffer.reversed_depth.fill(0), gbuffer.object.fill(-1), gbuffer.material.fill(-1);
-    for (PlaneFloat* plane : {&emission.x, &emission.y, &emission.z}) plane->fill(0);
+    emission.fill(0);
 }
 
 void store_hit(const SampleView& sample, int x, int y, const Hit& hit, float reversed_depth, GBuffer& gbuffer,

@@ -10,7 +10,7 @@ namespace duet::raster {
 /// Returns the greatest distance in meters between a point of reversed depth `depth` and the plane of another point, if
 /// the two may be averaged.
 inline Floats plane_tolerance(const ScreenProjection& projection, const Floats& depth) {
-    constexpr float kPixels = 2;
+    constexpr float kPixels = 2; // widths of a pixel there
     return Floats(kPixels) * projection.pixel_size(Floats(projection.near()) / max(depth, Floats(1e-30f)));
 }
 

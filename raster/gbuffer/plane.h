@@ -35,7 +35,7 @@ public:
     const T& operator()(int x, int y) const { return row(y)[x]; }
 
 private:
-    static constexpr int kPadding = 16;
+    static constexpr int kPadding = 16; ///< values; a cache line of floats, and the widest batch
     int width_ = 0, height_ = 0, stride_ = 0;
     std::vector<T, HugePageAllocator<T>> values_;
 };
@@ -62,6 +62,7 @@ struct Planes3 {
     void set_size(int width, int height) {
         if (x.width() != width || x.height() != height) *this = Planes3(width, height);
     }
+    void fill(float value) { x.fill(value), y.fill(value), z.fill(value); }
     bool empty() const { return x.empty(); }
     std::size_t memory_bytes() const { return 3 * x.memory_bytes(); }
 

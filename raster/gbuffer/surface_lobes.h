@@ -5,7 +5,6 @@
 #include "raster/geometry/packet.h"
 
 #include <optional>
-#include <vector>
 
 namespace duet::raster {
 

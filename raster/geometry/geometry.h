@@ -7,9 +7,8 @@
 #include "raster/geometry/sphere.h"
 #include "raster/raster_scene.h"
 
-#include <vector>
-
 #include <functional>
+#include <vector>
 
 namespace duet::raster {
 

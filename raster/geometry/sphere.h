@@ -2,7 +2,8 @@
 #pragma once
 
 #include "raster/geometry/camera_rays.h"
-#include "raster/geometry/setup.h"
+#include "raster/geometry/tiles.h"
+#include "raster/geometry/transform.h"
 
 #include "common/scene/scene.h"
 

@@ -2,6 +2,7 @@
 
 #include "common/system/parallel.h"
 #include "raster/geometry/packet.h"
+#include "raster/geometry/sample_positions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +14,7 @@ namespace {
 struct Chunk {
     std::size_t object, first, last;
 };
-constexpr std::size_t kChunk = 8192;
+constexpr std::size_t kChunk = 8192; ///< most vertices of a chunk
 
 std::size_t vertex_count(const Shape& shape) {
     if (const Mesh* mesh = std::get_if<Mesh>(&shape)) return mesh->positions.size();

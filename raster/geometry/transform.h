@@ -3,7 +3,6 @@
 
 #include "common/camera/camera.h"
 #include "common/scene/scene.h"
-#include "raster/geometry/sample_positions.h"
 
 #include <array>
 #include <cstdint>

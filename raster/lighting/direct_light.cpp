@@ -185,7 +185,7 @@ private:
     /// Returns the normals of the receiver planes, which must not shade themselves. A facet that faces the light is its
     /// own receiver plane. A facet that only its shading normal turns toward the light has the shading normal instead.
     static Vec3T<Floats> receiving_normal(const LitBatch& batch, const Vec3T<Floats>& wi, const Vec3T<Floats>& facet) {
-        constexpr float kLeastCosine = 0.05f;
+        constexpr float kLeastCosine = 0.05f; // the facet turns from the light at 87 degrees
         return select(dot(facet, wi) > Floats(kLeastCosine), facet, batch.n());
     }
 

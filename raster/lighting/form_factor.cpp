@@ -3,7 +3,6 @@
 #include "common/system/error.h"
 #include "common/vec/robust.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -12,7 +11,7 @@ namespace duet {
 
 namespace {
 
-constexpr std::size_t kMaxVertices = 8;
+constexpr std::size_t kMaxVertices = 8; ///< of a polygon, before it is clipped to the hemisphere
 /// Below this ratio of extent to distance a polygon is treated as a point. The terms of Lambert's sum are of the
 /// order of this ratio and cancel down to its square. At this ratio, Lambert's sum and the far field are both
 /// accurate to about ten digits.

@@ -6,7 +6,7 @@ namespace duet::raster {
 namespace {
 
 using Lanes = xsimd::batch_bool<float>;
-constexpr float kHuge = 1e30f;
+constexpr float kHuge = 1e30f; ///< greater than all coordinates, in meters
 const Floats kNone(0.0f);
 
 /// Computes the bounding box of points or normals, one batch at a time.

@@ -20,12 +20,11 @@ struct DeferredFrame; // raster/shading/deferred.h
 struct StatisticsCollector {
     std::vector<std::pair<std::string, double>> stages; ///< wall-clock seconds of deferred shading, in order
     double transform = 0, setup = 0, bin = 0, tiles = 0, resolve = 0; ///< seconds of wall-clock time
-    std::atomic<std::int64_t> coverage_work{0}, shade_work{0};                     ///< nanoseconds, summed over threads
+    std::atomic<std::int64_t> coverage_work{0}, shade_work{0}; ///< nanoseconds, summed over threads
     std::atomic<std::size_t> tiles_done{0};                           ///< number of tiles of all passes
     CullCounts culled;                                                ///< sums over all passes
     std::size_t geometry_bytes = 0;                                   ///< maximum over the passes
-    std::size_t gbuffer_bytes =
-        0; ///< size of deferred shading's images
+    std::size_t gbuffer_bytes = 0;                                    ///< size of deferred shading's images
     std::size_t framebuffer_bytes = 0;
 
     /// Adds the times, the culled primitives and the memory of a pass.

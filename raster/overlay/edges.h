@@ -8,8 +8,6 @@
 
 #include "common/image/image.h"
 
-#include <memory>
-
 namespace duet::raster {
 
 /// Stores the G-buffer of edge detection, with one sample per pixel.

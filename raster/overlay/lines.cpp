@@ -85,7 +85,7 @@ void draw_lines(const RasterSceneData& data, const PassView& view, SampleOffset 
         TransformedObject placed;
         placed.to_pixel = object_to_pixel(object, view.pinhole, view.time);
         placed.to_pixel_transposed = transpose(placed.to_pixel);
-        constexpr std::uint32_t kRun = 4096;
+        constexpr std::uint32_t kRun = 4096; // primitives that a thread takes at once
         const std::uint32_t count = primitive_count(shape);
         parallel_for((count + kRun - 1) / kRun, threads, [&](std::size_t run) {
             const auto first = static_cast<std::uint32_t>(run) * kRun;

@@ -9,7 +9,6 @@
 #include "common/system/parallel.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace duet::raster {
 namespace {

@@ -4,7 +4,6 @@
 // Precomputed Light Field Probes", §4).
 #pragma once
 
-#include "raster/probes/probe_capture.h"
 #include "raster/probes/radiance_map.h"
 #include "raster/raster_scene.h"
 

@@ -2,6 +2,7 @@
 
 #include "raster/prepare_limits.h"
 #include "raster/probes/indirect_light.h"
+#include "raster/probes/probe_capture.h"
 #include "raster/probes/reflections.h"
 #include "raster/probes/solid_test.h"
 

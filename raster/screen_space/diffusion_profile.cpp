@@ -6,7 +6,7 @@
 namespace duet::raster {
 namespace {
 
-constexpr int kSteps = 256;
+constexpr int kSteps = 256; ///< intervals of the table between the distances 0 and kReach
 
 // Tabulates the radial distribution 1 − (exp(−r) + 3 exp(−r / 3)) / 4 at the distance r = x / cos φ, averaged over all
 // directions φ.

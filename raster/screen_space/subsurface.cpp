@@ -3,7 +3,6 @@
 #include "raster/gbuffer/neighbors.h"
 #include "raster/geometry/lane_math.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace duet::raster {

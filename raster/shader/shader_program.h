@@ -3,6 +3,7 @@
 #pragma once
 
 #include "raster/shader/linear_in_tile.h"
+#include "raster/shader/packet_shader.h"
 #include "raster/shader/packet_surface.h"
 #include "raster/shader/single_hit.h"
 #include "raster/shader/sphere_interpolation.h"

@@ -3,7 +3,7 @@
 
 #include "raster/geometry/geometry.h"
 #include "raster/geometry/sphere.h"
-#include "raster/shader/packet_shader.h"
+#include "raster/visibility/sample_packet.h"
 
 namespace duet::raster {
 

@@ -2,7 +2,6 @@
 
 #include "raster/visibility/hit_lists.h"
 
-#include "common/scene/alpha_mask.h"
 #include "common/system/parallel.h"
 
 namespace duet::raster {

@@ -1,17 +1,18 @@
 #include "raster/shading/deferred.h"
 
-#include "raster/gbuffer/gbuffer_pass.h"
 #include "raster/lighting/background.h"
-#include "raster/lighting/direct_light.h"
 #include "raster/lighting/shadow_denoiser.h"
 #include "raster/lighting/sky_light.h"
 #include "raster/probes/indirect_light.h"
 #include "raster/probes/reflections.h"
 #include "raster/probes/refraction.h"
 #include "raster/screen_space/subsurface.h"
+#include "raster/shading/blended_layers.h"
 
 #include "common/system/control.h"
 #include "common/system/stopwatch.h"
+
+#include <memory>
 
 namespace duet::raster {
 namespace {

@@ -3,14 +3,10 @@
 #pragma once
 
 #include "raster/fog/fog_grid.h"
-#include "raster/gbuffer/gbuffer.h"
-#include "raster/geometry/geometry.h"
-#include "raster/geometry/tiles.h"
+#include "raster/gbuffer/gbuffer_pass.h"
 #include "raster/lighting/direct_light.h"
 #include "raster/screen_space/gtao.h"
-#include "raster/shading/blended_layers.h"
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>

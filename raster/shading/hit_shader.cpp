@@ -44,7 +44,7 @@ LightComponentImages HitShader::shade() {
     sky.indirect_light = false;
     sky.components = {.emission = false, .direct = false, .environment = settings_.components.environment,
                       .reflection = false};
-    for (PlaneFloat* plane : {&frame_.radiance.x, &frame_.radiance.y, &frame_.radiance.z}) plane->fill(0);
+    frame_.radiance.fill(0);
     shade_gbuffer(data_, sky, {.time = time_, .background = false}, frame_);
     result.indirect = Planes3(frame_.radiance.x.width(), frame_.radiance.x.height());
     for_each_batch(result.indirect.x.width(), result.indirect.x.height(), settings_.threads, [&](int x, int y) {

@@ -4,8 +4,6 @@
 #include "raster/settings.h"
 #include "raster/shading/deferred.h"
 
-#include "common/scene/scene.h"
-
 namespace duet::raster {
 
 /// Shades one hit per pixel in the same way as Shading::kLit shades the surfaces that it rasterizes. The rays may

@@ -23,7 +23,7 @@ struct WireframeShader {
             // Without an edge, the gradient is 0 and the distance becomes very large.
             nearest = min(nearest, f.at.edges[k] * inverse_sqrt(max(steep, T(1e-24f))));
         }
-        constexpr float kHalfWidth = 0.5f;
+        constexpr float kHalfWidth = 0.5f; // pixels to each side of an edge
         return f.with_emitted(f.base_color()) * clamp(T(kHalfWidth + 0.5f) - nearest, T(0), T(1));
     }
 };

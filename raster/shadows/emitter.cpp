@@ -2,7 +2,6 @@
 
 #include "common/vec/box.h"
 
-#include <array>
 #include <cmath>
 #include <vector>
 

@@ -1,7 +1,5 @@
 #include "raster/shadows/pcf.h"
 
-#include <cmath>
-
 namespace duet::raster {
 namespace {
 

@@ -30,7 +30,7 @@ public:
 
     std::size_t memory_bytes() const;
 
-    static constexpr int kSearchTaps = 4, kFilterTaps = 4;
+    static constexpr int kSearchTaps = 4, kFilterTaps = 4; ///< per pixel; a block of 4 × 4 pixels has 64 of each
 
 private:
     struct Receiver;

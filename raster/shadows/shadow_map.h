@@ -13,14 +13,12 @@ public:
     /// Renders the depths of all objects but `excluded`, or of all if it is kNoObject, into side × side texels.
     ShadowMap(const RasterSceneData& data, const Camera& camera, int side, int threads, std::uint32_t excluded);
 
-    static constexpr double kFilterRadius = 1.5; ///< texels to each side over which a lookup blurs an edge
-    static constexpr double kMargin = 2.5;       ///< texels that a lookup needs around its position
+    static constexpr double kMargin = 2.5; ///< texels that a lookup needs around its position
 
     const Pinhole& view() const { return view_; }
     bool orthographic() const { return orthographic_; }
     int side() const { return reversed_depth_.width(); }
-    /// Returns the reversed depth, near / depth, at a texel's center; 0 where nothing is visible.
-    float reversed_depth(int x, int y) const { return reversed_depth_(x, y); }
+    /// Returns the reversed depths, near / depth, at the texels' centers; 0 where nothing is visible.
     const ImageFloat& reversed_depth() const { return reversed_depth_; }
     double near() const { return view_.near; }
     /// Returns whether alpha-blended casters are dithered over 4 × 4 texels (raster/visibility/depth_image.h).

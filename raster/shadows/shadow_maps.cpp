@@ -37,12 +37,6 @@ bool is_floor(const Scene& scene, std::uint32_t object, Vec3 sun_direction) {
     return lowest > -kFloor * length(Vec3d(box.diagonal()));
 }
 
-bool only_emits(const Scene& scene, std::uint32_t object) {
-    return std::ranges::all_of(scene.objects[object].materials, [&](std::uint32_t material) {
-        return emitter(scene.materials[material]) != nullptr;
-    });
-}
-
 /// Returns the points that the scene's camera sees, from a low-resolution depth image.
 std::vector<VisiblePoint> visible_points(const RasterSceneData& data, int threads) {
     const Scene& scene = data.scene;
@@ -93,7 +87,7 @@ std::vector<Emitter> pieces(const Emitter& emitter, int n) {
 Shadows::Shadows(const RasterSceneData& data, const RasterSettings& settings)
     : scene_(data.scene), scene_size_(static_cast<double>(length(data.scene.bounds.diagonal())) + 1e-30),
       side_(PrepareLimits(data.scene).shadow_map_side(settings.shadow_map_side)), cube_side_(side_ / 2) {
-    sources_ = find_sources(scene_, settings.shadow_cells);
+    sources_ = find_sources(data, settings.shadow_cells);
     const Camera& camera = scene_.camera;
     const bool moving = scene_.needs.motion && settings.samples_per_pixel > 1 &&
         camera.shutter_open != camera.shutter_close;
@@ -146,7 +140,9 @@ void Shadows::fit_sides(const RasterSceneData& data, const std::vector<VisiblePo
     fit(cube_side_, 6 * cubes, kCubeTexels);
 }
 
-std::vector<Shadows::Source> Shadows::find_sources(const Scene& scene, int cells) {
+std::vector<Shadows::Source> Shadows::find_sources(const RasterSceneData& data, int cells) {
+    const Scene& scene = data.scene;
+    const auto only_emits = [&](std::uint32_t object) { return std::ranges::binary_search(data.emitters, object); };
     std::vector<Source> sources;
     std::map<std::pair<std::uint32_t, std::array<long, 4>>, std::vector<std::size_t>> groups;
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
@@ -154,14 +150,14 @@ std::vector<Shadows::Source> Shadows::find_sources(const Scene& scene, int cells
         if (surface == nullptr) {
             sources.push_back({{i}, {}, false, {}});
         } else {
-            const bool emits_only = only_emits(scene, surface->object);
+            const bool emits_only = only_emits(surface->object);
             groups[{surface->object, emits_only ? std::array<long, 4>{} : plane_key(*surface, scene_size_)}].push_back(
                 i);
         }
     }
     for (auto& [key, lights] : groups) {
         const std::vector<SurfaceLight> surfaces = surface_lights(scene, lights);
-        sources.push_back({std::move(lights), pieces(Emitter::of(surfaces), cells), only_emits(scene, key.first), {}});
+        sources.push_back({std::move(lights), pieces(Emitter::of(surfaces), cells), only_emits(key.first), {}});
     }
     if (sources.size() <= kMaxSources) return sources;
     const float radius = static_cast<float>(scene_size_ / 2);

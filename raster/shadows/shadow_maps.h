@@ -51,12 +51,12 @@ public:
     /// Returns the index of the moment whose maps are used at a time.
     std::size_t moment_at(float time) const;
 
-    static constexpr int kMoments = 8;
-    static constexpr std::size_t kMaxSources = 64;
+    static constexpr int kMoments = 8; ///< evenly spaced in the shutter interval
+    static constexpr std::size_t kMaxSources = 64; ///< UnblockedTiles has one bit per source
     static constexpr int kMaxCells = 8; ///< cells along each side of a light, at most
 
 private:
-    std::vector<Source> find_sources(const Scene& scene, int cells);
+    std::vector<Source> find_sources(const RasterSceneData& data, int cells);
     /// `visible` holds the points visible to the scene's camera if there is a sun.
     std::vector<Camera> views_of(const RasterSceneData& data, const std::vector<VisiblePoint>& visible,
                                  const Source& source) const;

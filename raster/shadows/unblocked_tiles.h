@@ -27,7 +27,7 @@ public:
     }
 
     static constexpr int kSide = 32; ///< pixels along a side
-    static constexpr std::size_t kMostCasters = 128;
+    static constexpr std::size_t kMostCasters = 128; ///< objects and quads; each tile tests all of them
 
 private:
     std::size_t tile(int x, int y) const {

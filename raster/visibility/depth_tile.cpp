@@ -230,7 +230,7 @@ void DepthTile::draw(const DrawTriangle& triangle, const UnclippedTriangles& who
                     [&](std::size_t i) { return reversed_depth.at(0, i); });
     if (covered.some != covered.well_inside)
         draw_edge_samples(triangle, whole, block, covered.some & ~covered.well_inside);
-    constexpr std::uint8_t kOften = 16;
+    constexpr std::uint8_t kOften = 16; // draws after which the bound is worth its computation
     if (covered.all_well_inside() || ++draws_since_farthest_[block] >= kOften) update_farthest(block);
 }
 

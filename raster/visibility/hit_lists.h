@@ -62,7 +62,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t kStored = 8;
+    static constexpr std::size_t kStored = 8; ///< hits of a pixel in one pass over the tile
     struct Pixel {
         std::array<Hit, kStored> nearest;
         std::uint32_t count = 0;

@@ -1,7 +1,6 @@
 #include "raster/visibility/packet_primitives.h"
 
 #include <algorithm>
-#include <bit>
 
 namespace duet::raster {
 

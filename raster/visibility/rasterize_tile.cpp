@@ -23,7 +23,7 @@ void draw(const DrawSphere& sphere, const PassView& view, DepthTile& tile) {
 template <typename Item, typename Draw>
 void draw_all(const Geometry& geometry, std::span<const TileLists::Item> lists, std::vector<Item> Batch::*items,
               std::vector<std::uint32_t> Batch::*order, const Draw& draw_one) {
-    constexpr std::uint32_t kAhead = 8;
+    constexpr std::uint32_t kAhead = 8; // items between a prefetch and its use
     const auto item = [&](const TileLists::Item& list, std::uint32_t k) -> const Item& {
         const Batch& batch = geometry.batches[list.batch];
         return (batch.*items)[(batch.*order)[list.first + k]];

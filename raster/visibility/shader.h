@@ -24,7 +24,6 @@
 
 #include <bit>
 #include <concepts>
-#include <cstring>
 #include <limits>
 #include <optional>
 #include <span>

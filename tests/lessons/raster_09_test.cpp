@@ -68,7 +68,7 @@ TEST_SUITE("lesson") {
             int different = 0, seen = 0;
             for (int y = 0; y < kMapSide; ++y)
                 for (int x = 0; x < kMapSide; ++x) {
-                    const double reversed_depth = static_cast<double>(library.reversed_depth(x, y));
+                    const double reversed_depth = static_cast<double>(library.reversed_depth()(x, y));
                     const double d = static_cast<double>(map.depth(x, y)) * map.size;
                     const bool nothing = reversed_depth == 0 || !(d > 1e-3);
                     if (nothing && std::isinf(map.depth(x, y)) && reversed_depth == 0) continue;

@@ -41,7 +41,7 @@ TEST_SUITE("unit") {
                     const bool even = (static_cast<int>(x / cell) + static_cast<int>(z / cell)) % 2 == 0;
                     return even ? min(to_line(x), to_line(z)) : -min(to_line(x), to_line(z));
                 },
-                (raster::ShadowMap::kFilterRadius + 1) * texel, 8 * 4 * cell, texel / 2);
+                (kFilterRadius + 1) * texel, 8 * 4 * cell, texel / 2);
         }
     }
 

@@ -9,6 +9,8 @@ namespace duet::test {
 
 inline constexpr int kSize = 200;      ///< pixels
 inline constexpr double kSquare = 4.0; ///< side of the visible part of the floor, in meters
+/// A shadow map lookup blurs an edge over this many texels to each side, half of the B-spline's width.
+inline constexpr double kFilterRadius = 1.5;
 
 /// Returns a view straight down at [−2, 2]² of the floor, from below all shadow casters.
 inline View over_floor(double height = 0.25) {

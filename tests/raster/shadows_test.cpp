@@ -34,7 +34,7 @@ TEST_SUITE("unit") {
         const double texel = 2 * height / (settings.shadow_map_side / 2 - 8);
         check_outline(
             visible(scene, over_floor(), settings), [&](Vec3d p) { return edge - length(p); },
-            (raster::ShadowMap::kFilterRadius + 1) * texel, 2 * kPiDouble * edge, texel / 2);
+            (kFilterRadius + 1) * texel, 2 * kPiDouble * edge, texel / 2);
     }
 
     TEST_CASE("a square under a slanting sun and in a spot's cone: its shadow is where the light's rays take it") {
@@ -59,7 +59,7 @@ TEST_SUITE("unit") {
                     const Vec3d d = abs(p - middle);
                     return half - max(d.x, d.z);
                 },
-                (raster::ShadowMap::kFilterRadius + 1) * texel, 8 * half, texel / 2);
+                (kFilterRadius + 1) * texel, 8 * half, texel / 2);
         }
     }
 
