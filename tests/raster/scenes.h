@@ -78,10 +78,17 @@ inline raster::RasterSettings direct_light_only(raster::RasterSettings settings 
     return settings;
 }
 
-inline raster::RasterSettings hits_only() {
+/// Returns settings for an image of this shading and its hits.
+inline raster::RasterSettings with_hits(raster::Shading shading = raster::Shading::kLit) {
     raster::RasterSettings settings;
-    settings.shading = raster::Shading::kDepth;
-    settings.aovs.hit = settings.aovs.depth = true;
+    settings.shading = shading;
+    settings.aovs.hit = true;
+    return settings;
+}
+
+inline raster::RasterSettings hits_only() {
+    raster::RasterSettings settings = with_hits(raster::Shading::kDepth);
+    settings.aovs.depth = true;
     return settings;
 }
 
