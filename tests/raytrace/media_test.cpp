@@ -1,13 +1,9 @@
-// These tests check paths in media against closed forms and independent numerical integrals. Where a comparison is
+// These tests check images of media against closed forms and independent numerical integrals. Where a comparison is
 // statistical, the estimate has ten seeds: it fails by chance if it is off by six standard errors, once in 5,000 times.
-#include "raytrace/integrator/medium_sampling.h"
-#include "raytrace/integrator/scattered_light.h"
-
 #include "common/image/bitwise_equal.h"
-#include "common/medium/density_grid.h"
-#include "common/sampling/hash.h"
 #include "tests/raytrace/estimates.h"
 #include "tests/raytrace/h_function.h"
+#include "tests/raytrace/media.h"
 #include "tests/raytrace/scene_builder.h"
 
 #include <doctest/doctest.h>
@@ -16,28 +12,6 @@ using namespace duet;
 using namespace duet::raytrace;
 
 namespace {
-
-Medium fog(const Box3& box, Rgb scattering, Rgb absorption, float asymmetry = 0) {
-    Medium medium;
-    medium.box = box;
-    medium.scattering = scattering;
-    medium.absorption = absorption;
-    medium.asymmetry = asymmetry;
-    return medium;
-}
-
-/// Returns a medium whose density is highest in the middle of its box and 0 on its sides.
-Medium bell(const Box3& box, float scattering, float absorption = 0) {
-    constexpr int kPoints = 21;
-    std::vector<float> densities;
-    const auto height = [](int i) { return std::sin(kPi * static_cast<float>(i) / (kPoints - 1)); };
-    for (int z = 0; z < kPoints; ++z)
-        for (int y = 0; y < kPoints; ++y)
-            for (int x = 0; x < kPoints; ++x) densities.push_back(std::max(height(x) * height(y) * height(z), 0.0f));
-    Medium medium = fog(box, Rgb(scattering), Rgb(absorption));
-    medium.density = std::make_shared<const DensityGrid>(std::array{kPoints, kPoints, kPoints}, std::move(densities));
-    return medium;
-}
 
 /// Returns a scene whose camera looks along −z from z = 3·scale, through so narrow an angle that all pixels see the
 /// same.
@@ -49,8 +23,6 @@ SceneBuilder looking_down_z(float scale = 1) {
     builder.material(Diffuse{{Rgb(0.0f)}}); // a scene has a material
     return builder;
 }
-Box3 cube(float half) { return {Vec3(-half, -half, -half), Vec3(half, half, half)}; }
-
 PathTracerSettings path_settings(int samples, int depth = 64) {
     PathTracerSettings settings;
     settings.samples_per_pixel = samples;
@@ -65,17 +37,6 @@ void check_close(const Estimate& found, double truth, double tolerance = 1e-5) {
     CHECK(std::abs(found.mean - truth) < 6 * found.error + tolerance * std::abs(truth));
     CHECK(found.error < 5e-3 * truth);
 }
-
-/// Holds means of a weight and their standard errors.
-class WeightMean {
-public:
-    void add(double x) { ++count_, sum_ += x, squares_ += x * x; }
-    double mean() const { return sum_ / count_; }
-    double error() const { return std::sqrt(std::max(squares_ / count_ - sqr(mean()), 0.0) / count_); }
-
-private:
-    double count_ = 0, sum_ = 0, squares_ = 0;
-};
 
 /// Returns the radiance that a fog without bounds within ±half of z scatters from a point light toward the camera, by
 /// the midpoint rule: ∫ σs p(cos θ) exp(−σt (t + r)) I / r² dt.
@@ -139,202 +100,6 @@ TEST_SUITE("unit") {
         CHECK(static_cast<double>(color.g) == doctest::Approx(std::exp(-0.6)).epsilon(1e-5));
     }
 
-    TEST_CASE("A collision's weights have the mean of the exact integrals") {
-        // Of one channel each: what arrives is exp(−(σs + σa) d), what is scattered is σs/(σs + σa) (1 − exp(…)).
-        const Rgb cases[][2] = {{Rgb(0.5f), Rgb(0.0f)},
-                                {Rgb(0.5f), Rgb(0.25f, 0.5f, 0)},
-                                {Rgb(2, 0.5f, 0.1f), Rgb(0.0f, 0.1f, 0.4f)},
-                                {Rgb(0.0f, 1e-3f, 1e6f), Rgb(1e-6f, 0.0f, 1)},
-                                {Rgb(1, 0.999f, 1e-3f), Rgb(0.5f)}};
-        const float distance = 1.5f;
-        std::uint64_t seed = 0;
-        for (const auto& [scattering, absorption] : cases) {
-            ++seed;
-            CAPTURE(seed);
-            // Two media, one of which is thinner than the distance, have the same sum there.
-            const std::vector<Medium> media = {
-                fog({Vec3(-1, -1, -1), Vec3(1, 1, distance)}, scattering * 0.25f, absorption),
-                fog(Medium::unbounded(), scattering * 0.75f, Rgb(0.0f), 0.5f)};
-            WeightMean arrived[3], scattered[3];
-            WeightMean asymmetry;
-            for (std::uint64_t i = 0; i < 200000; ++i) {
-                Rgb throughput(1, 0.5f, 2), emitted;
-                const float u = unit_float(high_bits(stream_number(mix_bits(seed), i)));
-                MediaOnRay on_ray(media, Ray{{0, 0, 0}, {0, 0, 1}}, distance);
-                const auto collision = sample_collision(on_ray, u, throughput, emitted);
-                CHECK(is_black(emitted));
-                if (collision) CHECK((collision->t >= 0 && collision->t <= distance));
-                if (collision) asymmetry.add(static_cast<double>(collision->asymmetry));
-                for (std::size_t c = 0; c < 3; ++c) {
-                    const double weight = static_cast<double>(throughput[c] / Rgb(1, 0.5f, 2)[c]);
-                    arrived[c].add(collision ? 0 : weight);
-                    scattered[c].add(collision ? weight : 0);
-                }
-            }
-            for (std::size_t c = 0; c < 3; ++c) {
-                CAPTURE(c);
-                const double s = static_cast<double>(scattering[c]),
-                             extinction = s + static_cast<double>(absorption[c]);
-                const double through = std::exp(-extinction * static_cast<double>(distance));
-                const double lost =
-                    extinction > 0 ? s / extinction * -std::expm1(-extinction * static_cast<double>(distance)) : 0;
-                // One of these 30 comparisons fails by chance once in 58,000 times.
-                CHECK(std::abs(arrived[c].mean() - through) <= 5 * arrived[c].error() + 1e-5 * through);
-                CHECK(std::abs(scattered[c].mean() - lost) <= 5 * scattered[c].error() + 1e-5 * lost);
-            }
-            CHECK(std::abs(asymmetry.mean() - 0.375) < 5 * asymmetry.error());
-        }
-    }
-
-    TEST_CASE("Distances of scattered light have their density") {
-        const Ray ray{{1, -2, 0.5f}, {0, 0, 1}};
-        // A cloud is denser in its middle; the fog overlaps it.
-        const Medium cloud = bell(cube(4), 1.0f), haze = fog({{-9, -9, 2}, {9, 9, 6}}, Rgb(0.1f), Rgb(0.1f));
-        const Medium colored = fog(Medium::unbounded(), Rgb(3, 0.03f, 0.0f), Rgb(0.0f, 0.01f, 0.0f));
-        const auto even = [](float extinction) { return fog(Medium::unbounded(), Rgb(extinction), Rgb(0.0f)); };
-        struct {
-            std::optional<Vec3> light;
-            Interval range;
-            std::vector<Medium> media;
-        } const cases[] = {{Vec3(2, 0, 3), {0.5f, 8}, {even(1e-6f)}},
-                           {Vec3(1, -2, 3), {0, 5}, {even(0.2f)}},
-                           {Vec3(1, -2.01f, 3), {2, kInfinity}, {even(3)}},
-                           {Vec3(1000, 0, 0), {4, 4.001f}, {even(1e-6f)}},
-                           {Vec3(1, 3, -1e4f), {0, kInfinity}, {even(1e-6f)}},
-                           {Vec3(1, -1, 1e6f), {0, 1}, {even(50)}},
-                           {std::nullopt, {0.1f, 5}, {even(2)}},
-                           {std::nullopt, {0, 3.4f}, {cloud}},
-                           {Vec3(0.5f, -2, 1), {0.2f, 3}, {cloud}},
-                           {std::nullopt, {0, 5.4f}, {cloud, haze}},
-                           {std::nullopt, {0, 5}, {colored}}};
-        for (std::size_t i = 0; i < std::size(cases); ++i) {
-            CAPTURE(i);
-            const auto& [light, range, media] = cases[i];
-            MediaOnRay on_ray(media, ray, range.end);
-            StoppedDistance stopped(on_ray, range);
-            REQUIRE(stopped.possible());
-            std::optional<EquiangularDistance> angle;
-            if (light) angle.emplace(ray, range, *light);
-            ScatteringDistance distance(stopped, angle);
-            constexpr int kSamples = 20000;
-            std::vector<float> samples;
-            for (int k = 0; k < kSamples; ++k)
-                if (const float t = distance.sample((static_cast<float>(k) + 0.5f) / kSamples); t < kInfinity)
-                    samples.push_back(t);
-            CHECK(samples.size() > 0.98 * kSamples); // a medium that stops 98 % may leave the rest without a sample
-            std::vector<float> sorted = samples;
-            std::sort(sorted.begin(), sorted.end());
-            CHECK(sorted.front() >= range.begin);
-            CHECK(sorted.back() <= range.end);
-            // The mean of 1/pdf over the samples below a limit is the length up to there.
-            for (const std::size_t rank : {5000u, 10000u, 15000u, 19000u}) {
-                CAPTURE(rank);
-                double total = 0;
-                for (const float t : samples)
-                    if (t <= sorted[rank]) total += 1.0 / static_cast<double>(distance.at(t).pdf) / kSamples;
-                CHECK(total == doctest::Approx(static_cast<double>(sorted[rank] - range.begin)).epsilon(0.02));
-                const Rgb exact = transmittance(media, ray, sorted[rank]);
-                CHECK(distance.at(sorted[rank]).transmittance.g == doctest::Approx(exact.g).epsilon(1e-4));
-            }
-        }
-    }
-
-    TEST_CASE("Transmittance by Russian roulette has the mean of the exact one") {
-        Medium cloud = bell(cube(1), 1);
-        cloud.scattering = Rgb(2, 6, 3);
-        cloud.absorption = Rgb(1, 0.5f, 0.0f);
-        for (const float scale : {0.1f, 1.0f, 3.0f}) {
-            CAPTURE(scale);
-            Medium scaled = cloud;
-            scaled.scattering = cloud.scattering * scale;
-            const Medium media[] = {scaled, fog(cube(2), Rgb(0.1f), Rgb(0.0f))};
-            const Ray ray{{0.2f, -0.1f, -1}, {0, 0, 1}};
-            const Rgb exact = transmittance(media, ray, 2);
-            WeightMean found[3];
-            for (std::uint64_t i = 0; i < 100000; ++i) {
-                const float u = unit_float(high_bits(stream_number(mix_bits(12), i)));
-                const Rgb estimate = estimate_transmittance(media, ray, 2, u);
-                for (std::size_t c = 0; c < 3; ++c) found[c].add(static_cast<double>(estimate[c]));
-            }
-            // One of these 9 comparisons fails by chance once in 190,000 times.
-            for (std::size_t c = 0; c < 3; ++c)
-                CHECK(std::abs(found[c].mean() - static_cast<double>(exact[c])) <=
-                      5 * found[c].error() + 1e-5 * static_cast<double>(exact[c]));
-        }
-    }
-
-    TEST_CASE("A collision's weights have the mean of the exact integrals in a cloud, too") {
-        // What is scattered along a ray depends on the column alone: σs/(σs + σa) (1 − exp(−(σs + σa) column)).
-        Medium cloud = bell(cube(1), 1);
-        cloud.scattering = Rgb(3, 1, 0.2f);
-        cloud.absorption = Rgb(0.0f, 0.5f, 2);
-        const Medium media[] = {cloud};
-        const Ray ray{{0.2f, -0.1f, -1}, {0, 0, 1}};
-        const double column = static_cast<double>(column_of(cloud, ray.origin, ray.direction, Interval{0, 2}));
-        WeightMean arrived[3], scattered[3];
-        double density = 0, mean_density = 0;
-        constexpr int kSamples = 200000;
-        for (std::uint64_t i = 0; i < kSamples; ++i) {
-            Rgb throughput(1, 1, 1), emitted;
-            const float u = unit_float(high_bits(stream_number(mix_bits(9), i)));
-            MediaOnRay on_ray(media, ray, 3);
-            const auto collision = sample_collision(on_ray, u, throughput, emitted);
-            for (std::size_t c = 0; c < 3; ++c) {
-                arrived[c].add(collision ? 0 : static_cast<double>(throughput[c]));
-                scattered[c].add(collision ? static_cast<double>(throughput[c]) : 0);
-            }
-            if (collision) density += static_cast<double>(throughput.g * density_at(cloud, ray.at(collision->t)));
-        }
-        for (std::size_t c = 0; c < 3; ++c) {
-            const double s = static_cast<double>(cloud.scattering[c]),
-                         sigma = s + static_cast<double>(cloud.absorption[c]);
-            const double through = std::exp(-sigma * column), lost = s / sigma * (1 - through);
-            // One of these 6 comparisons fails by chance once in 290,000 times.
-            CHECK(std::abs(arrived[c].mean() - through) <= 5 * arrived[c].error() + 1e-5 * through);
-            CHECK(std::abs(scattered[c].mean() - lost) <= 5 * scattered[c].error() + 1e-5 * lost);
-        }
-        // Where it is scattered: ∫ σs ρ² exp(−σ column(t)) dt by the midpoint rule.
-        constexpr int kSteps = 2000;
-        for (int i = 0; i < kSteps; ++i) {
-            const float t = 2 * (static_cast<float>(i) + 0.5f) / kSteps;
-            const double rho = static_cast<double>(density_at(cloud, ray.at(t)));
-            const double before = static_cast<double>(column_of(cloud, ray.origin, ray.direction, Interval{0, t}));
-            mean_density += rho * rho * std::exp(-1.5 * before) * 2 / kSteps;
-        }
-        CHECK(density / kSamples == doctest::Approx(mean_density).epsilon(0.01));
-    }
-
-    TEST_CASE("What overlapping media emit has the mean of its integral") {
-        // Each alone has a closed form; together they need a sample. The truth is a sum over short steps.
-        Medium flame = bell(cube(1), 0.5f, 2), glow = fog({{-1, -1, -0.5f}, {1, 1, 1}}, Rgb(1, 0.2f, 0.0f), Rgb(0.5f));
-        flame.radiance = Rgb(1, 2, 0.5f);
-        glow.radiance = Rgb(0.5f, 0.0f, 1);
-        const Medium media[] = {flame, glow};
-        const Ray ray{{0.2f, -0.1f, -1}, {0, 0, 1}};
-        WeightMean found[3];
-        for (std::uint64_t i = 0; i < 100000; ++i) {
-            Rgb throughput(1, 1, 1), emitted;
-            MediaOnRay on_ray(media, ray, 2);
-            sample_collision(on_ray, unit_float(high_bits(stream_number(mix_bits(10), i))), throughput, emitted);
-            for (std::size_t c = 0; c < 3; ++c) found[c].add(static_cast<double>(emitted[c]));
-        }
-        Rgbd truth;
-        constexpr int kSteps = 4000;
-        for (int i = 0; i < kSteps; ++i) {
-            const float t = 2 * (static_cast<float>(i) + 0.5f) / kSteps;
-            const Rgbd through(transmittance(media, ray, t));
-            for (const Medium& medium : media) {
-                if (!medium.box.contains(ray.at(t))) continue;
-                const double density = static_cast<double>(density_at(medium, ray.at(t)));
-                truth += through * Rgbd(medium.absorption * medium.radiance) * (density * 2 / kSteps);
-            }
-        }
-        for (std::size_t c = 0; c < 3; ++c) {
-            CHECK(std::abs(found[c].mean() - truth[c]) < 5 * found[c].error() + 1e-3 * truth[c]);
-            CHECK(found[c].error() < 0.01 * truth[c]);
-        }
-    }
-
     TEST_CASE("Images with media have the same bits for any number of threads") {
         SceneBuilder builder = looking_down_z();
         builder.scene.camera.fov_degrees = 60;
@@ -345,12 +110,12 @@ TEST_SUITE("unit") {
         builder.scene.media = {fog(cube(1.5f), Rgb(0.4f, 0.2f, 0.1f), Rgb(0.1f), 0.6f),
                                fog(cube(1), Rgb(0.2f), Rgb(0.0f)), bell(cube(0.7f), 3)};
         const Scene scene = builder.finish();
-        PathTracerSettings one = path_settings(4), three = path_settings(4);
-        one.threads = 1;
-        three.threads = 3;
-        const ImageRgb a = render_scene(scene, 40, one).radiance, b = render_scene(scene, 40, three).radiance;
-        CHECK(bitwise_equal(a, b));
-        for (const Rgb& pixel : a) CHECK(is_finite(pixel));
+        PathTracerSettings settings = path_settings(4);
+        settings.threads = 1;
+        const ImageRgb one = render_scene(scene, 40, settings).radiance;
+        settings.threads = 3;
+        CHECK(bitwise_equal(one, render_scene(scene, 40, settings).radiance));
+        for (const Rgb& pixel : one) CHECK(is_finite(pixel));
     }
 }
 
@@ -449,8 +214,7 @@ TEST_SUITE("statistical") {
                 builder.add(Sphere{{-0.6f, 0.3f, 0}, 0.3f}, builder.material(Dielectric{1.5f, {Rgb(1.0f)}}));
                 builder.scene.media = {fog(cube(1), Rgb(0.5f * scattering, scattering, 0.0f), Rgb(0.0f), g)};
                 builder.scene.environment = ConstantEnvironment{Rgb(1.0f)};
-                PathTracerSettings settings = path_settings(64, 1000);
-                check_close(estimate(builder.finish(), 16, settings), 1);
+                check_close(estimate(builder.finish(), 16, path_settings(64, 1000)), 1);
             }
     }
 
