@@ -82,8 +82,8 @@ class Runner:
     def generate(self, mesh):
         """Makes models/generated/MESH.obj if it is missing: the build makes only those that scenes name."""
         if not (self.source / "models" / "generated" / f"{mesh}.obj").exists():
-            subprocess.run([self.programs / "generate", "models", mesh], cwd=self.source, stdout=subprocess.DEVNULL,
-                           check=True)
+            subprocess.run([self.programs / "tools" / "generate", "models", mesh], cwd=self.source,
+                           stdout=subprocess.DEVNULL, check=True)
 
     def measure(self, command, file, output, target):
         stats = file.with_suffix(".stats")

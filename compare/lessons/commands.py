@@ -105,7 +105,7 @@ class Commands:
             return self.of_build(words)
         if name in ("sh", "bash", "python3"):
             return self.of_script(rest)
-        program = re.fullmatch(r"(?:\./)?build/([\w-]+)/bin/([\w-]+)", name)
+        program = re.fullmatch(r"(?:\./)?build/([\w-]+)/bin/((?:tools/)?[\w-]+)", name)
         if program or name in PROGRAMS:
             return self.of_program(program, name, rest) + self.of_files(rest)
         lesson = re.fullmatch(r"(?:\.\./)?build/[\w-]+/lessons/bin/lesson_(\w+-\d\d)_program", name)
@@ -145,12 +145,13 @@ class Commands:
     def of_program(self, program, name, words):
         if program and program.group(1) not in self.folders:
             return [f"'{name}': no such preset"]
-        short = program.group(2) if program else name
+        short = name.split("/")[-1]
         if short not in targets(self.source):
             return [f"'{name}': the build has no program of that name"]
-        if not self.programs or not (self.programs / short).exists():
+        path = self.programs and self.programs / (program.group(2) if program else name)
+        if not path or not path.exists():
             return []
-        path, subcommand = str(self.programs / short), []
+        path, subcommand = str(path), []
         if words and re.fullmatch(r"[a-z-]+", words[0]) and help_of(path, words[0]):
             subcommand = [words[0]]
         elif short == "compare" and words and not words[0].startswith("-"):
