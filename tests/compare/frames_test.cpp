@@ -1,12 +1,10 @@
 #include "compare/frames/frames.h"
 
 #include "common/system/file.h"
+#include "tests/support/scratch.h"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
-
-#include <fstream>
-#include <unistd.h>
 
 using namespace duet;
 using namespace duet::compare;
@@ -91,8 +89,7 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("rows are written as JSON") {
-        const fs::path folder = fs::temp_directory_path() / ("duet-frames-" + std::to_string(getpid()));
-        fs::create_directories(folder);
+        const test::ScratchFolder folder;
         FramesOptions options;
         options.files = {kMesh, kScene};
         options.views = {FrameView::kWhole};
@@ -101,12 +98,11 @@ TEST_SUITE("unit") {
         options.settings.repeats = 2;
         options.settings.burst_seconds = 1e-4;
         options.settings.no_peer = true;
-        options.folder = folder;
+        options.folder = folder.path();
         options.stats = (folder / "rows.json").string();
         options.quiet = true;
         CHECK(frames(options) == 0);
-        std::ifstream file(folder / "rows.json");
-        const nlohmann::json all = nlohmann::json::parse(file), &rows = all.at("rows");
+        const nlohmann::json all = nlohmann::json::parse(read_file(folder / "rows.json")), &rows = all.at("rows");
         REQUIRE(rows.size() == 2);
         CHECK(rows[0].at("work") == "phong");
         CHECK(rows[1].at("work") == "depth");
@@ -127,6 +123,5 @@ TEST_SUITE("unit") {
         CHECK(row.at("stages").at("direct light and shadows").get<double>() > 0);
         CHECK(row.at("stages").at("other").get<double>() > 0); // no stage counts twice
         CHECK(fs::exists(folder / "cornell-lit.png"));
-        fs::remove_all(folder);
     }
 }

@@ -1,6 +1,7 @@
 // Lesson raytrace-01: the library's vectors have the values that were computed by hand, and its files are the lesson's.
 #include "common/image/image_file.h"
 #include "common/image/srgb.h"
+#include "tests/support/scratch.h"
 
 #include <doctest/doctest.h>
 
@@ -36,8 +37,8 @@ TEST_SUITE("lesson") {
         CHECK(srgb_encode_8bit(-1) == 0);
         ImageRgb image(3, 2);
         for (std::size_t i = 0; i < image.size(); ++i) image[i] = Rgb(0.5f, 0.25f, static_cast<float>(i) / 5);
-        const auto folder = std::filesystem::temp_directory_path();
-        const auto text = folder / "duet_raytrace_01_p3.ppm", binary = folder / "duet_raytrace_01_p6.ppm";
+        const test::ScratchFolder folder;
+        const auto text = folder / "p3.ppm", binary = folder / "p6.ppm";
         write_image(text, image, {.ascii_ppm = true});
         write_image(binary, image);
         CHECK(std::filesystem::file_size(binary) ==
@@ -46,6 +47,5 @@ TEST_SUITE("lesson") {
         for (std::size_t i = 0; i < image.size(); ++i)
             CHECK(read_image(text)[i] ==
                   Rgb(srgb_decode_8bit(188), srgb_decode_8bit(137), srgb_decode_8bit(srgb_encode_8bit(image[i].b))));
-        std::filesystem::remove(text), std::filesystem::remove(binary);
     }
 }

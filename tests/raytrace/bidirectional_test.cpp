@@ -1,19 +1,16 @@
 // These tests compare bidirectional path tracing with the path tracer: both must converge to the same image, whatever
-// emits, scatters and moves. Its parts are checked against closed forms.
+// emits, scatters and moves.
 #include "common/image/bitwise_equal.h"
 #include "common/system/error.h"
 #include "raytrace/bidirectional/bidirectional_pass.h"
-#include "raytrace/bidirectional/camera_projection.h"
 #include "raytrace/bidirectional/light_emission.h"
-#include "raytrace/bidirectional/photon_map.h"
 #include "tests/raytrace/estimates.h"
 #include "tests/raytrace/scene_builder.h"
+#include "tests/support/scratch.h"
 
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <atomic>
-#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -161,6 +158,32 @@ PathTracerSettings bidirectional(int samples, Integrator integrator = Integrator
     return settings;
 }
 
+/// Names an integrator, and says with how many samples its image is compared with the path tracer's.
+struct Comparison {
+    Integrator integrator;
+    int size, path_samples, samples;
+    double largest_error; ///< standard error of the image's mean, relative
+};
+
+/// Compares an image's mean with the path tracer's. The bound is six standard errors of the difference over ten seeds
+/// each, which is exceeded by chance once in 90,000 times, and this fraction of the mean.
+void check_converges(const Scene& scene, int depth, const Comparison& comparison, double tolerance) {
+    PathTracerSettings settings;
+    settings.max_depth = depth;
+    settings.samples_per_pixel = comparison.path_samples;
+    const Estimate path = estimate(scene, comparison.size, settings);
+    settings.integrator = comparison.integrator;
+    settings.samples_per_pixel = comparison.samples;
+    const Estimate found = estimate(scene, comparison.size, settings);
+    CAPTURE(depth);
+    CAPTURE(path.mean);
+    CAPTURE(path.error);
+    CAPTURE(found.mean);
+    CAPTURE(found.error);
+    CHECK(std::abs(path.mean - found.mean) < 6 * std::hypot(path.error, found.error) + tolerance * path.mean);
+    CHECK(found.error < comparison.largest_error * found.mean);
+}
+
 } // namespace
 
 TEST_SUITE("unit") {
@@ -174,48 +197,14 @@ TEST_SUITE("unit") {
             settings.threads = 3;
             CHECK(bitwise_equal(one, render_scene(scene, 80, settings).radiance));
 
-            settings.film = std::filesystem::temp_directory_path() / "duet_bidirectional_test.exr";
-            std::filesystem::remove(settings.film);
+            const test::ScratchFolder folder;
+            settings.film = folder / "film.exr";
             for (const int samples : {1, 4, 6}) {
                 settings.samples_per_pixel = samples;
                 const ImageRgb image = render_scene(scene, 80, settings).radiance;
                 CHECK(bitwise_equal(one, image) == (samples == 6));
             }
-            std::filesystem::remove(settings.film);
         }
-    }
-
-    // Photons lie in clusters, on cell boundaries, at the same place, and far from the origin.
-    TEST_CASE("the photon map finds each photon within the radius once, whatever the number of threads") {
-        for (const float scale : {1e-6f, 1.0f, 1e6f})
-            for (const int count : {0, 1, 5000}) {
-                std::vector<Photon> photons;
-                Sampler sampler(SamplerKind::kIndependent, 5, 1);
-                for (int i = 0; i < count; ++i) {
-                    sampler.start(0, 0, static_cast<std::uint32_t>(i));
-                    const auto u = sampler.get_block();
-                    Vec3 p = Vec3(u[0], u[1], u[2]) * scale;
-                    if (i % 3 == 0) p = Vec3(std::floor(4 * u[0]), std::floor(4 * u[1]), 0) * (0.25f * scale);
-                    if (i % 7 == 0) p = p - Vec3(scale, 0, scale);
-                    photons.push_back({p, {}, Rgb(), {}, i});
-                }
-                const float radius = 0.05f * scale;
-                const PhotonMap one(photons, radius, 1), three(photons, radius, 3);
-                for (int i = 0; i < 200; ++i) {
-                    sampler.start(1, 0, static_cast<std::uint32_t>(i));
-                    const auto u = sampler.get_block();
-                    const Vec3 p = i % 2 == 0 && count > 0 ? photons[static_cast<std::size_t>(i % count)].p
-                                                           : (Vec3(u[0], u[1], u[2]) * 2.0f - Vec3(1, 1, 1)) * scale;
-                    std::vector<int> found, found_by_three, expected;
-                    one.for_each_near(p, [&](const Photon& photon) { found.push_back(photon.depth); });
-                    three.for_each_near(p, [&](const Photon& photon) { found_by_three.push_back(photon.depth); });
-                    for (const Photon& photon : photons)
-                        if (length_squared(photon.p - p) <= sqr(radius)) expected.push_back(photon.depth);
-                    CHECK(found == found_by_three);
-                    std::sort(found.begin(), found.end());
-                    CHECK(found == expected);
-                }
-            }
     }
 
     TEST_CASE("a stopped sample leaves no trace in the film") {
@@ -260,33 +249,6 @@ TEST_SUITE("unit") {
              {Integrator::kBidirectional, Integrator::kVcm, Integrator::kPhotons, Integrator::kMetropolis})
             CHECK_THROWS_WITH_AS(radiance_function(integrator), doctest::Contains("whole images"), Error);
     }
-
-    // The pixel density is the inverse of the area, across the ray, that the rays of a small square of the image cover.
-    TEST_CASE("a point is seen by the pixel whose ray hits it, at the density of those rays") {
-        View view{Camera{}, 80, 60};
-        view.camera.eye = {1, 2, 5};
-        view.camera.look_at = {0, 0.5, 0};
-        view.camera.aperture_radius = 0.2;
-        for (const auto projection : {Camera::Projection::kPerspective, Camera::Projection::kOrthographic}) {
-            view.camera.projection = projection;
-            const Pinhole pinhole = CameraModel(view).pinhole({0.9, 0.3});
-            const auto at = [&](double x, double y, double t) {
-                const Rayd ray = pinhole.ray({x, y});
-                return ray.origin + ray.direction * t;
-            };
-            const double x = 12.3, y = 51.7, step = 1e-4;
-            const Vec3d p = at(x, y, 4), direction = pinhole.ray({x, y}).direction;
-            const auto seen = seen_through(pinhole, p);
-            REQUIRE(seen.has_value());
-            CHECK(seen->pixel.x == doctest::Approx(x));
-            CHECK(seen->pixel.y == doctest::Approx(y));
-            CHECK(length(seen->to_camera + direction) < 1e-9);
-            CHECK(seen->distance == doctest::Approx(4 - pinhole.ray({x, y}).t_min));
-            const Vec3d dx = (at(x + step, y, 4) - p) / step, dy = (at(x, y + step, 4) - p) / step;
-            CHECK(seen->pixel_density == doctest::Approx(1 / std::abs(dot(cross(dx, dy), direction))).epsilon(1e-3));
-            CHECK(!seen_through(pinhole, pinhole.origin + pinhole.forward * (pinhole.near * 0.9)).has_value());
-        }
-    }
 }
 
 TEST_SUITE("statistical") {
@@ -316,8 +278,6 @@ TEST_SUITE("statistical") {
         }
     }
 
-    // The bound is six standard errors of the difference over ten seeds each, which is exceeded by chance once in
-    // 90,000 times.
     TEST_CASE("the image converges to the path tracer's") {
         const std::pair<std::string, Scene> scenes[] = {
             {"surface lights", under_surface_lights()},   {"delta lights", under_delta_lights()},
@@ -326,44 +286,19 @@ TEST_SUITE("statistical") {
             {"orthographic", seen_in_parallel()}};
         for (const auto& named : scenes)
             for (const int depth : {1, 2, 5}) {
-                PathTracerSettings settings;
-                settings.max_depth = depth;
-                settings.samples_per_pixel = 512;
-                const Estimate path = estimate(named.second, 16, settings);
-                settings.integrator = Integrator::kBidirectional;
-                settings.samples_per_pixel = 256;
-                const Estimate joined = estimate(named.second, 16, settings);
                 CAPTURE(named.first);
-                CAPTURE(depth);
-                CAPTURE(path.mean);
-                CAPTURE(path.error);
-                CAPTURE(joined.mean);
-                CAPTURE(joined.error);
-                CHECK(deviations(path, joined) < 6);
-                CHECK(joined.error < 0.002 * joined.mean);
+                check_converges(named.second, depth, {Integrator::kBidirectional, 16, 512, 256, 0.002}, 0);
             }
     }
 
     // Photons of another time miss a ball that has moved on, and the more so the smaller the radius is. The tolerance
-    // is that of the next test.
+    // is that of the last test.
     TEST_CASE("merging converges to the path tracer's image of what moves fast") {
-        PathTracerSettings settings;
-        settings.max_depth = 2;
-        settings.samples_per_pixel = 128;
-        const Estimate path = estimate(fast_ball(), 48, settings);
-        settings.integrator = Integrator::kVcm;
-        settings.samples_per_pixel = 32;
-        const Estimate merged = estimate(fast_ball(), 48, settings);
-        CAPTURE(path.mean);
-        CAPTURE(path.error);
-        CAPTURE(merged.mean);
-        CAPTURE(merged.error);
-        CHECK(std::abs(path.mean - merged.mean) < 6 * std::hypot(path.error, merged.error) + 0.005 * path.mean);
-        CHECK(merged.error < 0.004 * merged.mean);
+        check_converges(fast_ball(), 2, {Integrator::kVcm, 48, 128, 32, 0.004}, 0.005);
     }
 
-    // All lights send photons here, or only some. The bound is six standard errors, and 1 % for light that is blurred
-    // over the edges of surfaces. Direct light is not blurred.
+    // All lights send photons here, or only some. The tolerance is 1 % for light that is blurred over the edges of
+    // surfaces: the radius is 1/16 of the image. Direct light is not blurred.
     TEST_CASE("photon mapping converges to the path tracer's image") {
         const std::pair<std::string, Scene> scenes[] = {{"surface lights", under_surface_lights()},
                                                         {"delta lights", under_delta_lights()},
@@ -372,21 +307,9 @@ TEST_SUITE("statistical") {
                                                         {"partly without photons", partly_without_photons()}};
         for (const auto& named : scenes)
             for (const int depth : {1, 5}) {
-                PathTracerSettings settings;
-                settings.max_depth = depth;
-                settings.samples_per_pixel = 256;
-                const Estimate path = estimate(named.second, 24, settings);
-                settings.integrator = Integrator::kPhotons;
-                settings.samples_per_pixel = 128;
-                const Estimate photons = estimate(named.second, 24, settings);
                 CAPTURE(named.first);
-                CAPTURE(depth);
-                CAPTURE(path.mean);
-                CAPTURE(photons.mean);
-                CAPTURE(photons.error);
-                const double blur = depth == 1 ? 0 : 0.01 * path.mean; // the radius is 1/16 of the image
-                CHECK(std::abs(path.mean - photons.mean) < 6 * std::hypot(path.error, photons.error) + blur);
-                CHECK(photons.error < 0.004 * photons.mean);
+                const double blur = depth == 1 ? 0 : 0.01;
+                check_converges(named.second, depth, {Integrator::kPhotons, 24, 256, 128, 0.004}, blur);
             }
     }
 
@@ -417,23 +340,10 @@ TEST_SUITE("statistical") {
     }
 
     // Merging blurs light over a radius, so that walls near edges and contacts are a little off: 0.5 % is allowed for
-    // that, and six standard errors.
+    // that.
     TEST_CASE("merging converges to the path tracer's image, also where it alone finds the light") {
         for (const Scene& scene : {under_surface_lights(), under_delta_lights(), glass_in_motion()})
-            for (const int depth : {2, 5}) {
-                PathTracerSettings settings;
-                settings.max_depth = depth;
-                settings.samples_per_pixel = 512;
-                const Estimate path = estimate(scene, 16, settings);
-                settings.integrator = Integrator::kVcm;
-                settings.samples_per_pixel = 128;
-                const Estimate merged = estimate(scene, 16, settings);
-                CAPTURE(depth);
-                CAPTURE(path.mean);
-                CAPTURE(merged.mean);
-                CAPTURE(merged.error);
-                CHECK(std::abs(path.mean - merged.mean) < 6 * std::hypot(path.error, merged.error) + 0.005 * path.mean);
-                CHECK(merged.error < 0.004 * merged.mean);
-            }
+            for (const int depth : {2, 5})
+                check_converges(scene, depth, {Integrator::kVcm, 16, 512, 128, 0.004}, 0.005);
     }
 }

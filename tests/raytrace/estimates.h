@@ -3,6 +3,8 @@
 
 #include "raytrace/render.h"
 
+#include <doctest/doctest.h>
+
 #include <cmath>
 #include <vector>
 
@@ -37,11 +39,28 @@ inline Estimate estimate(const Scene& scene, int size, PathTracerSettings settin
     return e;
 }
 
-/// Returns the number of standard errors between two estimates, or between an estimate and a value. With ten seeds
-/// each, the distribution is Student's with about 18 and 9 degrees of freedom: 6 is exceeded by chance once in 90,000
-/// and once in 5,000 times.
-inline double deviations(const Estimate& a, const Estimate& b) {
-    return std::abs(a.mean - b.mean) / std::sqrt(a.error * a.error + b.error * b.error);
+/// Checks that two estimates, or an estimate and a value, are less than six standard errors apart. With ten seeds each,
+/// the distribution is Student's with about 18 and 9 degrees of freedom: the check fails by chance once in 90,000 and
+/// once in 5,000 times.
+inline void check_equal_means(const Estimate& a, const Estimate& b) {
+    CAPTURE(a.mean);
+    CAPTURE(a.error);
+    CAPTURE(b.mean);
+    CAPTURE(b.error);
+    CHECK(std::abs(a.mean - b.mean) < 6 * std::hypot(a.error, b.error));
+}
+
+/// Compares the mean of these settings, which it returns, with that of the naive path tracer. The naive mean must have
+/// at most this relative error, because agreement would otherwise prove little.
+inline Estimate check_against_naive(const Scene& scene, int size, PathTracerSettings settings, int naive_samples,
+                                    double largest_error = 0.01) {
+    const Estimate path = estimate(scene, size, settings);
+    settings.integrator = Integrator::kNaive;
+    settings.samples_per_pixel = naive_samples;
+    const Estimate naive = estimate(scene, size, settings);
+    check_equal_means(path, naive);
+    CHECK(naive.error < largest_error * naive.mean);
+    return path;
 }
 
 } // namespace duet::raytrace

@@ -104,14 +104,7 @@ TEST_SUITE("statistical") {
             PathTracerSettings settings;
             settings.samples_per_pixel = 32;
             settings.max_depth = 4;
-            const Estimate path = estimate(scene, 24, settings);
-            settings.integrator = Integrator::kNaive;
-            settings.samples_per_pixel = naive_samples;
-            const Estimate naive = estimate(scene, 24, settings);
-            CAPTURE(path.mean);
-            CAPTURE(naive.mean);
-            CHECK(deviations(path, naive) < 6);
-            CHECK(naive.error < 0.01 * naive.mean);
+            check_against_naive(scene, 24, settings, naive_samples);
         }
     }
 
@@ -122,6 +115,6 @@ TEST_SUITE("statistical") {
         settings.max_depth = 4;
         const Estimate sobol = estimate(scene, 24, settings);
         settings.sampler = SamplerKind::kBlueNoise;
-        CHECK(deviations(sobol, estimate(scene, 24, settings)) < 6);
+        check_equal_means(sobol, estimate(scene, 24, settings));
     }
 }

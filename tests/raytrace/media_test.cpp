@@ -247,9 +247,7 @@ TEST_SUITE("statistical") {
             const Estimate a = image_with(nullptr);
             const Estimate b =
                 image_with(std::make_shared<const DensityGrid>(std::array{5, 12, 20}, std::vector<float>(1200, 1.0f)));
-            CAPTURE(a.mean);
-            CAPTURE(b.mean);
-            CHECK(deviations(a, b) < 6);
+            check_equal_means(a, b);
             CHECK(b.error < 5e-3 * b.mean);
         }
     }
@@ -276,14 +274,7 @@ TEST_SUITE("statistical") {
             builder.add(quad({-0.5f, 0.9f, -0.5f}, {1, 0, 0}, {0, 0, 1}), builder.material(Emissive{Rgb(6.0f)}));
             builder.scene.environment = SkyEnvironment{Rgb(0.2f), Rgb(0.5f)};
             builder.scene.media = {fog(cube(1.2f), Rgb(0.9f, 0.5f, 0.3f), Rgb(0.1f), g), bell(cube(1), 1)};
-            const Scene scene = builder.finish();
-            PathTracerSettings naive = path_settings(1024);
-            naive.integrator = Integrator::kNaive;
-            const Estimate a = estimate(scene, 16, path_settings(256)), b = estimate(scene, 16, naive);
-            CAPTURE(a.mean);
-            CAPTURE(b.mean);
-            CHECK(deviations(a, b) < 6);
-            CHECK(b.error < 5e-3 * b.mean);
+            check_against_naive(builder.finish(), 16, path_settings(256), 1024, 5e-3);
         }
     }
 }

@@ -206,11 +206,7 @@ TEST_SUITE("statistical") {
         for (const Estimate& part : joined) mean += part.mean / kParts;
         for (std::size_t i = 0; i < kParts; ++i) {
             CAPTURE(i);
-            CAPTURE(joined[i].mean);
-            CAPTURE(metropolis[i].mean);
-            CAPTURE(joined[i].error);
-            CAPTURE(metropolis[i].error);
-            CHECK(deviations(joined[i], metropolis[i]) < 6);
+            check_equal_means(joined[i], metropolis[i]);
             CHECK(metropolis[i].error < 0.02 * (joined[i].mean + mean)); // else the test would see nothing
         }
     }

@@ -113,13 +113,7 @@ TEST_SUITE("statistical") {
             PathTracerSettings settings;
             settings.samples_per_pixel = 32;
             settings.max_depth = 8;
-            const Estimate path = estimate(scene, 24, settings);
-            settings.integrator = Integrator::kNaive;
-            settings.samples_per_pixel = 128;
-            const Estimate naive = estimate(scene, 24, settings);
-            CHECK(path.mean > 0.1);
-            CHECK(deviations(path, naive) < 6);
-            CHECK(naive.error < 0.01 * naive.mean);
+            CHECK(check_against_naive(scene, 24, settings, 128).mean > 0.1);
         }
     }
 
@@ -132,7 +126,7 @@ TEST_SUITE("statistical") {
         settings.russian_roulette = false;
         const Estimate without = estimate(scene, 24, settings);
         const auto rays_without = render_scene(scene, 24, settings).statistics.indirect_rays;
-        CHECK(deviations(with, without) < 6);
+        check_equal_means(with, without);
         CHECK(with.error < 0.005 * with.mean);
         CHECK(rays_with < rays_without);
     }
@@ -145,7 +139,7 @@ TEST_SUITE("statistical") {
         const Estimate sobol = estimate(scene, 24, settings);
         for (const SamplerKind kind : {SamplerKind::kStratified, SamplerKind::kIndependent}) {
             settings.sampler = kind;
-            CHECK(deviations(sobol, estimate(scene, 24, settings)) < 6);
+            check_equal_means(sobol, estimate(scene, 24, settings));
         }
     }
 }
