@@ -81,6 +81,46 @@ Image<int> counts_of(Item& item, const std::vector<lab::Fragment>& fragments, in
     return image;
 }
 
+constexpr int kColumns = 48, kRows = 36; // of the images that rasterize covers
+constexpr Vec2 kHalf{0.5f, 0.5f};
+const char* const kAtCorners = "Pixels are tested at their upper left corners: their centers are at +0.5.";
+
+/// Checks a fan whose corners lie on centers of pixels, so that its edges pass through others.
+void require_fan(Item& item) {
+    const auto center = [&](int x, int y) { return Vec2{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}; };
+    const Vec2 hub = center(24, 18);
+    const std::vector<Vec2> rim{center(4, 2),   center(24, 1),  center(44, 2), center(46, 18),
+                                center(44, 34), center(24, 35), center(4, 34), center(1, 18)};
+    Image<int> found(kColumns, kRows, 0), expected(kColumns, kRows, 0), clockwise(kColumns, kRows, 0),
+        moved(kColumns, kRows, 0);
+    for (std::size_t i = 0; i < rim.size(); ++i) {
+        const Vec2 b = rim[i], c = rim[(i + 1) % rim.size()];
+        const bool turned = i % 3 == 0;
+        const auto fragments = STUDENT(rasterize)(hub, turned ? c : b, turned ? b : c, kColumns, kRows);
+        const Image<int> one = counts_of(item, fragments, kColumns, kRows);
+        for (std::size_t k = 0; k < one.size(); ++k) found[k] += one[k];
+        lesson::for_each_pixel(hub, b, c, kColumns, kRows, [&](int x, int y, Vec3) {
+            ++expected(x, y);
+            clockwise(x, y) += !turned;
+        });
+        lesson::for_each_pixel(hub + kHalf, b + kHalf, c + kHalf, kColumns, kRows,
+                               [&](int x, int y, Vec3) { ++moved(x, y); });
+    }
+    item.coverage(
+        "a fan of eight triangles, three of them counter-clockwise", found, expected,
+        {{clockwise, "Triangles with counter-clockwise corners are missing: where the area is negative, swap two "
+                     "corners."},
+         {moved, kAtCorners},
+         {count_fan_coverage(hub, rim, kColumns, kRows, [](auto w, auto, auto) { return w >= 0; }),
+          "Both triangles at an edge take the centers on it: w == 0 counts for a left or top edge only."},
+         {count_fan_coverage(hub, rim, kColumns, kRows, [](auto w, auto, auto) { return w > 0; }),
+          "No triangle takes the centers on an edge: w == 0 counts for a left or top edge."},
+         {count_fan_coverage(hub, rim, kColumns, kRows,
+                             [](auto w, auto a, auto b) { return w > 0 || (w == 0 && !lesson::is_top_left(a, b)); }),
+          "The rule is turned around: the bottom and right edges take the centers on them."},
+         {Image<int>(kColumns, kRows, 0), "Nothing is covered at all."}});
+}
+
 } // namespace
 
 LAB_ITEM(0, "the picture: your amphora") {
@@ -215,65 +255,30 @@ LAB_ITEM(10, "clip_near") {
 }
 
 LAB_ITEM(15, "rasterize: every pixel once, with its weights") {
-    constexpr int kWidth = 48, kHeight = 36;
+    require_fan(item);
     Rng& rng = item.random();
-    // A fan whose corners lie on centers of pixels, so that its edges pass through others.
-    const auto center = [&](int x, int y) { return Vec2{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}; };
-    const Vec2 hub = center(24, 18);
-    const std::vector<Vec2> rim{center(4, 2),   center(24, 1),  center(44, 2), center(46, 18),
-                                center(44, 34), center(24, 35), center(4, 34), center(1, 18)};
-    Image<int> found(kWidth, kHeight, 0), expected(kWidth, kHeight, 0), clockwise(kWidth, kHeight, 0),
-        moved(kWidth, kHeight, 0);
-    const Vec2 half{0.5f, 0.5f};
-    const std::string corners = "Pixels are tested at their upper left corners: their centers are at +0.5.";
-    for (std::size_t i = 0; i < rim.size(); ++i) {
-        const Vec2 b = rim[i], c = rim[(i + 1) % rim.size()];
-        const bool turned = i % 3 == 0;
-        const auto fragments = STUDENT(rasterize)(hub, turned ? c : b, turned ? b : c, kWidth, kHeight);
-        const Image<int> one = counts_of(item, fragments, kWidth, kHeight);
-        for (std::size_t k = 0; k < one.size(); ++k) found[k] += one[k];
-        lesson::for_each_pixel(hub, b, c, kWidth, kHeight, [&](int x, int y, Vec3) {
-            ++expected(x, y);
-            clockwise(x, y) += !turned;
-        });
-        lesson::for_each_pixel(hub + half, b + half, c + half, kWidth, kHeight,
-                               [&](int x, int y, Vec3) { ++moved(x, y); });
-    }
-    item.coverage(
-        "a fan of eight triangles, three of them counter-clockwise", found, expected,
-        {{clockwise, "Triangles with counter-clockwise corners are missing: where the area is negative, swap two "
-                     "corners."},
-         {moved, corners},
-         {count_fan_coverage(hub, rim, kWidth, kHeight, [](auto w, auto, auto) { return w >= 0; }),
-          "Both triangles at an edge take the centers on it: w == 0 counts for a left or top edge only."},
-         {count_fan_coverage(hub, rim, kWidth, kHeight, [](auto w, auto, auto) { return w > 0; }),
-          "No triangle takes the centers on an edge: w == 0 counts for a left or top edge."},
-         {count_fan_coverage(hub, rim, kWidth, kHeight,
-                             [](auto w, auto a, auto b) { return w > 0 || (w == 0 && !lesson::is_top_left(a, b)); }),
-          "The rule is turned around: the bottom and right edges take the centers on them."},
-         {Image<int>(kWidth, kHeight, 0), "Nothing is covered at all."}});
     for (int i = 0; i < 60; ++i) {
         const double reach = i % 3 == 0 ? 20000 : i % 3 == 1 ? 30 : 2;
-        const double x = rng.uniform(0, kWidth), y = rng.uniform(0, kHeight);
+        const double x = rng.uniform(0, kColumns), y = rng.uniform(0, kRows);
         const auto corner = [&] { // on the grid
             const double px = std::round((x + rng.uniform(-reach, reach)) * 256) / 256;
             return Vec2(Vec2d(px, std::round((y + rng.uniform(-reach, reach)) * 256) / 256));
         };
         const Vec2 a = corner(), b = corner(), c = corner();
         const std::string name = message("the triangle ", describe(a), ", ", describe(b), ", ", describe(c));
-        Image<int> right(kWidth, kHeight, 0), shifted(kWidth, kHeight, 0);
-        Image<Vec3> weights(kWidth, kHeight);
-        lesson::for_each_pixel(a, b, c, kWidth, kHeight,
+        Image<int> right(kColumns, kRows, 0), shifted(kColumns, kRows, 0);
+        Image<Vec3> weights(kColumns, kRows);
+        lesson::for_each_pixel(a, b, c, kColumns, kRows,
                                [&](int px, int py, Vec3 w) { ++right(px, py), weights(px, py) = w; });
-        lesson::for_each_pixel(a + half, b + half, c + half, kWidth, kHeight,
+        lesson::for_each_pixel(a + kHalf, b + kHalf, c + kHalf, kColumns, kRows,
                                [&](int px, int py, Vec3) { ++shifted(px, py); });
-        const auto fragments = STUDENT(rasterize)(a, b, c, kWidth, kHeight);
+        const auto fragments = STUDENT(rasterize)(a, b, c, kColumns, kRows);
         const std::string overflow =
             "This is what edge functions of 32 bits give: compute them, and the area, in 64 bits.";
-        item.coverage(name, counts_of(item, fragments, kWidth, kHeight), right,
-                      {{shifted, corners},
-                       {coverage_with_overflow(a, b, c, kWidth, kHeight), overflow},
-                       {Image<int>(kWidth, kHeight, 0), "Nothing is covered."}});
+        item.coverage(name, counts_of(item, fragments, kColumns, kRows), right,
+                      {{shifted, kAtCorners},
+                       {coverage_with_overflow(a, b, c, kColumns, kRows), overflow},
+                       {Image<int>(kColumns, kRows, 0), "Nothing is covered."}});
         for (const auto& f : fragments) {
             const Vec3 w = weights(f.x, f.y);
             item.near(
@@ -283,7 +288,7 @@ LAB_ITEM(15, "rasterize: every pixel once, with its weights") {
                  {Vec3{w.y, w.z, w.x}, "Each weight is at the wrong corner: that of a comes from the edge b c."}});
         }
     }
-    item.require(STUDENT(rasterize)({1, 1}, {20, 20}, {10, 10}, kWidth, kHeight).empty(),
+    item.require(STUDENT(rasterize)({1, 1}, {20, 20}, {10, 10}, kColumns, kRows).empty(),
                  "A triangle whose corners lie on one line covers nothing.");
 }
 

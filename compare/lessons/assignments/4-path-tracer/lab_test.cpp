@@ -1,6 +1,6 @@
 // The examiner of assignment 4. Scenes have answers in closed form where there are any: the irradiance of a polygon
 // (Lambert 1760), and the room whose walls all shine alike. Where there is none, the three strategies judge each other.
-#include "compare/lessons/assignments/4-path-tracer/lab.h"
+#include "compare/lessons/assignments/4-path-tracer/scenes.h"
 #include "tests/grading/judge.h"
 
 #include <algorithm>
@@ -9,8 +9,6 @@
 
 using namespace duet;
 using namespace duet::grading;
-using lab::Quad;
-using lab::Scene;
 using lab::Strategy;
 
 LAB_TITLE("assignment-4", "A path tracer with multiple importance sampling")
@@ -19,11 +17,6 @@ namespace {
 
 constexpr std::array<Strategy, 3> kStrategies{Strategy::kBsdf, Strategy::kLight, Strategy::kMis};
 const char* name(Strategy s) { return s == Strategy::kBsdf ? "kBsdf" : s == Strategy::kLight ? "kLight" : "kMis"; }
-
-/// A level light of side 2·half at height h above the origin, shining down with radiance 1.
-Quad ceiling_light(float half, float h) {
-    return {{-half, h, -half}, {2 * half, 0, 0}, {0, 0, 2 * half}, Rgb(0), Rgb(1)};
-}
 
 /// The irradiance at p, with normal n, under a polygon of radiance 1 that lies above the horizon (Lambert's formula).
 double polygon_irradiance(const std::array<Vec3d, 4>& corners, Vec3d p, Vec3d n) {
@@ -48,54 +41,6 @@ double solid_angle(const Quad& q, Vec3 p) {
         return 2 * std::atan2(std::abs(dot(x, cross(y, z))), 1 + dot(x, y) + dot(y, z) + dot(z, x));
     };
     return triangle(a, b, c) + triangle(a, c, d);
-}
-
-/// A room of six walls that look inward, [-1, 1]³; each shines with `emission` and reflects `albedo`.
-Scene closed_room(float albedo, float emission) {
-    Scene scene;
-    const auto wall = [&](Vec3 corner, Vec3 u, Vec3 v) {
-        scene.lights.push_back(static_cast<int>(scene.quads.size()));
-        scene.quads.push_back({corner, u, v, Rgb(albedo), Rgb(emission)});
-    };
-    wall({-1, -1, -1}, {0, 0, 2}, {2, 0, 0}); // floor, normal +y
-    wall({-1, 1, -1}, {2, 0, 0}, {0, 0, 2});  // ceiling
-    wall({-1, -1, -1}, {2, 0, 0}, {0, 2, 0}); // back, normal +z
-    wall({-1, -1, 1}, {0, 2, 0}, {2, 0, 0});  // front
-    wall({-1, -1, -1}, {0, 2, 0}, {0, 0, 2}); // left, normal +x
-    wall({1, -1, -1}, {0, 0, 2}, {0, 2, 0});  // right
-    return scene;
-}
-
-/// A room that is open in front, with a red and a green wall, a block, and two lights of very different size.
-Scene colored_room() {
-    Scene scene;
-    const auto add = [&](Vec3 corner, Vec3 u, Vec3 v, Rgb albedo, Rgb emission = Rgb(0)) {
-        if (max_component(emission) > 0) scene.lights.push_back(static_cast<int>(scene.quads.size()));
-        scene.quads.push_back({corner, u, v, albedo, emission});
-    };
-    const Rgb white(0.7f), red(0.63f, 0.07f, 0.05f), green(0.14f, 0.45f, 0.09f);
-    add({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, white);
-    add({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}, white);
-    add({-1, 0, -1}, {2, 0, 0}, {0, 2, 0}, white);
-    add({-1, 0, -1}, {0, 2, 0}, {0, 0, 2}, red);
-    add({1, 0, -1}, {0, 0, 2}, {0, 2, 0}, green);
-    add({-0.6f, 0.7f, -0.6f}, {0, 0, 0.6f}, {0.6f, 0, 0.2f}, white); // the top of a block …
-    add({-0.6f, 0, 0}, {0.6f, 0, 0.2f}, {0, 0.7f, 0}, white);        // … its front
-    add({0, 0, 0.2f}, {0, 0, -0.6f}, {0, 0.7f, 0}, white);           // … and its right side
-    add({-0.25f, 1.98f, -0.25f}, {0.5f, 0, 0}, {0, 0, 0.5f}, Rgb(0), Rgb(8, 7, 6));
-    add({0.55f, 0.02f, -0.95f}, {0.4f, 0, 0}, {0, 1.0f, 0}, Rgb(0),
-        Rgb(0.8f, 1.2f, 2)); // a large one close to the back wall
-    return scene;
-}
-
-std::vector<Ray> camera_rays(int width, int height) {
-    std::vector<Ray> rays;
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            const double px = (x + 0.5) / width * 2 - 1, py = 1 - (y + 0.5) / height * 2;
-            rays.push_back({{0, 1, 4.2f}, normalize(Vec3(Vec3d(px * 0.36, py * 0.36, -1)))});
-        }
-    return rays;
 }
 
 double mean(const std::vector<Rgb>& values) {
