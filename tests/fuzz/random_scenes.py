@@ -17,195 +17,25 @@ import copy
 import json
 import math
 import pathlib
-import random
-import struct
 
-from scene_assets import ENVIRONMENTS, IMAGES, MESHES, SMOKE, SMOKE_POINTS, write_assets
+from random_materials import RandomMaterials
+from random_values import LARGEST, cross, length, plus, short, single
+from scene_assets import ENVIRONMENTS, MESHES, SMOKE, SMOKE_POINTS, write_assets
 
-CONDUCTORS = ["aluminium", "chromium", "cobalt", "copper", "gold", "iron", "nickel", "palladium", "platinum", "silver",
-              "titanium", "tungsten"]
-SOLIDS = ["apple", "chicken", "cream", "ketchup", "marble", "potato", "skimmed-milk", "skin", "skin-pale", "whole-milk"]
-LARGEST = 1e12  # No coordinate is larger than a few times this.
 REACH = 1e12  # No object reaches farther from the eye than a few times this many distances to what it looks at.
 
 
-def short(number):
-    """The number with 12 digits, which keeps files readable."""
-    return float(f"{number:.12g}")
-
-
-def single(number):
-    """The number in single precision."""
-    return struct.unpack("f", struct.pack("f", number))[0]
-
-
-def plus(a, b, factor=1.0):
-    return [short(p + factor * q) for p, q in zip(a, b)]
-
-
-def length(vector):
-    return math.hypot(*vector)
-
-
-def cross(a, b):
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-class Scene:
+class Scene(RandomMaterials):
     """One random scene. Most methods return a part of the file as a JSON value."""
 
     def __init__(self, seed, index):
-        self.random = random.Random(f"{seed}/{index}")
-        self.pick, self.uniform = self.random.choice, self.random.uniform
-        self.choose_sizes()
-        self.textures, self.materials = {}, {}
+        super().__init__(f"{seed}/{index}")
+        self.materials = {}
         self.shapes, self.groups, self.places = [], [], [self.center]
         self.names = 0
         # A product of two matrices that both change could be singular midway. So only one kind of object moves, unless
         # all motions are translations.
         self.movers = self.random.choices([None, "shape", "group", "instance", "all"], [8, 5, 2, 2, 3])[0]
-
-    def choose_sizes(self):
-        """The range of sizes of objects, the size that most of them have, and the center of the scene."""
-        kind = self.random.choices(["ordinary", "wide", "extreme"], [8, 3, 1])[0]
-        extreme = self.pick([(1e-9, 1e-6), (1e6, 1e9), (1e-9, 1e9), (1e-9, 1e9), (1e9, LARGEST / 10)])
-        self.smallest, self.largest = {"ordinary": (0.01, 100), "wide": (1e-4, 1e4), "extreme": extreme}[kind]
-        self.unit = self.log_uniform(self.smallest, self.largest)
-        self.scales = (1e-3, 1e3) if kind == "extreme" else (0.2, 5)  # of transforms
-        far = min(self.unit * self.log_uniform(10, 1e6), LARGEST)
-        self.center = self.direction(far) if self.chance(0.2) else [0, 0, 0]
-        self.reach = 10 * self.largest  # of the objects from the center
-
-    # Numbers, vectors and colors.
-
-    def chance(self, probability):
-        return self.random.random() < probability
-
-    def some(self, values, probability=0.5):
-        """Some of these optional keys and values."""
-        return {key: value for key, value in values.items() if self.chance(probability)}
-
-    def log_uniform(self, low, high):
-        return short(math.exp(self.uniform(math.log(low), math.log(high))))
-
-    def size(self):
-        """The size of an object: mostly about that of the others, otherwise any of the scene's range."""
-        if self.chance(0.3):
-            return self.log_uniform(self.smallest, self.largest)
-        return min(max(self.unit * self.log_uniform(0.1, 2), self.smallest), self.largest)
-
-    def direction(self, size=1.0):
-        """A vector of this length. A third of the vectors lie along an axis."""
-        vector = [self.random.gauss(0, 1) for _ in range(3)]
-        if self.chance(0.33):
-            vector = self.pick([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]])
-        return [short(size * x / length(vector)) for x in vector]
-
-    def any_length(self):
-        """A vector of which only the direction matters."""
-        return self.direction(self.pick([1, self.uniform(0.1, 10), self.log_uniform(1e-9, 1e9)]))
-
-    def place(self):
-        return plus(self.center, [self.uniform(-2, 2) * self.unit for _ in range(3)])
-
-    def fraction(self):
-        return self.pick([0, 1, short(self.uniform(0, 1)), short(self.uniform(0, 1)), self.log_uniform(1e-9, 1)])
-
-    def color(self):
-        """A color in [0, 1], as a number or three."""
-        return self.fraction() if self.chance(0.4) else [self.fraction() for _ in range(3)]
-
-    def power(self, usual):
-        """A color in [0, 1e12] for light: none, about the usual amount, or any amount."""
-        amount = self.random.choices([0, min(usual, 1e12), self.log_uniform(1e-12, 1e12), 1e12], [2, 12, 2, 1])[0]
-        return amount if self.chance(0.4) else [amount * self.fraction() for _ in range(3)]
-
-    # Textures and materials.
-
-    def texture(self):
-        kind = self.pick(["image", "image", "checker", "noise"])
-        scale = self.pick([1, self.uniform(0.1, 20), self.log_uniform(1e-9, 1e9)])
-        if kind == "image":
-            return {"type": kind, "file": self.pick(IMAGES), **self.some({
-                "scale": self.pick([scale, [scale, -2], [-0.5, scale]]),
-                "filter": self.pick(["nearest", "bilinear", "trilinear", "anisotropic"]),
-                "values": self.pick(["colors", "data"]),
-                "channel": self.pick(["all", "red", "green", "blue", "alpha"])})}
-        if kind == "checker":
-            keys = {"even": self.color(), "odd": self.color(), "scale": scale, "solid": self.chance(0.5)}
-        else:
-            keys = {"low": self.color(), "high": self.color(), "scale": scale, "marble": self.chance(0.5),
-                    "octaves": self.pick([1, 16, self.random.randint(2, 8)])}
-        return {"type": kind, **self.some(keys)}
-
-    def texture_name(self):
-        return self.pick(sorted(self.textures))
-
-    def slot(self):
-        if self.textures and self.chance(0.4):
-            return {"texture": self.texture_name(), **self.some({"tint": self.color()})}
-        return self.color()
-
-    def scalar(self):
-        if self.textures and self.chance(0.3):
-            return {"texture": self.texture_name(), **self.some({"scale": self.fraction()})}
-        return self.fraction()
-
-    def map(self):
-        """The value of a normal or bump map."""
-        scale = self.pick([1, -1, 0, 0.01 * self.unit, self.uniform(-5, 5), self.log_uniform(1e-9, 1e9)])
-        return {"texture": self.texture_name(), **self.some({"scale": scale})}
-
-    def ior(self):
-        return self.pick([1, 1.33, 1.5, 4, self.uniform(1, 4)])
-
-    def metal(self):
-        if self.chance(0.5):
-            return {"conductor": self.pick(CONDUCTORS), **self.some({"roughness": self.scalar()})}
-        return self.some({"reflectance": self.slot(), "roughness": self.scalar()})
-
-    def dielectric(self):
-        keys = self.some({"tint": self.slot(), "ior": self.ior()})
-        if self.chance(0.3):
-            return keys | {"thin": True}
-        absorption = {"color": self.color(), "distance": max(1e-9, self.size())}
-        return keys | self.some({"roughness": self.scalar(), "absorption": absorption, "thin": False,
-                                 "priority": self.pick([0, 1, 2, self.random.randint(0, 100)])})
-
-    def subsurface(self):
-        keys = self.some({"roughness": self.scalar(), "ior": self.ior()})
-        if self.chance(0.3):
-            return keys | {"measured": self.pick(SOLIDS), **self.some({"scale": self.size()})}
-        return keys | {"mean_free_path": self.mean_free_path(), **self.some({"albedo": self.slot()})}
-
-    def mean_free_path(self):
-        return self.pick([0, self.size(), [self.size(), 0, self.size()], self.power(0.1 * self.unit)])
-
-    def emissive(self):
-        keys = {"radiance": self.power(5), **self.some({"two_sided": self.chance(0.5), "albedo": self.slot()})}
-        if self.textures and self.chance(0.5):
-            keys["radiance_texture"] = self.texture_name()
-        return keys
-
-    def material(self):
-        kind = self.pick(["diffuse", "metal", "dielectric", "principled", "coated", "subsurface", "emissive"])
-        slot, scalar = self.slot(), self.scalar()
-        if kind in ("metal", "dielectric", "subsurface", "emissive"):
-            keys = getattr(self, kind)()
-        elif kind == "diffuse":
-            keys = self.some({"albedo": slot, "roughness": scalar})
-        elif kind == "coated":
-            keys = self.some({"albedo": slot, "roughness": scalar, "ior": self.ior()})
-        else:
-            keys = self.some({"base_color": slot, "roughness": scalar, "ior": self.ior(), "metallic": self.scalar(),
-                              "clearcoat": self.scalar(), "clearcoat_roughness": self.scalar()})
-            if self.chance(0.2):
-                keys |= {"subsurface": self.scalar(), "mean_free_path": self.mean_free_path()}
-        if self.textures:
-            keys |= self.some({"normal": self.map(), "bump": self.map()}, 0.15)
-        if kind != "emissive":
-            keys |= self.some({"opacity": self.scalar(), "cutoff": self.fraction()}, 0.15)
-        return {"type": kind, **keys}
 
     # Transforms and motion.
 
