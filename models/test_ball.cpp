@@ -40,7 +40,7 @@ std::span<const BallScene> ball_scenes() {
         {"clay", "the same albedo, rough", R"("type": "diffuse", "albedo": [0.6, 0.25, 0.15], "roughness": 1)", ""},
         {"gold", "a conductor by name", R"("type": "metal", "conductor": "gold", "roughness": 0.1)", ""},
         {"copper-rough", "copper, rough", R"("type": "metal", "conductor": "copper", "roughness": 0.6)", ""},
-        {"aluminium", "aluminium, satin", R"("type": "metal", "conductor": "aluminium", "roughness": 0.3)", ""},
+        {"aluminium", "aluminum, satin", R"("type": "metal", "conductor": "aluminium", "roughness": 0.3)", ""},
         {"glass", "smooth glass", R"("type": "dielectric", "ior": 1.5)", ""},
         {"glass-green", "glass that absorbs",
          R"("type": "dielectric", "ior": 1.5, "absorption": {"color": [0.35, 0.8, 0.5], "distance": 0.8})", ""},
