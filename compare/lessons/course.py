@@ -47,8 +47,7 @@ class Lesson:
 
 def lessons(source=SOURCE):
     """All lessons that have a program and a page, by room in the order above, then by number. A program without its
-    page
-    is a draft: no target builds it."""
+    page is a draft: no target builds it."""
     found = [Lesson(folder) for room in ROOMS for folder in sorted((source / room / "lessons").glob("[0-9][0-9]-*"))]
     return [lesson for lesson in found if (lesson.folder / "lesson.cpp").exists() and lesson.page.exists()]
 

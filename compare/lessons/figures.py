@@ -1,6 +1,5 @@
 """Holds a figure that a lesson's program wrote to the one that its page shows: pictures by their error, plots by the
-values
-of their lines (common/image/plot.h)."""
+values of their lines (common/image/plot.h)."""
 import html
 import math
 import re

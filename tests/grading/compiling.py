@@ -137,8 +137,7 @@ ALLOWED = "Allowed are: the lab's lab.h and what it includes, common/vec, common
 
 def copy_submission(files, folder):
     """Copies the submitted files, so that nothing beside them can be included by a relative path or a link. A file that
-    is
-    alone may have any name: who collects submissions names it. Returns the copies."""
+    is alone may have any name: who collects submissions names it. Returns the copies."""
     folder.mkdir()
     copies = []
     for file in files:

@@ -2,11 +2,9 @@
 """Exports what students get.
 
   export handout OUT    a folder for each lab: the contract, the starter as lab.cpp, the headers that they may include,
-  and
-                        how to compile it. No answers, no examiners, no lesson programs.
+                        and how to compile it. No answers, no examiners, no lesson programs.
   export template OUT   a complete repository: all that builds lessons and labs and grades them, each lab.cpp made from
-  its
-                        starter, without answers, typical mistakes and hidden tests; committed, ready to push.
+                        its starter, without answers, typical mistakes and hidden tests; committed, ready to push.
 """
 import argparse
 import pathlib

@@ -46,8 +46,7 @@ def own_headers(folder):
 
 def handout_faults(out):
     """Each lab's folder has all that its lab.cpp includes, and neither examiner nor answer. That a starter compiles
-    against
-    these headers is tested with its lab; here one compiles by the command of its page."""
+    against these headers is tested with its lab; here one compiles by the command of its page."""
     export(labs.SOURCE, "handout", out)
     faults = []
     for lab_id, folder in labs.all_folders().items():

@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """Makes the figures of an assignment's page from what the grader shows: images of the answer, and of typical mistakes,
-made
-by making them. figures.txt beside the answer lists them. Without --write it compares them with the committed ones.
+made by making them. figures.txt beside the answer lists them. Without --write it compares them with the committed ones.
 
 usage: page_figures.py [--write] [--build FOLDER] ID
 """

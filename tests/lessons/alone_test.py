@@ -1,6 +1,5 @@
 """A lesson's program builds without the rest of the project: of its object files and libraries only images and what
-they
-stand on (common/image, common/system) are the project's.
+they stand on (common/image, common/system) are the project's.
 
 usage: alone_test.py BUILD_DIR
 """

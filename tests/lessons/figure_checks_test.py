@@ -1,8 +1,7 @@
 """The comparison of figures (compare/lessons/figures.py) finds what differs, and lets pass what may.
 
 usage: figure_checks_test.py FIGURES_FOLDER COMPARE_PROGRAM, where FIGURES_FOLDER has two PNG files of one size that
-show
-different pictures: evidence.png and another.
+show different pictures: evidence.png and another.
 """
 import pathlib
 import sys
