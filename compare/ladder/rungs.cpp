@@ -39,13 +39,6 @@ RungRenderers light_renderers(const char* name, const PreparedPair& pair, const 
     return make_renderers(name, pair, raster, raytrace);
 }
 
-constexpr raster::LightComponentSet kLights{
-    .emission = true, .direct = true, .environment = false, .reflection = false};
-constexpr raster::LightComponentSet kEnvironment{
-    .emission = false, .direct = false, .environment = true, .reflection = false};
-constexpr raster::LightComponentSet kReflection{
-    .emission = false, .direct = false, .environment = false, .reflection = true};
-
 /// Returns the rung, or only the note `absent` if the scene does not have the quantity.
 RungPlan rung_if_present(bool present, RungPlan rung, const char* absent) {
     if (present) return rung;
@@ -80,26 +73,26 @@ std::array<RungPlan, kRungCount> plan_rungs(const Scene& scene, const PreparedPa
                            "elsewhere in the pixel."};
     PreparedPair open = pair; // renders without shadows
     open.raster_settings.shadows = false;
-    const RungPlan direct{{light_renderers("direct", open, kLights, Integrator::kUnshadowed, false)},
+    const RungPlan direct{{light_renderers("direct", open, kLightsAlone, Integrator::kUnshadowed, false)},
                           "Each light in closed form; on rough metal by a linearly transformed cosine.",
                           "One light sample a camera ray, its visibility left out.",
                           ""};
     raster::RasterSettings raster_lights = pair.raster_settings;
-    raster_lights.components = kLights;
-    const RungPlan shadows{{light_renderers("shadows", pair, kLights, Integrator::kLights, false)},
+    raster_lights.components = kLightsAlone;
+    const RungPlan shadows{{light_renderers("shadows", pair, kLightsAlone, Integrator::kLights, false)},
                            "The same light, times the part that shadow maps let pass.",
                            "Light and BSDF samples with shadow rays, combined by multiple importance sampling.",
                            joined(raster::approximations(pair.raster, raster_lights), " ")};
     PreparedPair sky = pair; // renders without light between surfaces
     sky.raster_settings.indirect_light = false;
     const RungPlan environment{
-        {light_renderers("environment", sky, kEnvironment, Integrator::kEnvironment, true)},
+        {light_renderers("environment", sky, kEnvironmentAlone, Integrator::kEnvironment, true)},
         "Irradiance in closed form or by spherical harmonics, times the fraction of the environment that the image's "
         "depths leave visible.",
         "Light and BSDF samples of the environment, with shadow rays.",
         ""};
     const RungPlan reflections{
-        {light_renderers("reflections", pair, kReflection, Integrator::kReflection, true)},
+        {light_renderers("reflections", pair, kReflectionAlone, Integrator::kReflection, true)},
         "Looks up the mirrored and the refracted ray in the image, else in probes that see the scene from one point "
         "per object, blurred where metal is rough.",
         "Follows the path on from metal and glass to whatever it meets.",

@@ -30,6 +30,16 @@ inline constexpr std::array<RungName, kRungCount> kRungNames{{
     {"everything", "Everything", "indirect light"},
 }};
 
+/// Each is the part of the rasterizer's light that a rung compares alone.
+///@{
+inline constexpr raster::LightComponentSet kLightsAlone{
+    .emission = true, .direct = true, .environment = false, .reflection = false};
+inline constexpr raster::LightComponentSet kEnvironmentAlone{
+    .emission = false, .direct = false, .environment = true, .reflection = false};
+inline constexpr raster::LightComponentSet kReflectionAlone{
+    .emission = false, .direct = false, .environment = false, .reflection = true};
+///@}
+
 /// Holds both pipelines, prepared for the same scene.
 struct PreparedPair {
     raster::RasterScene raster;

@@ -7,6 +7,7 @@
 #include "compare/stress/trials.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace duet::compare {
 
@@ -147,16 +148,24 @@ std::vector<Shape> duplicated(TrialRandom& random) {
     return {mesh, mesh};
 }
 
+/// Sends a random ray, and records a failure if its hit differs from that of testing every primitive. Returns the ray
+/// and the latter.
+std::pair<Ray, Hit> check_random_ray(Trial& trial, const AcceleratedScene& accelerated) {
+    const Ray ray{trial.random.direction() * 3.0f, trial.random.vector()};
+    const Hit found = accelerated.accelerator.closest(ray), expected = brute_force_hit(*accelerated.scene, ray);
+    trial.record_failure_if(!(found == expected));
+    if (!(found == expected))
+        trial.note("ray from ", exact(ray.origin), " along ", exact(ray.direction), ": object ", found.object,
+                   " primitive ", found.primitive, " at ", exact(found.t), ", expected ", expected.object, " and ",
+                   expected.primitive, " at ", exact(expected.t));
+    return {ray, expected};
+}
+
 void duplicates(Trial& trial) {
     const AcceleratedScene accelerated(make_scene(duplicated(trial.random)));
     const Mesh& mesh = std::get<Mesh>(accelerated.scene->shapes[0]);
     for (int shot = 0; shot < 32; ++shot) {
-        const Ray ray{trial.random.direction() * 3.0f, trial.random.vector()};
-        const Hit found = accelerated.accelerator.closest(ray), expected = brute_force_hit(*accelerated.scene, ray);
-        trial.record_failure_if(!(found == expected));
-        if (!(found == expected))
-            trial.note("object ", found.object, " primitive ", found.primitive, ", expected ", expected.object, " and ",
-                       expected.primitive);
+        const auto [ray, expected] = check_random_ray(trial, accelerated);
         float nearest = kInfinity; // of several hits, the last one tested wins
         std::uint32_t last = 0;
         for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -184,14 +193,7 @@ std::vector<Shape> coplanar(TrialRandom& random) {
 
 void coplanar_faces(Trial& trial) {
     const AcceleratedScene accelerated(make_scene(coplanar(trial.random)));
-    for (int shot = 0; shot < 32; ++shot) {
-        const Ray ray{trial.random.direction() * 3.0f, trial.random.vector()};
-        const Hit found = accelerated.accelerator.closest(ray), expected = brute_force_hit(*accelerated.scene, ray);
-        trial.record_failure_if(!(found == expected));
-        if (!(found == expected))
-            trial.note("ray from ", exact(ray.origin), " along ", exact(ray.direction), ": primitive ", found.primitive,
-                       " at ", exact(found.t), ", expected ", expected.primitive, " at ", exact(expected.t));
-    }
+    for (int shot = 0; shot < 32; ++shot) check_random_ray(trial, accelerated);
 }
 
 // Rays along the axes ------------------------------------------------------------------------------------------------

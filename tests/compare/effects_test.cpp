@@ -1,8 +1,7 @@
 // These tests compare each light effect of the rasterizer with the path tracer's value of the same quantity.
 #include "common/scene/build_scene.h"
+#include "compare/ladder/rungs.h"
 #include "compare/metrics/error_metrics.h"
-#include "raster/render.h"
-#include "raytrace/render.h"
 
 #include <doctest/doctest.h>
 
@@ -13,13 +12,6 @@ using namespace duet;
 using namespace duet::compare;
 
 namespace {
-
-constexpr raster::LightComponentSet kLights{
-    .emission = true, .direct = true, .environment = false, .reflection = false};
-constexpr raster::LightComponentSet kEnvironment{
-    .emission = false, .direct = false, .environment = true, .reflection = false};
-constexpr raster::LightComponentSet kReflection{
-    .emission = false, .direct = false, .environment = false, .reflection = true};
 
 Scene model(const std::string& name) {
     return load_scene(std::filesystem::path(DUET_SOURCE_DIR) / "models" / (name + ".json"));
@@ -58,7 +50,7 @@ TEST_SUITE("statistical") {
         const Scene scene = model("cornell");
         const View view = small(scene, 96);
         const ImageRgb truth = traced(scene, view, raytrace::Integrator::kLights, false);
-        raster::RasterSettings settings = with_16_samples(kLights);
+        raster::RasterSettings settings = with_16_samples(kLightsAlone);
         const double with = error(scene, view, settings, truth);
         settings.shadows = false;
         const double without = error(scene, view, settings, truth);
@@ -71,7 +63,7 @@ TEST_SUITE("statistical") {
         const Scene scene = model("everything");
         const View view = small(scene, 96);
         const ImageRgb truth = traced(scene, view, raytrace::Integrator::kLights, false);
-        raster::RasterSettings settings = with_16_samples(kLights);
+        raster::RasterSettings settings = with_16_samples(kLightsAlone);
         settings.environment = false;
         const double with = error(scene, view, settings, truth);
         settings.shadows = false;
@@ -84,7 +76,7 @@ TEST_SUITE("statistical") {
         const Scene scene = model("spheres");
         const View view = small(scene, 128);
         const ImageRgb truth = traced(scene, view, raytrace::Integrator::kEnvironment, true);
-        raster::RasterSettings settings = with_16_samples(kEnvironment);
+        raster::RasterSettings settings = with_16_samples(kEnvironmentAlone);
         settings.indirect_light = false;
         const double with = error(scene, view, settings, truth);
         settings.ambient_occlusion = false;
@@ -100,7 +92,7 @@ TEST_SUITE("statistical") {
             const View view = small(scene, 128);
             const ImageRgb truth = traced(scene, view, raytrace::Integrator::kReflection, true);
             Control control;
-            const raster::RasterSettings settings = with_16_samples(kReflection);
+            const raster::RasterSettings settings = with_16_samples(kReflectionAlone);
             const double trimmed =
                 error_metrics(raster::render(raster::prepare(scene, settings), view, settings, control).radiance, truth)
                     .relmse_trimmed;
@@ -122,7 +114,7 @@ TEST_SUITE("statistical") {
         finish_scene(scene);
         const View view{scene.camera, 96, 72};
         const ImageRgb truth = traced(scene, view, raytrace::Integrator::kUnshadowed, false);
-        raster::RasterSettings settings = with_16_samples(kLights);
+        raster::RasterSettings settings = with_16_samples(kLightsAlone);
         settings.shadows = false;
         const double found = error(scene, view, settings, truth);
         MESSAGE("relmse ", found);

@@ -27,36 +27,35 @@ inline int pattern(int x, int y, int c) {
     return ((x / 12 + y / 9) % 2 * 110 + x * (1 + c) / 2 + y * (3 - c) / 2) % 256;
 }
 
-/// Returns 8-bit values / 255. The test image has additional noise of up to ±24.
-inline TestPair encoded_pair(int width = 96, int height = 70) {
+/// Fills both images: set(x, y, value of the pattern, noise, test, reference) sets the two values of a channel.
+template <typename Set> TestPair make_pair_of(int width, int height, const Set& set) {
     TestPair pair{ImageRgb(width, height), ImageRgb(width, height)};
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
             for (int c = 0; c < 3; ++c) {
                 const auto u = [](int v) { return static_cast<std::uint32_t>(v); };
-                const int value = pattern(x, y, c);
-                const int noise = static_cast<int>(pixel_noise(u(x), u(y), u(c)) * std::uint64_t{49} >> 24) - 24;
-                pair.reference(x, y)[u(c)] = static_cast<float>(value) / 255.0f;
-                pair.test(x, y)[u(c)] = static_cast<float>(clamp(value + noise, 0, 255)) / 255.0f;
+                set(x, y, pattern(x, y, c), pixel_noise(u(x), u(y), u(c)), pair.test(x, y)[u(c)],
+                    pair.reference(x, y)[u(c)]);
             }
     return pair;
 }
 
+/// Returns 8-bit values / 255. The test image has additional noise of up to ±24.
+inline TestPair encoded_pair(int width = 96, int height = 70) {
+    return make_pair_of(width, height, [](int, int, int value, std::uint32_t noise, float& test, float& reference) {
+        reference = static_cast<float>(value) / 255.0f;
+        test = static_cast<float>(clamp(value + static_cast<int>(noise * std::uint64_t{49} >> 24) - 24, 0, 255)) /
+               255.0f;
+    });
+}
+
 /// Returns linear values up to 4 and a light of 30. The test image is scaled by factors of 0.5 to 1.5.
 inline TestPair linear_pair(int width = 96, int height = 70) {
-    TestPair pair{ImageRgb(width, height), ImageRgb(width, height)};
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x)
-            for (int c = 0; c < 3; ++c) {
-                const auto u = [](int v) { return static_cast<std::uint32_t>(v); };
-                const int value = pattern(x, y, c);
-                const bool area_light = x / 8 == 5 && y / 8 == 3;
-                const float radiance = area_light ? 30.0f : static_cast<float>(value * value) / 16384.0f; // exact
-                const float factor = 0.5f + static_cast<float>(pixel_noise(u(x), u(y), u(c))) / 16777216.0f;
-                pair.reference(x, y)[u(c)] = radiance;
-                pair.test(x, y)[u(c)] = radiance * factor; // rounded to float
-            }
-    return pair;
+    return make_pair_of(width, height, [](int x, int y, int value, std::uint32_t noise, float& test, float& reference) {
+        const bool area_light = x / 8 == 5 && y / 8 == 3;
+        reference = area_light ? 30.0f : static_cast<float>(value * value) / 16384.0f; // exact
+        test = reference * (0.5f + static_cast<float>(noise) / 16777216.0f);           // rounded to float
+    });
 }
 
 } // namespace duet::compare

@@ -38,8 +38,6 @@ public:
     double last_seconds() const { return last_seconds_; }
     /// The functions, called since the start, that said not_attempted().
     const std::vector<std::string>& not_attempted() const { return not_attempted_; }
-    /// Whether the kernel let the worker be shut off from files (seccomp).
-    bool sandboxed() const { return sandboxed_; }
     /// What the student's code printed, at most 8 KiB.
     std::string printed();
 

@@ -131,9 +131,7 @@ TEST_SUITE("unit") {
                 finish_scene(scene);
                 raster::RasterSettings settings = direct_light_only();
                 settings.shadow_map_side = 512;
-                Camera camera = look({0.5, 0.95, 0}, {0, 0.95, 0}); // at the top of the wall
-                camera.projection = Camera::Projection::kOrthographic;
-                camera.height = 0.1;
+                const Camera camera = look_orthographic({0.5, 0.95, 0}, {0, 0.95, 0}, 0.1); // at the top of the wall
                 const ImageFloat found = visible(scene, {camera, 100, 100}, settings);
                 CAPTURE(opacity);
                 CAPTURE(way.x);

@@ -8,18 +8,6 @@
 using namespace duet;
 using namespace duet::test;
 
-namespace {
-
-/// Returns an orthographic camera that looks along −z at a square of this height around the origin.
-Camera facing(double height) {
-    Camera camera = look({0, 0, 4}, {0, 0, 0});
-    camera.projection = Camera::Projection::kOrthographic;
-    camera.height = height;
-    return camera;
-}
-
-} // namespace
-
 TEST_SUITE("unit") {
 
     // Samples are exactly on the dark edges, where rounding gives the lit vertex a weight of either sign.
@@ -43,7 +31,8 @@ TEST_SUITE("unit") {
         add(scene, mesh);
         scene.lights.push_back(SunLight{Vec3(0, 1, 0), Rgb(2)});
         finish_scene(scene);
-        const Rendering seen = render(scene, {facing(4), 128, 128}, with_hits(raster::Shading::kGouraud));
+        const View view{look_orthographic({0, 0, 4}, {0, 0, 0}, 4), 128, 128};
+        const Rendering seen = render(scene, view, with_hits(raster::Shading::kGouraud));
         int lit = 0;
         for (std::size_t i = 0; i < seen.hit.size(); ++i) lit += seen.hit[i].valid() && seen.radiance[i].r > 0;
         CHECK(lit > 4'000);
@@ -63,11 +52,11 @@ TEST_SUITE("unit") {
             scene.lights.push_back(SunLight{normalize(Vec3(0, -1, -1)), Rgb(2)});
             scene.environment = ConstantEnvironment{Rgb(1.0f)};
             finish_scene(scene);
+            const View view{look_orthographic({0, 0, 4}, {0, 0, 0}, 4), 65, 65}; // normals cancel in the middle column
             for (const raster::Shading shading :
                  {raster::Shading::kLit, raster::Shading::kPhong, raster::Shading::kGouraud, raster::Shading::kToon,
                   raster::Shading::kNormal}) {
-                // The normals cancel in the middle column.
-                const Rendering seen = render(scene, {facing(4), 65, 65}, with_hits(shading));
+                const Rendering seen = render(scene, view, with_hits(shading));
                 CAPTURE(cancel);
                 CAPTURE(static_cast<int>(shading));
                 CHECK(seen.statistics.invalid_samples == 0);
@@ -146,7 +135,8 @@ TEST_SUITE("unit") {
         mesh.triangles = {{0, 1, 2}};
         add(scene, mesh, Mat4(), Diffuse{{Rgb(1.0f)}});
         finish_scene(scene);
-        const Rendering shown_image = render(scene, {facing(3), 101, 101}, with_hits(raster::Shading::kWireframe));
+        const View view{look_orthographic({0, 0, 4}, {0, 0, 0}, 3), 101, 101};
+        const Rendering shown_image = render(scene, view, with_hits(raster::Shading::kWireframe));
         // Follow the column through x = −0.5, which crosses the lower edge and the hypotenuse. Each shows the half
         // pixel that is inside the triangle. Along the edge's normal that is 1/2 for the lower edge, and √2/2 in the
         // column for the edge at 45°.

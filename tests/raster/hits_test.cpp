@@ -50,10 +50,16 @@ Mesh soup(Random& random, int count, double reach, double size) {
     return mesh;
 }
 
-Camera orthographic(Camera camera, double height) {
-    camera.projection = Camera::Projection::kOrthographic;
-    camera.height = height;
-    return camera;
+/// Calls check(hit, exact, ray) for each pixel that shows an object, with the hit of its ray in double.
+template <typename Check>
+void for_each_hit(const Scene& scene, const View& view, const Image<Hit>& hits, const Check& check) {
+    const Oracle oracle(scene);
+    const Pinhole pinhole = CameraModel(view).pinhole();
+    for (int y = 0; y < view.height; ++y)
+        for (int x = 0; x < view.width; ++x) {
+            const Rayd ray = pinhole.ray({x + 0.5, y + 0.5});
+            if (hits(x, y).valid()) check(hits(x, y), oracle.trace(ray), ray);
+        }
 }
 
 } // namespace
@@ -119,16 +125,11 @@ TEST_SUITE("unit") {
         finish_scene(scene);
         const View view{look({0.5, 0.3, 4}, {0, 0, 0}, 45), 96, 72};
         const Rendering rendering = check_hits(scene, view);
-        const Oracle oracle(scene);
-        const Pinhole pinhole = CameraModel(view).pinhole();
-        for (int y = 0; y < view.height; ++y)
-            for (int x = 0; x < view.width; ++x) {
-                const Hit& hit = rendering.hit(x, y);
-                const ReferenceHit exact = oracle.trace(pinhole.ray({x + 0.5, y + 0.5}));
-                if (!hit.valid() || hit.primitive != exact.primitive || hit.object != exact.object) continue;
-                REQUIRE(hit.u == doctest::Approx(exact.u).epsilon(1e-6));
-                REQUIRE(hit.v == doctest::Approx(exact.v).epsilon(1e-6));
-            }
+        for_each_hit(scene, view, rendering.hit, [](const Hit& hit, const ReferenceHit& exact, const Rayd&) {
+            if (hit.primitive != exact.primitive || hit.object != exact.object) return;
+            REQUIRE(hit.u == doctest::Approx(exact.u).epsilon(1e-6));
+            REQUIRE(hit.v == doctest::Approx(exact.v).epsilon(1e-6));
+        });
     }
 
     TEST_CASE("a quad's diagonal is no edge of it: distances are exact there, too") {
@@ -139,17 +140,12 @@ TEST_SUITE("unit") {
             add(scene, QuadList{{{random.vector(1), random.vector(4), random.vector(4)}}});
             finish_scene(scene);
             const View view{look({0, 0, 3}, Vec3d(random.vector(1)), 70), 32, 24};
-            const Rendering rendering = render(scene, view, hits_only());
-            const Oracle oracle(scene);
-            const Pinhole pinhole = CameraModel(view).pinhole();
-            for (int y = 0; y < view.height; ++y)
-                for (int x = 0; x < view.width; ++x) {
-                    const Hit& hit = rendering.hit(x, y);
-                    const ReferenceHit exact = oracle.trace(pinhole.ray({x + 0.5, y + 0.5}));
-                    if (!hit.valid() || exact.object == kNoObject || exact.cosine < 0.01) continue;
-                    REQUIRE(static_cast<double>(hit.t) == doctest::Approx(exact.t).epsilon(2e-6));
-                    ++compared;
-                }
+            const Image<Hit> hits = render(scene, view, hits_only()).hit;
+            for_each_hit(scene, view, hits, [&](const Hit& hit, const ReferenceHit& exact, const Rayd&) {
+                if (exact.object == kNoObject || exact.cosine < 0.01) return;
+                REQUIRE(static_cast<double>(hit.t) == doctest::Approx(exact.t).epsilon(2e-6));
+                ++compared;
+            });
         }
         CHECK(compared > 10000);
     }
@@ -186,9 +182,9 @@ TEST_SUITE("unit") {
         add(scene, Sphere{Vec3(0.5f, 0.2f, 0.3f), 0.7f});
         add(scene, torus(24, 12), Mat4(rotation(normalize(Vec3(1, 1, 0)), 0.8f)));
         finish_scene(scene);
-        check_hits(scene, {orthographic(look({3, 2, 4}, {0, 0, 0}), 4), 80, 60}, 0.005);
+        check_hits(scene, {look_orthographic({3, 2, 4}, {0, 0, 0}, 4), 80, 60}, 0.005);
         // The near plane cuts all objects.
-        check_hits(scene, {orthographic(look({0.1, 0.1, 0.5}, {0, 0, 0}), 2), 80, 60}, 0.005);
+        check_hits(scene, {look_orthographic({0.1, 0.1, 0.5}, {0, 0, 0}, 2), 80, 60}, 0.005);
     }
 
     TEST_CASE("spheres and ellipsoids have the silhouettes that rays see, from everywhere") {

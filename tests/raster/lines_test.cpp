@@ -137,9 +137,7 @@ TEST_SUITE("unit") {
         Scene scene;
         add(scene, QuadList{{Quad{Vec3(-1, -1, 0), Vec3(2, 0, 0), Vec3(0, 2, 0)}}});
         finish_scene(scene);
-        View view{look({0, 0, 4}, {0, 0, 0}, 40), 64, 64};
-        view.camera.projection = Camera::Projection::kOrthographic;
-        view.camera.height = 2.5;
+        const View view{look_orthographic({0, 0, 4}, {0, 0, 0}, 2.5), 64, 64};
         raster::RasterSettings settings;
         settings.shading = raster::Shading::kLines;
         const Rendering shown_image = render(scene, view, settings);

@@ -84,9 +84,7 @@ TEST_SUITE("unit") {
         Scene scene;
         add(scene, Sphere{Vec3(0, 0, 0), 1}, Mat4(), Diffuse{{Rgb(1.0f)}});
         finish_scene(scene);
-        View view{look({0, 0, 5}, {0, 0, 0}), 32, 32};
-        view.camera.projection = Camera::Projection::kOrthographic;
-        view.camera.height = 4; // 8 pixels per meter
+        const View view{look_orthographic({0, 0, 5}, {0, 0, 0}, 4), 32, 32}; // 8 pixels per meter
         const Rendering rendering = render(scene, view, silhouettes(256));
         double area = 0;
         for (const Rgb c : rendering.radiance) area += static_cast<double>(c.r);
@@ -102,9 +100,7 @@ TEST_SUITE("unit") {
             add(scene, QuadList{{{Vec3(-8, -8, 0), Vec3(8 + edge, 0, 0), Vec3(0, 16, 0)}}}, Mat4(),
                 Diffuse{{Rgb(1.0f)}});
             finish_scene(scene);
-            View view{look({0, 0, 5}, {0, 0, 0}), 8, 8};
-            view.camera.projection = Camera::Projection::kOrthographic;
-            view.camera.height = 8;
+            const View view{look_orthographic({0, 0, 5}, {0, 0, 0}, 8), 8, 8};
             const Rendering rendering = render(scene, view, silhouettes(64));
             CHECK(static_cast<double>(rendering.radiance(4, 4).r) ==
                   doctest::Approx(static_cast<double>(edge)).epsilon(0.03));
@@ -119,9 +115,7 @@ TEST_SUITE("unit") {
             add(scene, QuadList{{{Vec3(-8, -4, 0), Vec3(8, 0, 0), Vec3(0, 8, 0)}}}, Mat4(), Diffuse{{Rgb(1.0f)}});
         mover.place(Mat4(), Mat4(translation(Vec3(2, 0, 0)))); // its right edge moves from x = 0 to x = 2
         finish_scene(scene);
-        View view{look({0, 0, 5}, {0, 0, 0}), 64, 8};
-        view.camera.projection = Camera::Projection::kOrthographic;
-        view.camera.height = 1; // 8 pixels per meter: from column 32 to column 48
+        View view{look_orthographic({0, 0, 5}, {0, 0, 0}, 1), 64, 8}; // 8 pixels per meter: from column 32 to 48
         const Rendering blurred = render(scene, view, silhouettes(256));
         for (int x = 0; x < 64; ++x) {
             const double expected = std::clamp((48 - (x + 0.5)) / 16, 0.0, 1.0);

@@ -60,6 +60,14 @@ inline Camera look(Vec3d eye, Vec3d at, double fov_degrees = 40) {
     return camera;
 }
 
+/// Returns an orthographic camera, whose image shows this height in meters.
+inline Camera look_orthographic(Vec3d eye, Vec3d at, double height) {
+    Camera camera = look(eye, at);
+    camera.projection = Camera::Projection::kOrthographic;
+    camera.height = height;
+    return camera;
+}
+
 inline Rendering render(const Scene& scene, const View& view, const raster::RasterSettings& settings) {
     Control control;
     return raster::render(raster::prepare(scene, settings), view, settings, control);

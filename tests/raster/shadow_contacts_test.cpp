@@ -30,10 +30,8 @@ Scene with_sun(Vec3 way) {
 
 /// Returns a camera that looks straight down at a square of the floor from a height.
 Camera from_above(double eye_height, double width) {
-    Camera camera = look({0, eye_height, 0}, {0, 0, 0});
-    camera.projection = Camera::Projection::kOrthographic;
+    Camera camera = look_orthographic({0, eye_height, 0}, {0, 0, 0}, width);
     camera.up = {0, 0, -1};
-    camera.height = width;
     return camera;
 }
 
@@ -135,9 +133,7 @@ TEST_SUITE("unit") {
                 finish_scene(scene);
                 raster::RasterSettings settings = direct_light_only();
                 settings.shadow_map_side = side;
-                Camera camera = look({0.5, 0.9, 0}, {0, 0.9, 0});
-                camera.projection = Camera::Projection::kOrthographic;
-                camera.height = 0.2;
+                const Camera camera = look_orthographic({0.5, 0.9, 0}, {0, 0.9, 0}, 0.2);
                 const ImageFloat found = arriving(scene, {camera, 100, 100}, settings);
                 double lit = 0; // meters of full light, across the wall
                 for (const float part : found) lit += static_cast<double>(part) * 0.2 / 100 / 100;
@@ -176,9 +172,7 @@ TEST_SUITE("unit") {
                 finish_scene(scene);
                 raster::RasterSettings settings = direct_light_only();
                 settings.shadow_map_side = side;
-                Camera camera = look({0.5, 0.975, 0}, {0, 0.975, 0});
-                camera.projection = Camera::Projection::kOrthographic;
-                camera.height = 0.05;
+                const Camera camera = look_orthographic({0.5, 0.975, 0}, {0, 0.975, 0}, 0.05);
                 double lit = 0; // fraction of the wall
                 for (const float part : arriving(scene, {camera, 100, 100}, settings))
                     lit += static_cast<double>(part) / sqr(100.0);

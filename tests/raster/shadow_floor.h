@@ -14,10 +14,8 @@ inline constexpr double kFilterRadius = 1.5;
 
 /// Returns a view straight down at [−2, 2]² of the floor, from below all shadow casters.
 inline View over_floor(double height = 0.25) {
-    Camera camera = look({0, height, 0}, {0, 0, 0});
-    camera.projection = Camera::Projection::kOrthographic;
+    Camera camera = look_orthographic({0, height, 0}, {0, 0, 0}, kSquare);
     camera.up = {0, 0, -1};
-    camera.height = kSquare;
     return {camera, kSize, kSize};
 }
 inline Vec3d floor_point(int x, int y) {

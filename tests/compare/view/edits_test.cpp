@@ -4,6 +4,7 @@
 #include "common/scene/motion_bounds.h"
 #include "common/system/error.h"
 #include "common/system/file.h"
+#include "compare/view/inspect.h"
 
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
@@ -33,11 +34,7 @@ const std::string kText = R"({
 })";
 
 Box3 bounds_of(const std::string& text, std::uint32_t entry) {
-    const Scene scene = parse_scene(kPath, text);
-    Box3 box;
-    for (const Object& object : scene.objects)
-        if (object.entry == entry) box.extend(motion_bounds(object, scene.shapes[object.shape]));
-    return box;
+    return entry_bounds(parse_scene(kPath, text), entry);
 }
 
 void check_near(Vec3 a, Vec3 b) { CHECK(length(a - b) < 1e-5f); }
