@@ -10,8 +10,7 @@ namespace {
 std::int64_t pixel_count(const Film& film) { return std::int64_t{film.width()} * film.height(); }
 
 void add_to_all_targets(Film& film, std::uint32_t samples) {
-    for (int y = 0; y < film.height(); ++y)
-        for (int x = 0; x < film.width(); ++x) film.pixels()(x, y).target = film.samples_taken(x, y) + samples;
+    for (Film::Pixel& pixel : film.pixels().pixels()) pixel.target = pixel.samples_taken() + samples;
 }
 
 // Holds the mean over the channels of the variance of one sample, and of that variance divided by (mean² + 0.01). Both
@@ -19,15 +18,15 @@ void add_to_all_targets(Film& film, std::uint32_t samples) {
 struct SampleVariance {
     double absolute = -1, relative = -1;
 };
-SampleVariance sample_variance(const Film& film, int x, int y) {
-    const Rgbd variance = film.variance(x, y), mean = film.mean(x, y);
+SampleVariance sample_variance(const Film::Pixel& pixel) {
+    const Rgbd variance = pixel.variance(), mean = pixel.mean();
     if (!is_finite(variance)) return {};
     SampleVariance sum{0, 0};
     for (std::size_t c = 0; c < 3; ++c) {
         sum.absolute += variance[c];
         sum.relative += variance[c] / (sqr(mean[c]) + 0.01);
     }
-    const double samples = film.samples(x, y);
+    const double samples = pixel.samples();
     return {sum.absolute / 3 * samples, sum.relative / 3 * samples};
 }
 
@@ -38,12 +37,11 @@ Image<double> mean_of_neighbors(const Image<double>& own) {
         for (int x = 0; x < own.width(); ++x) {
             double sum = 0;
             int known = 0;
-            for (int j = std::max(y - 1, 0); j <= std::min(y + 1, own.height() - 1); ++j)
-                for (int i = std::max(x - 1, 0); i <= std::min(x + 1, own.width() - 1); ++i) {
-                    if ((i == x && j == y) || own(i, j) < 0) continue;
-                    sum += own(i, j);
-                    ++known;
-                }
+            for_each_neighbor(own.width(), own.height(), x, y, [&](int i, int j) {
+                if (own(i, j) < 0) return;
+                sum += own(i, j);
+                ++known;
+            });
             result(x, y) = known > 0 ? sum / known : 0;
         }
     return result;
@@ -61,12 +59,11 @@ void normalize(Image<double>& values) {
 // Returns s for each pixel; see allocate_samples.
 Image<double> smoothed_variance(const Film& film) {
     Image<double> absolute(film.width(), film.height()), relative(film.width(), film.height());
-    for (int y = 0; y < film.height(); ++y)
-        for (int x = 0; x < film.width(); ++x) {
-            const SampleVariance own = sample_variance(film, x, y);
-            absolute(x, y) = own.absolute;
-            relative(x, y) = own.relative;
-        }
+    for (std::size_t i = 0; i < absolute.size(); ++i) {
+        const SampleVariance own = sample_variance(film.pixels()[i]);
+        absolute[i] = own.absolute;
+        relative[i] = own.relative;
+    }
     Image<double> s = mean_of_neighbors(relative), other = mean_of_neighbors(absolute);
     normalize(s);
     normalize(other);
@@ -104,13 +101,12 @@ void allocate_samples(Film& film, std::int64_t samples) {
     std::vector<PixelShare> shares;
     shares.reserve(variance.size());
     double high = 0;
-    for (int y = 0; y < film.height(); ++y)
-        for (int x = 0; x < film.width(); ++x) {
-            const PixelShare share{std::sqrt(std::max(variance(x, y), kMinVariance)),
-                                   static_cast<double>(film.samples_taken(x, y))};
-            high = std::max(high, 2 * share.taken / share.deviation);
-            shares.push_back(share);
-        }
+    for (std::size_t i = 0; i < variance.size(); ++i) {
+        const PixelShare share{std::sqrt(std::max(variance[i], kMinVariance)),
+                               static_cast<double>(film.pixels()[i].samples_taken())};
+        high = std::max(high, 2 * share.taken / share.deviation);
+        shares.push_back(share);
+    }
     const auto wanted = static_cast<double>(samples);
     double low = 0;
     for (int i = 0; i < 24; ++i) { // bisection for the scale that uses up the samples

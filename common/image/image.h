@@ -44,6 +44,13 @@ private:
     Pixels pixels_;
 };
 
+/// Calls visit(i, j) for each of the up to eight neighbors of pixel (x, y) in an image of this size, row by row.
+template <typename Visit> void for_each_neighbor(int width, int height, int x, int y, const Visit& visit) {
+    for (int j = max(y - 1, 0); j <= min(y + 1, height - 1); ++j)
+        for (int i = max(x - 1, 0); i <= min(x + 1, width - 1); ++i)
+            if (i != x || j != y) visit(i, j);
+}
+
 using ImageRgb = Image<Rgb>;
 using ImageFloat = Image<float>;
 

@@ -22,17 +22,15 @@ bool is_known(const Film::Pixel& pixel) {
     return true;
 }
 
-// Returns the variance of one sample for each known pixel. See Film::variance.
+// Returns the variance of one sample for each known pixel.
 Planes sample_variance(const Film& film, const Planes& known) {
     Planes variance(film.width(), film.height(), 3);
     for (int y = 0; y < film.height(); ++y)
         for (int x = 0; x < film.width(); ++x) {
             if (*known.at(0, x, y) == 0) continue;
             const Film::Pixel& pixel = film.pixels()(x, y);
-            const double n0 = pixel.count[0], n1 = pixel.count[1];
-            const Rgbd difference = mean(pixel, 0) - mean(pixel, 1);
-            for (std::size_t c = 0; c < 3; ++c)
-                *variance.at(c, x, y) = static_cast<float>(difference[c] * difference[c] * (n0 * n1 / (n0 + n1)));
+            const Rgbd of_sample = pixel.variance() * static_cast<double>(pixel.samples());
+            for (std::size_t c = 0; c < 3; ++c) *variance.at(c, x, y) = static_cast<float>(of_sample[c]);
         }
     return variance;
 }
@@ -43,9 +41,9 @@ float reliability(const std::array<Planes, 2>& mean, std::size_t half, int x, in
         return *mean[h].at(0, i, j) + *mean[h].at(1, i, j) + *mean[h].at(2, i, j);
     };
     float limit = brightness(1 - half, x, y);
-    for (int j = std::max(y - 1, 0); j <= std::min(y + 1, mean[0].height() - 1); ++j)
-        for (int i = std::max(x - 1, 0); i <= std::min(x + 1, mean[0].width() - 1); ++i)
-            if (i != x || j != y) limit = std::max({limit, brightness(0, i, j), brightness(1, i, j)});
+    for_each_neighbor(mean[0].width(), mean[0].height(), x, y, [&](int i, int j) {
+        limit = std::max({limit, brightness(0, i, j), brightness(1, i, j)});
+    });
     limit *= kFireflyRatio;
     const float own = brightness(half, x, y);
     return own > limit ? limit / own : 1;

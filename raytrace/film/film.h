@@ -17,6 +17,24 @@ class Film {
 public:
     static constexpr std::size_t kReplicates = 2;
 
+    /// Stores the sum and the number of valid samples for each replicate.
+    struct Pixel {
+        std::array<Rgbd, kReplicates> sum{};
+        std::array<std::uint32_t, kReplicates> count{};
+        std::uint32_t invalid = 0;
+        std::uint32_t target = 0; ///< number of samples that the pixel must have at the end of the current pass
+
+        /// Returns the mean of all valid samples, or black if there is none.
+        Rgbd mean() const;
+        /// Returns the estimated variance of mean() for each channel, or infinity if a replicate has no sample.
+        Rgbd variance() const;
+        /// Returns the number of valid samples.
+        std::uint32_t samples() const { return count[0] + count[1]; }
+        /// Returns the number of samples taken, including the dropped ones. If samples are taken in order, this is the
+        /// index of the next sample.
+        std::uint32_t samples_taken() const { return samples() + invalid; }
+    };
+
     Film(int width, int height);
 
     /// Adds a valid sample (is_valid_radiance) to a replicate of pixel (x, y) and returns true. An invalid sample is
@@ -25,21 +43,19 @@ public:
 
     int width() const { return pixels_.width(); }
     int height() const { return pixels_.height(); }
-    /// Returns the mean of all valid samples of a pixel, or black if it has none.
-    Rgbd mean(int x, int y) const;
-    /// Returns the number of samples taken for a pixel, including the dropped ones. If samples are taken in order, this
-    /// is the index of the next sample.
-    std::uint32_t samples_taken(int x, int y) const;
+    // Each of the following functions returns the value of Pixel's function of the same name.
+    Rgbd mean(int x, int y) const { return pixels_(x, y).mean(); }
+    Rgbd variance(int x, int y) const { return pixels_(x, y).variance(); }
+    std::uint32_t samples(int x, int y) const { return pixels_(x, y).samples(); }
+    std::uint32_t samples_taken(int x, int y) const { return pixels_(x, y).samples_taken(); }
     /// Returns the minimum of samples_taken() over all pixels.
     std::uint32_t min_samples_taken() const;
+    /// Returns the maximum of samples_taken() over all pixels.
+    std::uint32_t max_samples_taken() const;
     /// Returns the sum of samples_taken() over all pixels.
     std::int64_t total_samples_taken() const;
     /// Returns whether every pixel has reached its target number of samples (see Pixel::target).
     bool complete() const;
-    /// Returns the estimated variance of mean(x, y) for each channel, or infinity if a replicate has no sample.
-    Rgbd variance(int x, int y) const;
-    /// Returns the number of valid samples of a pixel.
-    std::uint32_t samples(int x, int y) const;
     /// Returns the number of dropped samples of a pixel: those that are NaN, infinite or negative.
     std::uint32_t invalid(int x, int y) const { return pixels_(x, y).invalid; }
 
@@ -56,13 +72,6 @@ public:
     /// replicates of equal size is the smaller of their two means: a brightness that both replicates contain is real.
     double estimated_relmse() const;
 
-    /// Stores the sum and the number of valid samples for each replicate.
-    struct Pixel {
-        std::array<Rgbd, kReplicates> sum{};
-        std::array<std::uint32_t, kReplicates> count{};
-        std::uint32_t invalid = 0;
-        std::uint32_t target = 0; ///< number of samples that the pixel must have at the end of the current pass
-    };
     const Image<Pixel>& pixels() const { return pixels_; }
     Image<Pixel>& pixels() { return pixels_; }
 

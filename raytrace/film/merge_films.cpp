@@ -15,13 +15,6 @@ namespace duet::raytrace {
 
 namespace {
 
-std::uint32_t max_samples(const Film& film) {
-    std::uint32_t most = 0;
-    for (int y = 0; y < film.height(); ++y)
-        for (int x = 0; x < film.width(); ++x) most = std::max(most, film.samples_taken(x, y));
-    return most;
-}
-
 void add(Film& film, const Film& other) {
     for (std::size_t i = 0; i < film.pixels().size(); ++i) {
         Film::Pixel& to = film.pixels()[i];
@@ -31,7 +24,7 @@ void add(Film& film, const Film& other) {
             to.count[r] += from.count[r];
         }
         to.invalid += from.invalid;
-        to.target = to.count[0] + to.count[1] + to.invalid;
+        to.target = to.samples_taken();
     }
 }
 
@@ -41,7 +34,7 @@ bool is_contiguous(const std::vector<NamedFilm>& films) {
     std::uint64_t next = films.front().stored.first_sample;
     for (const NamedFilm& film : films) {
         const std::uint32_t least = film.stored.film.min_samples_taken();
-        if (film.stored.first_sample != next || least != max_samples(film.stored.film)) return false;
+        if (film.stored.first_sample != next || least != film.stored.film.max_samples_taken()) return false;
         next += least;
     }
     return true;
@@ -89,14 +82,14 @@ StoredFilm merge_films(std::vector<NamedFilm> films) {
     if (films.empty()) throw Error("no film to merge");
     sort_by_samples(films);
     StoredFilm result = std::move(films.front().stored);
-    std::uint64_t end = std::uint64_t{result.first_sample} + max_samples(result.film);
+    std::uint64_t end = std::uint64_t{result.first_sample} + result.film.max_samples_taken();
     for (std::size_t i = 1; i < films.size(); ++i) {
         const auto& [name, stored] = films[i];
         check_same_image(name, stored, result);
         if (stored.first_sample < end)
             throw Error(message(name, ": has samples from ", stored.first_sample, " on, but ", films[i - 1].name,
                                 " has those up to ", end - 1, ": expected films that share none"));
-        end = std::uint64_t{stored.first_sample} + max_samples(stored.film);
+        end = std::uint64_t{stored.first_sample} + stored.film.max_samples_taken();
         add(result.film, stored.film);
     }
     return result;
