@@ -11,25 +11,9 @@
 
 namespace duet::raytrace {
 
-namespace {
-
-Sampler::CameraNeeds camera_needs(const RenderPlan& plan) { return {plan.lens, plan.motion}; }
-
-// Writes each component directly to its destination. If a whole point were copied right after its components were
-// written, the load would stall on store forwarding.
-void set_camera_point(CameraModel::Sample& point, const RenderPlan& plan, int x, int y, const CameraRaySample& u) {
-    const Vec2d offset = plan.filter.sample(u.pixel);
-    point.pixel.x = x + 0.5 + offset.x;
-    point.pixel.y = y + 0.5 + offset.y;
-    point.lens = u.lens;
-    point.time = u.time;
-}
-
-} // namespace
-
 Ray camera_ray(const RenderPlan& plan, const CameraModel& camera, int x, int y, const Sampler& sampler) {
     CameraModel::Sample point;
-    set_camera_point(point, plan, x, y, sampler.camera_ray_samples(camera_needs(plan)));
+    set_camera_point(point, plan, x, y, sampler.camera_ray_samples(plan.camera_needs));
     return camera.ray(point.pixel, Vec2d(point.lens), static_cast<double>(point.time));
 }
 
@@ -121,7 +105,7 @@ private:
         std::array<CameraRaySample, kChunk> random_samples;
         for (std::size_t done = 0; done < rays.size(); done += kChunk) {
             const std::size_t size = std::min(rays.size() - done, kChunk);
-            Sampler::camera_ray_samples(std::span(samplers_).subspan(done, size), camera_needs(context_.plan),
+            Sampler::camera_ray_samples(std::span(samplers_).subspan(done, size), context_.plan.camera_needs,
                                         std::span(random_samples).first(size));
             for (std::size_t i = 0; i < size; ++i) {
                 const Sample& sample = samples_[done + i];

@@ -52,9 +52,9 @@ RenderPlan::RenderPlan(const PathTracerSceneData& prepared_, const View& view, c
       russian_roulette(settings.russian_roulette && max_depth > 1 && settings.integrator != Integrator::kWhitted) {
     const SkipFlags& skips = settings.skips;
     const CameraModel camera(view);
-    lens = camera.has_lens() || !skips.lens;
+    camera_needs.lens = camera.has_lens() || !skips.lens;
     if (scene.needs.footprints) pixel_footprint.emplace(camera.pinhole(), 1);
-    motion = scene.needs.motion || !skips.motion;
+    camera_needs.time = scene.needs.motion || !skips.motion;
     bsdfs = skips.textures ? &prepared.bsdfs : &no_bsdfs_;
     if (!skips.textures) no_bsdfs_.resize(prepared.bsdfs.size());
     for (std::uint32_t i = 0; i < scene.materials.size(); ++i) details.push_back(surface_detail(scene, i));
@@ -98,9 +98,10 @@ std::vector<SkippedWork> skipped(const RenderPlan& plan, const PathTracerSetting
         skip("medium stack", "what a ray is inside of does not matter: there are no media, and no glass absorbs or "
                              "stands in other glass");
     if (!plan.pixel_footprint) skip("texture footprints", "no material has an image that is filtered");
-    if (!plan.lens) skip("lens samples", "the camera has no aperture");
-    if (!plan.motion) skip("time samples", "nothing moves");
-    if (!plan.scene.needs.instances && !plan.motion) skip("instance transforms", "all objects stand in the world");
+    if (!plan.camera_needs.lens) skip("lens samples", "the camera has no aperture");
+    if (!plan.camera_needs.time) skip("time samples", "nothing moves");
+    if (!plan.scene.needs.instances && !plan.camera_needs.time)
+        skip("instance transforms", "all objects stand in the world");
     if (!settings.aovs.any()) skip("auxiliary images", "not requested");
     if (!computes_light(settings.integrator)) {
         skip("bounces", "the integrator shows surfaces, not light");

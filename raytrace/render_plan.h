@@ -39,12 +39,23 @@ struct RenderPlan {
     bool russian_roulette = false; ///< whether roulette may end paths after more than one scattering
     std::optional<PixelFootprint>
         pixel_footprint; ///< footprint of a ray that covers a whole pixel; empty if no texture is filtered
-    bool lens = false;   ///< whether rays start at points sampled on the lens
-    bool motion = false; ///< whether rays have sampled times
+    Sampler::CameraNeeds camera_needs; ///< whether rays start at points sampled on the lens, and at sampled times
 
 private:
     std::vector<std::optional<Bsdf>> no_bsdfs_; ///< `bsdfs` points to it if every BSDF is computed at the hit
 };
+
+/// Sets `point` to the camera sample of pixel (x, y) with the random samples u. Each component is written directly to its
+/// destination. If a whole point were copied right after its components were written, the load would stall on store
+/// forwarding.
+inline void set_camera_point(CameraModel::Sample& point, const RenderPlan& plan, int x, int y,
+                             const CameraRaySample& u) {
+    const Vec2d offset = plan.filter.sample(u.pixel);
+    point.pixel.x = x + 0.5 + offset.x;
+    point.pixel.y = y + 0.5 + offset.y;
+    point.lens = u.lens;
+    point.time = u.time;
+}
 
 /// Returns the steps that the plan leaves out, with the reasons.
 std::vector<SkippedWork> skipped(const RenderPlan& plan, const PathTracerSettings& settings);

@@ -107,7 +107,7 @@ private:
     float common_time() const {
         Sampler sampler = context_.settings.make_sampler();
         sampler.start(0, 0, index_);
-        const CameraRaySample u = sampler.camera_ray_samples({false, context_.plan.motion});
+        const CameraRaySample u = sampler.camera_ray_samples({false, context_.plan.camera_needs.time});
         return static_cast<float>(camera_.time(static_cast<double>(u.time)));
     }
 
@@ -120,7 +120,7 @@ private:
             sampler.start(x, y, index_);
             Ray ray = camera_ray(context_.plan, camera_, x, y, sampler);
             if (radius_ > 0) ray.time = time_;
-            const CameraRaySample u = sampler.camera_ray_samples({context_.plan.lens, context_.plan.motion});
+            const CameraRaySample u = sampler.camera_ray_samples(context_.plan.camera_needs);
             const Pinhole pinhole = camera_.pinhole(Vec2d(u.lens));
             if (light || connected) tracer.trace_light_subpath(ray.time, sampler);
             if (light) {

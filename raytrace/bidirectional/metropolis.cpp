@@ -42,7 +42,7 @@ public:
     // Returns the camera ray of these random samples, and its hit.
     std::pair<Ray, Hit> camera_hit(const FirstBlock& u) {
         ++counts_.camera;
-        const Ray ray = camera_.ray(pixel(u), lens(u), static_cast<double>(context_.plan.motion ? u[4] : 0));
+        const Ray ray = camera_.ray(pixel(u), lens(u), static_cast<double>(context_.plan.camera_needs.time ? u[4] : 0));
         return {ray, context_.plan.prepared.accelerator.closest(ray)};
     }
 
@@ -64,7 +64,9 @@ private:
     Vec2d pixel(const FirstBlock& u) const {
         return {static_cast<double>(u[0]) * context_.view.width, static_cast<double>(u[1]) * context_.view.height};
     }
-    Vec2d lens(const FirstBlock& u) const { return context_.plan.lens ? Vec2d(Vec2(u[2], u[3])) : Vec2d(0.5, 0.5); }
+    Vec2d lens(const FirstBlock& u) const {
+        return context_.plan.camera_needs.lens ? Vec2d(Vec2(u[2], u[3])) : Vec2d(0.5, 0.5);
+    }
 
     const PassContext& context_;
     const CameraModel camera_;

@@ -47,12 +47,8 @@ private:
     // Computes the rays of the batch's i-th pixel.
     void start_rays(int x, int y, std::size_t i) {
         Sampler::start(samplers_, x, y, 0);
-        Sampler::camera_ray_samples(samplers_, {plan_.lens, plan_.motion}, random_samples_);
-        for (std::size_t k = 0; k < kSamples; ++k) {
-            const Vec2d offset = plan_.filter.sample(random_samples_[k].pixel);
-            points_[k] = {Vec2d(x + 0.5 + offset.x, y + 0.5 + offset.y), random_samples_[k].lens,
-                          random_samples_[k].time};
-        }
+        Sampler::camera_ray_samples(samplers_, plan_.camera_needs, random_samples_);
+        for (std::size_t k = 0; k < kSamples; ++k) set_camera_point(points_[k], plan_, x, y, random_samples_[k]);
         camera_.rays(points_, std::span(rays_).subspan(i * kSamples, kSamples));
     }
 
