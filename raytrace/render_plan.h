@@ -45,8 +45,8 @@ private:
     std::vector<std::optional<Bsdf>> no_bsdfs_; ///< `bsdfs` points to it if every BSDF is computed at the hit
 };
 
-/// Sets `point` to the camera sample of pixel (x, y) with the random samples u. Each component is written directly to its
-/// destination. If a whole point were copied right after its components were written, the load would stall on store
+/// Sets `point` to the camera sample of pixel (x, y) with the random samples u. Each component is written directly to
+/// its destination. If a whole point were copied right after its components were written, the load would stall on store
 /// forwarding.
 inline void set_camera_point(CameraModel::Sample& point, const RenderPlan& plan, int x, int y,
                              const CameraRaySample& u) {

@@ -45,11 +45,6 @@ template <typename U> U sobol_point(U reversed_index, U seed) {
     return reverse_bits(owen_scramble(reversed_index, seed));
 }
 
-float sobol_1d(std::uint32_t reversed_index, std::uint32_t seed) {
-    const std::uint32_t point = sobol_point(reversed_index, seed);
-    return unit_float(reverse_bits(owen_scramble(point, scramble_seed(seed, 0u))));
-}
-
 template <typename U> Vec2T<U> sobol_2d_digits(U reversed_index, U seed) {
     const U point = sobol_point(reversed_index, seed);
     return {reverse_bits(owen_scramble(point, scramble_seed(seed, U(0u)))),
@@ -88,13 +83,6 @@ constexpr std::uint32_t spread_bits(std::uint32_t x) {
     x = (x | x << 4) & 0x0f0f0f0fu;
     x = (x | x << 2) & 0x33333333u;
     return (x | x << 1) & 0x55555555u;
-}
-
-float stratified_1d(std::uint32_t index, std::uint32_t count, std::uint64_t key) {
-    const std::uint32_t round = index / count;
-    key = stream_number(key, round);
-    const std::uint32_t s = permute(index % count, count, key);
-    return stratum(s, unit_float(high_bits(stream_number(key, s))), count);
 }
 
 /// Returns a correlated multi-jittered point for any `count` (Kensler 2013, §5). Each of the `count` rows contains one
@@ -165,15 +153,6 @@ void Sampler::share_sequence(std::uint32_t pixel_x, std::uint32_t pixel_y) {
     const std::uint32_t round = index_ >> digits; // each further 2^digits samples use a new sequence
     if (round > 0) pixel_hash_ = hash_combine(pixel_hash_, round);
     index_ = (curve << digits) | (index_ & ((1u << digits) - 1));
-}
-
-float Sampler::get_1d() {
-    const std::uint32_t dimension = dimension_++;
-    if (is_sobol())
-        return sobol_1d(reversed_index_, dimension_seed(low_bits(pixel_hash_), high_bits(pixel_hash_), dimension));
-    const std::uint64_t key = stream_number(pixel_hash_, dimension);
-    if (kind_ == SamplerKind::kStratified) return stratified_1d(index_, samples_per_replicate_, key);
-    return unit_float(high_bits(stream_number(key, index_)));
 }
 
 Vec2 Sampler::get_2d() {

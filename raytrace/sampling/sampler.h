@@ -56,8 +56,6 @@ public:
     /// Returns the replicate (0 or 1) of the current sample.
     std::uint32_t replicate() const { return replicate_; }
 
-    /// Returns the next dimension: a number in [0, 1).
-    float get_1d();
     /// Returns the next two dimensions: two numbers in [0, 1).
     Vec2 get_2d();
     /// This is the number of dimensions in a block.

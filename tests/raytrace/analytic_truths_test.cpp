@@ -212,7 +212,7 @@ TEST_SUITE("statistical") {
                 const Vec3 wo = slanted(cosine);
                 const double albedo = albedo_by_quadrature(bsdf, wo);
                 check(sampled([&](Sampler& sampler) {
-                          const float lobe = sampler.get_1d();
+                          const float lobe = sampler.get_2d().x;
                           const auto s = sample(bsdf, wo, lobe, sampler.get_2d());
                           return s ? static_cast<double>(s->weight.g) : 0.0;
                       }),

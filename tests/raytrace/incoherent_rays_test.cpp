@@ -32,7 +32,7 @@ class RandomNumbers {
 public:
     explicit RandomNumbers(int stream) : sampler_(SamplerKind::kIndependent, 11, 1), stream_(stream) {}
     void start(int i) { sampler_.start(i, stream_, 0); }
-    float one() { return sampler_.get_1d(); }
+    float one() { return sampler_.get_2d().x; }
     Vec2 two() { return sampler_.get_2d(); }
     Vec3 in_cube() { // of side 2 around the origin
         const Vec2 u = two();

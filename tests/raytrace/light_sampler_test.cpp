@@ -23,10 +23,10 @@ Vec3 in_cube(Sampler& s, float half) {
 
 Light random_light(Sampler& s, float size) {
     const Vec3 p = in_cube(s, 5), u = in_cube(s, size), v = in_cube(s, size);
-    const float kind = s.get_1d();
+    const float kind = s.get_2d().x;
     SurfaceLight light;
-    light.radiance = Rgb(std::exp(8 * s.get_1d() - 4));
-    light.two_sided = s.get_1d() < 0.3f;
+    light.radiance = Rgb(std::exp(8 * s.get_2d().x - 4));
+    light.two_sided = s.get_2d().x < 0.3f;
     if (kind < 0.4f)
         light.shape = Quad{p, u, v};
     else if (kind < 0.7f)
@@ -50,7 +50,7 @@ std::vector<Light> random_lights(std::size_t n, std::uint64_t seed, float size =
 
 LightReceiver random_receiver(Sampler& s) {
     const Vec3 p = in_cube(s, 6), n = in_cube(s, 1);
-    return {p, s.get_1d() < 0.2f ? Vec3() : normalize(n)};
+    return {p, s.get_2d().x < 0.2f ? Vec3() : normalize(n)};
 }
 
 /// Returns whether the light can reach the receiver, ignoring shadows.
@@ -95,7 +95,7 @@ TEST_SUITE("unit") {
             LightBounds a, b;
             a.axis = normalize(in_cube(s, 1));
             b.axis = trial % 50 == 0 ? -a.axis : trial % 50 == 1 ? a.axis : normalize(in_cube(s, 1));
-            const float half_a = s.get_1d() * kPi, half_b = s.get_1d() * s.get_1d() * kPi;
+            const float half_a = s.get_2d().x * kPi, half_b = s.get_2d().x * s.get_2d().x * kPi;
             a.cos_normals = std::cos(half_a);
             b.cos_normals = std::cos(half_b);
             a.box.extend(Vec3());

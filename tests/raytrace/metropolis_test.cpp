@@ -171,12 +171,12 @@ TEST_SUITE("statistical") {
         for (std::uint64_t seed = 0; chains < kChains; ++seed) {
             PrimarySample sample = start(seed);
             float current = light(sample);
-            if (2 * uniform.get_1d() >= current) continue; // starts have a density in proportion to their light
+            if (2 * uniform.get_2d().x >= current) continue; // starts have a density in proportion to their light
             double below = 0;
             for (int step = 0; step < kSteps; ++step) {
                 sample.propose();
                 const float proposal = light(sample);
-                if (uniform.get_1d() * current < proposal)
+                if (uniform.get_2d().x * current < proposal)
                     sample.accept(), current = proposal;
                 else
                     sample.reject();

@@ -66,7 +66,7 @@ TEST_SUITE("unit") {
             sampler.start(0, 0, i);
             const Vec3 p(-0.9f, 0, 1.4f);
             const LightReceiver receiver{p, i % 2 == 0 ? Vec3(0, 1, 0) : Vec3()};
-            const float choice = sampler.get_1d();
+            const float choice = sampler.get_2d().x;
             const auto light_sample = sample_li(scene, lights, receiver, choice, sampler.get_2d());
             if (!light_sample) continue;
             if (light_sample->light < 0) {

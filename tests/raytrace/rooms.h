@@ -123,7 +123,7 @@ inline Scene room(RoomLight light, ObjectCount count, const Placement& place, Fi
 inline Scene wild_room(int seed, const Placement& place) {
     SceneBuilder builder;
     Sampler sampler(SamplerKind::kIndependent, static_cast<std::uint64_t>(seed), 1);
-    const auto random = [&] { return sampler.get_1d(); };
+    const auto random = [&] { return sampler.get_2d().x; };
     const auto direction = [&] { return uniform_sphere(sampler.get_2d()); };
     const float s = place.scale;
     const Material kinds[] = {Metal{{Rgb(0.9f, 0.6f, 0.3f)}, 0.8f},

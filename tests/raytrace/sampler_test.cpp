@@ -27,7 +27,7 @@ TEST_SUITE("unit") {
                 together.start(3, 5, index);
                 replicates.start(3, 5, 2 * index);
                 CHECK(together.get_2d() == replicates.get_2d());
-                CHECK(together.get_1d() == replicates.get_1d());
+                CHECK(together.get_2d() == replicates.get_2d());
             }
     }
 
@@ -35,14 +35,14 @@ TEST_SUITE("unit") {
         for (const SamplerKind kind : kAll) {
             Sampler a(kind, 7, 64, 2), b(kind, 7, 64, 2);
             a.start(10, 20, 33);
-            for (int i = 0; i < 9; ++i) a.get_1d();
+            for (int i = 0; i < 9; ++i) a.get_2d();
             a.start(1, 2, 3);
             a.set_dimension(8);
             b.start(1, 2, 3);
             while (b.dimension() < 8) b.get_2d();
             CHECK(a.get_2d() == b.get_2d());
             CHECK(a.dimension() == 10);
-            CHECK(a.get_1d() == b.get_1d());
+            CHECK(a.get_2d() == b.get_2d());
 
             // The number must depend on each argument.
             const auto draw = [&](std::uint64_t seed, int x, int y, std::uint32_t index, std::uint32_t dimension) {
@@ -67,7 +67,7 @@ TEST_SUITE("unit") {
             Sampler sampler(kind, 0, 3);
             for (std::uint32_t i = 0; i < 20'000; ++i) {
                 sampler.start(-5, 2'000'000, i < 10'000 ? i : ~i);
-                const float a = sampler.get_1d();
+                const float a = sampler.get_2d().x;
                 const Vec2 b = sampler.get_2d();
                 REQUIRE((a >= 0 && a < 1 && b.x >= 0 && b.x < 1 && b.y >= 0 && b.y < 1));
             }
@@ -104,7 +104,7 @@ TEST_SUITE("unit") {
         CHECK(center.get_2d() == spread.pixel);
         CHECK(sobol.get_2d() == spread.pixel);
         CHECK(sobol.get_2d() == spread.lens);
-        CHECK(sobol.get_1d() == spread.time);
+        CHECK(sobol.get_2d().x == spread.time);
     }
 
     TEST_CASE("what the camera does not ask for moves no other number") {
@@ -196,7 +196,7 @@ TEST_SUITE("statistical") {
                             Sampler s(kind, 100 + k.seed, 16, 2);
                             s.start(2 * x + k.x, y, k.index);
                             s.set_dimension(20 + k.dimension);
-                            return s.get_1d();
+                            return s.get_2d().x;
                         };
                         ++count[static_cast<std::size_t>(draw({}) * kBins) * kBins +
                                 static_cast<std::size_t>(draw(key) * kBins)];

@@ -214,10 +214,10 @@ TEST_SUITE("unit") {
                 sampler.start(static_cast<int>(count), 0, i);
                 const Vec2 at = sampler.get_2d();
                 // A third of the rays start on the floor.
-                Ray ray{Vec3(2 * at.x - 1, i % 3 == 0 ? 0.0f : 1.9f * sampler.get_1d(), 2 * at.y - 1),
+                Ray ray{Vec3(2 * at.x - 1, i % 3 == 0 ? 0.0f : 1.9f * sampler.get_2d().x, 2 * at.y - 1),
                         uniform_sphere(sampler.get_2d())};
                 if (i % 5 == 0) ray.direction = Vec3(i % 2 == 0 ? 1.0f : -1.0f, 0, 0);
-                if (i % 7 == 0) ray.t_max = sampler.get_1d();
+                if (i % 7 == 0) ray.t_max = sampler.get_2d().x;
                 if (i % 31 == 30) ray.direction = {};
                 if (i % 37 == 36) ray.t_max = std::numeric_limits<float>::quiet_NaN();
                 rays.push_back(ray);

@@ -201,7 +201,7 @@ TEST_SUITE("statistical") {
                 double own = 0, own2 = 0, uniform = 0, uniform2 = 0;
                 for (int i = 0; i < kSamples; ++i) {
                     sampler.start(0, 0, static_cast<std::uint32_t>(i));
-                    const float lobe = sampler.get_1d();
+                    const float lobe = sampler.get_2d().x;
                     const auto s = sample(m.bsdf, wo, lobe, sampler.get_2d());
                     const double a = s ? static_cast<double>(s->weight.r) : 0.0;
                     const Vec3 wi = uniform_sphere(sampler.get_2d());

@@ -87,7 +87,7 @@ template <typename F> void for_numbers(int n, F f) {
     Sampler sampler(SamplerKind::kSobol, 17, n);
     for (int i = 0; i < n; ++i) {
         sampler.start(0, 0, static_cast<std::uint32_t>(i));
-        const float lobe = sampler.get_1d();
+        const float lobe = sampler.get_2d().x;
         f(lobe, sampler.get_2d());
     }
 }
@@ -98,7 +98,7 @@ inline Rgbd albedo(const Bsdf& bsdf, Vec3 wo, TransportMode mode, int n) {
     Sampler sampler(SamplerKind::kSobol, 23, n);
     for (int i = 0; i < n; ++i) {
         sampler.start(0, 0, static_cast<std::uint32_t>(i));
-        const float lobe = sampler.get_1d();
+        const float lobe = sampler.get_2d().x;
         if (const auto s = sample(bsdf, wo, lobe, sampler.get_2d(), mode)) sum += Rgbd(s->weight);
     }
     return sum / static_cast<double>(n);

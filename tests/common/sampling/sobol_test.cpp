@@ -116,7 +116,7 @@ TEST_SUITE("unit") {
                     }
     }
 
-    TEST_CASE("one dimension is stratified at every power of two") {
+    TEST_CASE("the second of a pair of numbers is stratified at every power of two") {
         for (const SamplerKind kind : {SamplerKind::kSobol, SamplerKind::kBlueNoise, SamplerKind::kStratified})
             for (int replicate = 0; replicate < 2; ++replicate)
                 for (int n = 1; n <= 1024; n *= 2) {
@@ -124,7 +124,7 @@ TEST_SUITE("unit") {
                     std::set<int> cells;
                     for (int i = 0; i < n; ++i) {
                         sampler.start(0, 0, static_cast<std::uint32_t>(2 * i + replicate));
-                        cells.insert(static_cast<int>(sampler.get_1d() * static_cast<float>(n)));
+                        cells.insert(static_cast<int>(sampler.get_2d().y * static_cast<float>(n)));
                     }
                     CHECK(static_cast<int>(cells.size()) == n);
                 }
