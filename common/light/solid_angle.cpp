@@ -43,8 +43,7 @@ std::optional<SolidAngleSample> sample_solid_angle(const Sphere& sphere, Vec3d p
     const double d2 = length_squared(to_center), r2 = sqr(static_cast<double>(sphere.radius));
     if (!(r2 > 0)) return std::nullopt;
     if (d2 <= r2) { // from inside, every direction hits the sphere
-        const double z = 1 - 2 * u.y, ring_radius = 2 * std::sqrt(u.y * (1 - u.y)), phi = 2 * kPiDouble * u.x;
-        const Vec3d wi(ring_radius * std::cos(phi), ring_radius * std::sin(phi), z);
+        const Vec3d wi = uniform_sphere(u);
         const double along = dot(wi, to_center), root = safe_sqrt(along * along + (r2 - d2));
         const double distance = along > 0 ? along + root : (r2 - d2) / (root - along);
         return SolidAngleSample{wi, std::isfinite(distance) ? distance : 0, 1 / (4 * kPiDouble)};

@@ -62,9 +62,9 @@ template <typename T> Vec3T<T> cosine_hemisphere(Vec2T<T> u) {
 template <typename T> T cosine_hemisphere_pdf(T cos_theta) { return max(cos_theta, T(0.0f)) * T(kInvPi); }
 
 /// Returns a unit direction of the whole sphere with the uniform density 1/4π.
-inline Vec3 uniform_sphere(Vec2 u) {
-    const Vec2 circle = unit_circle(u.x);
-    const float r = 2 * std::sqrt(u.y * (1 - u.y)); // sin θ = √(1 − z²), computed without cancellation
+template <Arithmetic T> Vec3T<T> uniform_sphere(Vec2T<T> u) {
+    const Vec2T<T> circle = unit_circle(u.x);
+    const T r = 2 * std::sqrt(u.y * (1 - u.y)); // sin θ = √(1 − z²), computed without cancellation
     return {r * circle.x, r * circle.y, 1 - 2 * u.y};
 }
 inline constexpr float kUniformSpherePdf = kInvPi / 4;

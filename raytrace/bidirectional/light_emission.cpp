@@ -20,7 +20,7 @@ struct LightPoint {
 };
 
 LightPoint point_of(const SurfaceLight::Triangle& t, Vec2 u) {
-    const Vec2 b = u.x + u.y > 1 ? Vec2(1 - u.x, 1 - u.y) : u;
+    const Vec2 b = uniform_triangle(u);
     return {t.a + (t.b - t.a) * b.x + (t.c - t.a) * b.y, (abs(t.a) + abs(t.b) + abs(t.c)) * kPositionError,
             normalize(cross(t.b - t.a, t.c - t.a))};
 }
