@@ -51,9 +51,12 @@ ImageEnvironment make_image_environment(ImageRgb image, float scale, float rotat
 
 /// Returns the radiance that arrives from direction w (unit), in W/(m² sr).
 Rgb radiance(const Environment& environment, Vec3 w);
-inline Rgb radiance(const ConstantEnvironment& environment, Vec3) { return environment.radiance; }
-inline Rgb radiance(const SkyEnvironment& sky, Vec3 w) {
-    return lerp(sky.down, sky.up, clamp(0.5f * (w.y + 1), 0.0f, 1.0f));
+template <typename T> RgbT<T> radiance(const ConstantEnvironment& environment, Vec3T<T>) {
+    return broadcast<T>(environment.radiance);
+}
+template <typename T> RgbT<T> radiance(const SkyEnvironment& sky, Vec3T<T> w) {
+    const T height = clamp(T(0.5f) * (w.y + T(1.0f)), T(0.0f), T(1.0f));
+    return lerp(broadcast<T>(sky.down), broadcast<T>(sky.up), height);
 }
 /// Draws a direction in proportion to the luminance above the mean; for an image, in proportion to the mean of each
 /// pixel's cell. Returns nothing where the environment has too little such luminance: BSDF samples then find its

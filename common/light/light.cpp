@@ -21,14 +21,6 @@ std::optional<LightSample> sample_position(Vec3 position, Rgb intensity, Vec3 p)
     return LightSample{Vec3(to_light / d), static_cast<float>(d), incident, 1, true};
 }
 
-/// Returns the fraction of the axis's intensity at an angle of this cosine to the axis, in [0, 1].
-float spot_falloff(const SpotLight& light, float cosine) {
-    if (cosine >= light.cos_inner) return 1;
-    if (cosine <= light.cos_outer) return 0;
-    const float s = (cosine - light.cos_outer) / (light.cos_inner - light.cos_outer);
-    return s * s * (3 - 2 * s);
-}
-
 std::optional<LightSample> draw(const PointLight& light, Vec3 p, Vec2) {
     return sample_position(light.position, light.intensity, p);
 }

@@ -9,14 +9,6 @@ using Vec3s = Vec3T<Floats>;
 using Kind = FrameLight::Kind;
 const Floats kNone(0.0f), kOne(1.0f);
 
-/// Returns the solid angle of a triangle, whose corners are relative to the viewer, with the sign of the determinant of
-/// the corners (Van Oosterom and Strackee 1983, "The Solid Angle of a Plane Triangle").
-Floats solid_angle(const Vec3s& a, const Vec3s& b, const Vec3s& c) {
-    const Floats la = xsimd::sqrt(dot(a, a)), lb = xsimd::sqrt(dot(b, b)), lc = xsimd::sqrt(dot(c, c));
-    return Floats(2.0f) *
-           xsimd::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(a, c) * lb + dot(b, c) * la);
-}
-
 Floats solid_angle(const FrameLight& light, const LightDirection& to, const Vec3s& p) {
     if (light.kind == Kind::kSphere) {
         const Floats sine2 = Floats(sqr(light.radius)) / (to.distance * to.distance);
@@ -26,7 +18,7 @@ Floats solid_angle(const FrameLight& light, const LightDirection& to, const Vec3
     const Vec3s a = broadcast<Floats>(light.position) - p, b = a + broadcast<Floats>(light.u),
                 c = a + broadcast<Floats>(light.v);
     const bool quad = light.kind == Kind::kQuad;
-    // The determinant of the corners in their own order is negative in front of the light, so two are exchanged.
+    // The solid angle of the corners in their own order is negative in front of the light, so two are exchanged.
     const Floats front =
         quad ? solid_angle(a, c, c + broadcast<Floats>(light.u)) + solid_angle(a, c + broadcast<Floats>(light.u), b)
              : solid_angle(a, c, b);

@@ -17,15 +17,8 @@ bool is_dark(const RasterSceneData& data, const RasterSettings& settings) {
 
 namespace {
 
-// The following functions are radiance() of common/light/environment.h for one direction per lane, in float.
-
-RgbT<Floats> radiance_of(const ConstantEnvironment& e, const Vec3T<Floats>&) { return broadcast<Floats>(e.radiance); }
-
-RgbT<Floats> radiance_of(const SkyEnvironment& e, const Vec3T<Floats>& w) {
-    return lerp(broadcast<Floats>(e.down), broadcast<Floats>(e.up), Floats(0.5f) * (w.y + Floats(1.0f)));
-}
-
-RgbT<Floats> radiance_of(const ImageEnvironment& e, const Vec3T<Floats>& w) {
+/// Looks up the image like radiance() of common/light/environment.h, but for one direction per lane, in float.
+RgbT<Floats> radiance(const ImageEnvironment& e, const Vec3T<Floats>& w) {
     const Floats half(0.5f), one(1.0f), zero(0.0f);
     if (e.image.empty()) return {zero, zero, zero};
     const Floats width(static_cast<float>(e.image.width())), rows(static_cast<float>(e.image.height()));
@@ -52,7 +45,7 @@ RgbT<Floats> radiance_of(const ImageEnvironment& e, const Vec3T<Floats>& w) {
 } // namespace
 
 void draw_background(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
-                     Planes3& radiance) {
+                     Planes3& image) {
     if (settings.shading != Shading::kLit || !settings.components.emission || !shows_environment(data, settings))
         return;
     const ScreenProjection& projection = gbuffer.projection;
@@ -65,8 +58,7 @@ void draw_background(const RasterSceneData& data, const RasterSettings& settings
         for_each_batch(gbuffer.width(), gbuffer.height(), settings.threads, [&](int x, int y) {
             const xsimd::batch_bool<float> visible = gbuffer.visible(x, y);
             if (xsimd::all(visible)) return;
-            const RgbT<Floats> arriving = radiance_of(environment, directions(x, y));
-            radiance.set(x, y, blend(visible, radiance.color(x, y), arriving));
+            image.set(x, y, blend(visible, image.color(x, y), radiance(environment, directions(x, y))));
         });
     }, data.scene.environment);
 }

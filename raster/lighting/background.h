@@ -11,8 +11,8 @@ bool shows_environment(const RasterSceneData& data, const RasterSettings& settin
 /// Returns whether nothing emits light, so that the image is black.
 bool is_dark(const RasterSceneData& data, const RasterSettings& settings);
 
-/// Sets the radiance of the pixels without a visible surface.
+/// Sets the radiance in `image` of the pixels without a visible surface.
 void draw_background(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
-                     Planes3& radiance);
+                     Planes3& image);
 
 } // namespace duet::raster

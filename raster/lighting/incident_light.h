@@ -28,10 +28,7 @@ template <typename T> IncidentT<T> incident(const Light& light, Vec3T<T> p) {
     if (const auto* point = std::get_if<PointLight>(&light)) return from(point->position, point->intensity);
     if (const auto* spot = std::get_if<SpotLight>(&light)) {
         IncidentT<T> result = from(spot->position, spot->intensity);
-        const T cosine = -dot(result.wi, broadcast<T>(spot->direction));
-        const float range = spot->cos_inner - spot->cos_outer; // 0 gives a hard edge
-        const T s = clamp((cosine - T(spot->cos_outer)) / T(max(range, 1e-6f)), T(0), T(1));
-        result.irradiance *= s * s * (T(3) - T(2) * s);
+        result.irradiance *= spot_falloff(*spot, -dot(result.wi, broadcast<T>(spot->direction)));
         return result;
     }
     const auto& surface = std::get<SurfaceLight>(light);

@@ -1,8 +1,9 @@
 #include "raster/probes/solid_test.h"
 
+#include "common/light/solid_angle.h"
+
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace duet::raster {
 namespace {
@@ -42,14 +43,6 @@ private:
     std::array<int, 6> crossings_{};
 };
 
-/// Returns the solid angle that a triangle subtends at p; negative if p sees its front (Van Oosterom and Strackee 1983,
-/// "The Solid Angle of a Plane Triangle").
-double solid_angle(Vec3d p, Vec3d a, Vec3d b, Vec3d c) {
-    const Vec3d u = a - p, v = b - p, w = c - p;
-    const double lu = length(u), lv = length(v), lw = length(w);
-    return 2 * std::atan2(dot(u, cross(v, w)), lu * lv * lw + dot(u, v) * lw + dot(v, w) * lu + dot(w, u) * lv);
-}
-
 template <typename Visit> void for_each_triangle(const Mesh& mesh, const Visit& visit) {
     for (const auto& t : mesh.triangles)
         visit(Vec3d(mesh.positions[t[0]]), Vec3d(mesh.positions[t[1]]), Vec3d(mesh.positions[t[2]]));
@@ -72,7 +65,7 @@ template <typename Triangles> bool contains(const Triangles& shape, Vec3d p) {
     for_each_triangle(shape, [&](Vec3d a, Vec3d b, Vec3d c) { rays.cross(a, b, c); });
     if (rays.agree()) return rays.inside();
     double sum = 0;
-    for_each_triangle(shape, [&](Vec3d a, Vec3d b, Vec3d c) { sum += solid_angle(p, a, b, c); });
+    for_each_triangle(shape, [&](Vec3d a, Vec3d b, Vec3d c) { sum += solid_angle(a - p, b - p, c - p); });
     constexpr double kInside = 0.75; // above 1/2, which meshes with inconsistent orientation exceed outside
     return sum > kInside * 4 * kPiDouble;
 }
