@@ -40,8 +40,6 @@ Parameterization on_triangle(const Mesh& mesh, const std::array<std::uint32_t, 3
     return at;
 }
 
-Vec3 unit(Vec3d v) { return Vec3(normalize(v)); }
-
 // Returns |M| |v|, a bound on the magnitude of the terms of M v. w is 1 for a point, which includes the translation,
 // and 0 for a vector.
 Vec3d absolute_transform(const Mat4& m, Vec3d v, double w) {
@@ -112,10 +110,10 @@ SurfacePoint surface_point(const Shape& shape, const Hit& hit, const Ray& ray, c
                             absolute_transform(to_object, from_origin, 0) * static_cast<double>(gamma_bound(5));
     point.p_error = Vec3(abs(p) * kPointRounding + absolute_transform(to_world, in_object, 0) +
                          absolute_transform(to_world, abs(local.p), 1) * static_cast<double>(gamma_bound(2)));
-    point.ng = unit(transform_normal(inverse, local.ng));
+    point.ng = Vec3(normalize(transform_normal(inverse, local.ng)));
     point.ns = point.terminator_normal = point.ng;
     if (local.smooth)
-        set_shading_normal(geometry, unit(transform_normal(inverse, local.ns)),
+        set_shading_normal(geometry, Vec3(normalize(transform_normal(inverse, local.ns))),
                            Vec3(transform_vector(m, local.terminator_offset)));
     point.dpdu = Vec3(transform_vector(m, at.dpdu));
     point.dpdv = Vec3(transform_vector(m, at.dpdv));

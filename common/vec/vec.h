@@ -110,6 +110,8 @@ template <typename T> constexpr T length_squared(Vec3T<T> a) { return dot(a, a);
 template <typename T> T length(Vec3T<T> a) { return sqrt(length_squared(a)); }
 /// Returns a / |a|. A zero vector gives NaN, so callers must test for it where it can occur.
 template <typename T> Vec3T<T> normalize(Vec3T<T> a) { return a / length(a); }
+/// Returns a / |a|, or the zero vector if |a| is 0.
+template <Arithmetic T> Vec3T<T> normalize_or_zero(Vec3T<T> a) { return length(a) > 0 ? normalize(a) : Vec3T<T>(); }
 /// Returns a / |a| for any nonzero vector with finite components. The vector is scaled first, so that the squares
 /// neither overflow nor underflow.
 template <typename T> Vec3T<T> normalize_scaled(Vec3T<T> a) { return normalize(a / max_component(abs(a))); }

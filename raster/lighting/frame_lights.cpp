@@ -38,9 +38,7 @@ struct Converter {
     FrameLight flat(Kind kind, Vec3 corner, Vec3d u, Vec3d v) const {
         FrameLight result(kind);
         result.position = relative(corner), result.u = Vec3(u), result.v = Vec3(v);
-        const Vec3d normal = cross(u, v);
-        const double size = length(normal);
-        if (size > 0) result.axis = Vec3(normal / size);
+        result.axis = Vec3(normalize_or_zero(cross(u, v)));
         return result;
     }
     FrameLight of_shape(const SurfaceLight::Triangle& t) const {

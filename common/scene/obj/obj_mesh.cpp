@@ -8,13 +8,6 @@
 
 namespace duet {
 
-namespace {
-
-/// Returns v normalized, for any length that float represents, and (0, 0, 0) for the zero vector.
-Vec3 unit(Vec3d v) { return v == Vec3d() ? Vec3() : Vec3(normalize_scaled(v)); }
-
-} // namespace
-
 ObjMeshBuilder::ObjMeshBuilder(const std::filesystem::path& path, const ObjCounts& counts, bool normals)
     : path_(&path), counts_(counts), normals_wanted_(normals), table_(1024, kNone) {
     positions_.reserve(counts.positions);
@@ -25,7 +18,8 @@ ObjMeshBuilder::ObjMeshBuilder(const std::filesystem::path& path, const ObjCount
     slots_.reserve(counts.faces);
 }
 
-void ObjMeshBuilder::add_normal(Vec3 n) { normals_.push_back(unit(Vec3d(n))); }
+// The normal may have any length that float represents. Its square in double neither overflows nor underflows.
+void ObjMeshBuilder::add_normal(Vec3 n) { normals_.emplace_back(normalize_or_zero(Vec3d(n))); }
 
 /// Converts an index of the file to one that counts from 0. check_obj has already refused indices out of range by its
 /// own parsing of the text; this second check guards against a different reading by tinyobjloader.
@@ -106,7 +100,7 @@ void ObjMeshBuilder::use_face_normal(std::vector<Corner>& face) {
         return corner.normal == kNone || normals_[corner.normal] == Vec3();
     };
     if (std::none_of(face.begin(), face.end(), lacks_normal)) return;
-    const Vec3 normal = unit(newell_normal(polygon_));
+    const Vec3 normal(normalize_or_zero(newell_normal(polygon_)));
     normals_.push_back(normal == Vec3() ? Vec3(0, 1, 0) : normal); // a face without area is never visible
     for (Corner& corner : face)
         if (lacks_normal(corner)) corner.normal = static_cast<std::uint32_t>(normals_.size() - 1);

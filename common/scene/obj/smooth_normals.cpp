@@ -36,11 +36,6 @@ private:
     std::vector<Index> parent_;
 };
 
-Vec3d unit_or_zero(Vec3d v) {
-    const double size = length(v);
-    return size > 0 ? v / size : Vec3d();
-}
-
 /// An Edge is listed at the end that has the lower welded index.
 struct Edge {
     Index high;   ///< welded index of the edge's other end
@@ -54,8 +49,8 @@ public:
     explicit Smoother(const Mesh& mesh) : mesh_(mesh), welded_(weld(mesh.positions)), sets_(3 * mesh.triangles.size()) {
         normals_.reserve(mesh.triangles.size());
         for (const auto& t : mesh.triangles) {
-            const Vec3d a(mesh.positions[t[0]]);
-            normals_.push_back(unit_or_zero(cross(Vec3d(mesh.positions[t[1]]) - a, Vec3d(mesh.positions[t[2]]) - a)));
+            const Vec3d a(mesh.positions[t[0]]), b(mesh.positions[t[1]]), c(mesh.positions[t[2]]);
+            normals_.push_back(normalize_or_zero(cross(b - a, c - a)));
         }
         join_over_edges();
     }
@@ -136,7 +131,7 @@ void add_smooth_normals(Mesh& mesh) {
     std::unordered_map<std::uint64_t, Index> duplicates; // maps (vertex, set) to the new vertex on a crease
     mesh.normals.assign(vertices, Vec3(0, 1, 0));
     const auto set_normal = [&](Index vertex, Index set) {
-        const Vec3d n = unit_or_zero(normals[set]);
+        const Vec3d n = normalize_or_zero(normals[set]);
         mesh.normals[vertex] = n == Vec3d() ? Vec3(0, 1, 0) : Vec3(n);
     };
     for (Index t = 0; t < mesh.triangles.size(); ++t)
