@@ -3,7 +3,6 @@
 #include "common/sampling/warp.h"
 #include "common/vec/simd.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 

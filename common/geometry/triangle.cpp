@@ -3,7 +3,6 @@
 #include "common/vec/box.h"
 
 #include <array>
-#include <cmath>
 #include <limits>
 
 namespace duet {

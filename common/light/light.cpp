@@ -1,6 +1,5 @@
 #include "common/light/light.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace duet {

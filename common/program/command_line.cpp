@@ -1,7 +1,6 @@
 #include "common/program/command_line.h"
 
 #include "common/image/stored_image.h"
-#include "common/rendering.h"
 #include "common/system/error.h"
 #include "common/system/escape.h"
 #include "common/system/suggestion.h"

@@ -3,8 +3,6 @@
 #include "common/image/image_file.h"
 #include "common/system/file.h"
 
-#include <algorithm>
-
 namespace duet {
 
 namespace {

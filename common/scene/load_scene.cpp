@@ -1,4 +1,3 @@
-#include "common/image/image_file.h"
 #include "common/scene/default_scene.h"
 #include "common/scene/file_cache.h"
 #include "common/scene/json/json_reader.h"
@@ -12,8 +11,6 @@
 #include "common/scene/scene.h"
 #include "common/system/error.h"
 #include "common/system/file.h"
-
-#include <algorithm>
 
 namespace duet {
 

@@ -1,7 +1,6 @@
 #include "raytrace/acceleration/accelerator.h"
 
 #include "common/scene/shared_mesh.h"
-#include "common/system/error.h"
 #include "raytrace/acceleration/bvh_input.h"
 #include "raytrace/acceleration/bvh_packet.h"
 #include "raytrace/acceleration/sort_by_class.h"

@@ -6,8 +6,6 @@
 #include "common/system/error.h"
 #include "common/system/file.h"
 
-#include <bit>
-
 namespace duet::raytrace {
 
 namespace {
@@ -33,6 +31,28 @@ std::string camera_hash(const Camera& camera) {
     return to_hex(hash_bytes(0, {reinterpret_cast<const char*>(numbers), sizeof numbers}));
 }
 
+// Returns all settings that determine the bits of a film's samples, except for the sample numbers. A render can
+// continue a film, and films can be merged, only if these settings are equal.
+std::vector<StoredFilm::Setting> film_settings(const Scene& scene, const View& view,
+                                               const PathTracerSettings& settings) {
+    std::vector<StoredFilm::Setting> all{
+        {"scene", hash_scene_files(scene)},
+        {"camera", camera_hash(view.camera)},
+        {"program", message("raytrace ", DUET_VERSION, ", estimators ", kEstimatorVersion)},
+        {"integrator", std::string(integrator_name(settings.integrator))},
+        {"depth", std::to_string(settings.max_depth)},
+        {"roulette", settings.russian_roulette ? "yes" : "no"},
+        {"environment", settings.environment ? "yes" : "no"},
+        {"sampler", std::string(sampler_name(settings.sampler))},
+        {"filter", std::string(filter_name(settings.filter))},
+        {"seed", std::to_string(settings.seed)},
+        {"adaptive", settings.adaptive ? "yes" : "no"},
+        {"replicates", std::to_string(settings.replicates())},
+    };
+    if (needs_sample_count(settings.sampler)) all.push_back({"samples", std::to_string(settings.samples_per_pixel)});
+    return all;
+}
+
 // Returns the film in the file if the file exists, else an empty film.
 StoredFilm load_or_create(const Scene& scene, const View& view, const PathTracerSettings& settings) {
     if (!settings.film.empty()) // fail now if the film will be too large to be read
@@ -56,26 +76,6 @@ std::optional<FileLock> lock_of(const std::filesystem::path& film) {
 }
 
 } // namespace
-
-std::vector<StoredFilm::Setting> film_settings(const Scene& scene, const View& view,
-                                               const PathTracerSettings& settings) {
-    std::vector<StoredFilm::Setting> all{
-        {"scene", hash_scene_files(scene)},
-        {"camera", camera_hash(view.camera)},
-        {"program", message("raytrace ", DUET_VERSION, ", estimators ", kEstimatorVersion)},
-        {"integrator", std::string(integrator_name(settings.integrator))},
-        {"depth", std::to_string(settings.max_depth)},
-        {"roulette", settings.russian_roulette ? "yes" : "no"},
-        {"environment", settings.environment ? "yes" : "no"},
-        {"sampler", std::string(sampler_name(settings.sampler))},
-        {"filter", std::string(filter_name(settings.filter))},
-        {"seed", std::to_string(settings.seed)},
-        {"adaptive", settings.adaptive ? "yes" : "no"},
-        {"replicates", std::to_string(settings.replicates())},
-    };
-    if (needs_sample_count(settings.sampler)) all.push_back({"samples", std::to_string(settings.samples_per_pixel)});
-    return all;
-}
 
 FilmCheckpoint::FilmCheckpoint(const Scene& scene, const View& view, const PathTracerSettings& settings)
     : path_(settings.film), interval_(settings.film_interval), lock_(lock_of(path_)),

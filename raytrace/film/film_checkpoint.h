@@ -7,18 +7,12 @@
 #include "raytrace/film/film_file.h"
 #include "raytrace/settings.h"
 
-#include <atomic>
 #include <functional>
 #include <mutex>
 #include <optional>
 #include <shared_mutex>
 
 namespace duet::raytrace {
-
-/// Returns all settings that determine the bits of a film's samples, except for the sample numbers. A render can
-/// continue a film, and films can be merged, only if these settings are equal.
-std::vector<StoredFilm::Setting> film_settings(const Scene& scene, const View& view,
-                                               const PathTracerSettings& settings);
 
 /// Owns the film of one render. If PathTracerSettings::film names an existing file, it starts with that film, otherwise
 /// with an empty one. It writes the film to that file at intervals and at the end.

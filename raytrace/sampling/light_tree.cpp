@@ -1,7 +1,5 @@
 #include "raytrace/sampling/light_tree.h"
 
-#include "common/system/error.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>

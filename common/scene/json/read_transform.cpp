@@ -1,7 +1,6 @@
 #include "common/scene/json/read_transform.h"
 
 #include "common/scene/json/scene_keys.h"
-#include "common/system/error.h"
 #include "common/system/suggestion.h"
 
 #include <algorithm>

@@ -3,7 +3,6 @@
 #include "common/system/error.h"
 #include "common/system/escape.h"
 
-#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>

@@ -1,7 +1,6 @@
 #include "common/scene/obj/smooth_normals.h"
 
 #include <algorithm>
-#include <bit>
 #include <numeric>
 #include <unordered_map>
 
