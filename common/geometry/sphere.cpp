@@ -34,9 +34,4 @@ Vec3 sphere_direction(Vec2 uv) {
 // An environment map is seen from inside, which exchanges left and right. Negating z mirrors the direction accordingly.
 Vec2 latlong_uv(Vec3 w) { return sphere_uv({w.x, w.y, -w.z}); }
 
-Vec3 latlong_direction(Vec2 uv) {
-    const Vec3 d = sphere_direction(uv);
-    return {d.x, d.y, -d.z};
-}
-
 } // namespace duet

@@ -75,7 +75,5 @@ Vec3 sphere_direction(Vec2 uv);
 /// Returns the position of the unit direction w in a lat-long environment map: u = ½ + atan2(x, −z)/2π, and v is 0
 /// at −y and 1 at +y. Seen from inside, u increases to the right. The center of the image is at −z.
 Vec2 latlong_uv(Vec3 w);
-/// Returns the unit direction at (u, v). This is the inverse of latlong_uv.
-Vec3 latlong_direction(Vec2 uv);
 
 } // namespace duet

@@ -17,6 +17,12 @@ using namespace duet;
 
 namespace {
 
+/// Returns the unit direction at (u, v) of a lat-long image. This is the inverse of latlong_uv.
+Vec3 latlong_direction(Vec2 uv) {
+    const Vec3 d = sphere_direction(uv);
+    return {d.x, d.y, -d.z};
+}
+
 /// Returns an image with smooth variation, a black region, a bright sun and a bright pixel at the seam.
 ImageRgb shown_image(int width, int height) {
     ImageRgb image(width, height);
