@@ -77,12 +77,8 @@ StoredImage decode_image(const ImageBytes& file, const std::string& extension) {
 }
 
 std::vector<ExrChannel> rgb_channels(const std::string& prefix, const ImageRgb& image) {
-    std::vector<ExrChannel> channels{{prefix + "R", {}, {}}, {prefix + "G", {}, {}}, {prefix + "B", {}, {}}};
-    for (std::size_t c = 0; c < 3; ++c) {
-        channels[c].floats.reserve(image.size());
-        for (const Rgb& pixel : image) channels[c].floats.push_back(pixel[c]);
-    }
-    return channels;
+    return {exr_channel(prefix + "R", image, &Rgb::r), exr_channel(prefix + "G", image, &Rgb::g),
+            exr_channel(prefix + "B", image, &Rgb::b)};
 }
 
 ImageRgb rgb_image(const std::string& prefix, const ExrFile& file) {

@@ -4,7 +4,11 @@
 #include "common/image/stored_image.h"
 
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 namespace duet {
 
@@ -33,6 +37,19 @@ void write_image(const std::filesystem::path& path, const ImageRgb& image, const
 /// Programs call this check before a long render.
 void check_writable_image(const std::filesystem::path& path);
 
+/// Returns a channel with the value get(pixel) of each pixel: a float or an unsigned integer. `get` may be a pointer to a
+/// member.
+template <typename Pixel, typename Get>
+ExrChannel exr_channel(std::string name, const Image<Pixel>& image, const Get& get) {
+    using Value = std::remove_cvref_t<std::invoke_result_t<const Get&, const Pixel&>>;
+    std::vector<Value> values;
+    values.reserve(image.size());
+    for (const Pixel& pixel : image) values.push_back(std::invoke(get, pixel));
+    if constexpr (std::is_same_v<Value, float>)
+        return {std::move(name), std::move(values), {}};
+    else
+        return {std::move(name), {}, std::move(values)};
+}
 /// Returns the three channels of an image, named prefix + "R", prefix + "G" and prefix + "B".
 std::vector<ExrChannel> rgb_channels(const std::string& prefix, const ImageRgb& image);
 /// Writes an EXR file with lossless ZIP compression. Each channel must have width × height values. The file is written

@@ -9,18 +9,6 @@ namespace {
 
 using Channels = std::vector<ExrChannel>;
 
-template <typename Pixel, typename Get> ExrChannel floats(std::string name, const Image<Pixel>& image, Get get) {
-    ExrChannel channel{std::move(name), {}, {}};
-    channel.floats.reserve(image.size());
-    for (const Pixel& pixel : image) channel.floats.push_back(get(pixel));
-    return channel;
-}
-template <typename Pixel, typename Get> ExrChannel integers(std::string name, const Image<Pixel>& image, Get get) {
-    ExrChannel channel{std::move(name), {}, {}};
-    channel.integers.reserve(image.size());
-    for (const Pixel& pixel : image) channel.integers.push_back(get(pixel));
-    return channel;
-}
 struct Layer {
     std::string name;
     Channels channels;
@@ -28,23 +16,19 @@ struct Layer {
 
 std::vector<Layer> auxiliary_layers(const Rendering& r) {
     std::vector<Layer> layers;
-    if (!r.depth.empty()) layers.push_back({"depth", {floats("depth.Z", r.depth, [](float z) { return z; })}});
+    if (!r.depth.empty()) layers.push_back({"depth", {exr_channel("depth.Z", r.depth, std::identity())}});
     if (!r.normal.empty())
         layers.push_back({"normal",
-                          {floats("normal.X", r.normal, [](const Vec3& n) { return n.x; }),
-                           floats("normal.Y", r.normal, [](const Vec3& n) { return n.y; }),
-                           floats("normal.Z", r.normal, [](const Vec3& n) { return n.z; })}});
+                          {exr_channel("normal.X", r.normal, &Vec3::x), exr_channel("normal.Y", r.normal, &Vec3::y),
+                           exr_channel("normal.Z", r.normal, &Vec3::z)}});
     if (!r.albedo.empty()) layers.push_back({"albedo", rgb_channels("albedo.", r.albedo)});
     if (!r.hit.empty())
         layers.push_back({"hit",
-                          {integers("hit.object", r.hit, [](const Hit& h) { return h.object; }),
-                           integers("hit.primitive", r.hit, [](const Hit& h) { return h.primitive; }),
-                           floats("hit.u", r.hit, [](const Hit& h) { return h.u; }),
-                           floats("hit.v", r.hit, [](const Hit& h) { return h.v; }),
-                           floats("hit.t", r.hit, [](const Hit& h) { return h.t; })}});
+                          {exr_channel("hit.object", r.hit, &Hit::object),
+                           exr_channel("hit.primitive", r.hit, &Hit::primitive), exr_channel("hit.u", r.hit, &Hit::u),
+                           exr_channel("hit.v", r.hit, &Hit::v), exr_channel("hit.t", r.hit, &Hit::t)}});
     if (!r.variance.empty()) layers.push_back({"variance", rgb_channels("variance.", r.variance)});
-    if (!r.samples.empty())
-        layers.push_back({"samples", {integers("samples", r.samples, [](std::uint32_t n) { return n; })}});
+    if (!r.samples.empty()) layers.push_back({"samples", {exr_channel("samples", r.samples, std::identity())}});
     return layers;
 }
 

@@ -20,13 +20,6 @@ std::string sum_name(std::size_t replicate, std::size_t color, bool high) {
 }
 std::string count_name(std::size_t replicate) { return message("count", replicate); }
 
-template <typename Get> ExrChannel integers(std::string name, const Film& film, const Get& get) {
-    ExrChannel channel{std::move(name), {}, {}};
-    channel.integers.reserve(film.pixels().size());
-    for (const Film::Pixel& pixel : film.pixels()) channel.integers.push_back(get(pixel));
-    return channel;
-}
-
 /// Finds the integer channels of an EXR file by name. A missing channel throws an Error.
 class Channels {
 public:
@@ -56,18 +49,20 @@ std::uint32_t parse_number(const std::filesystem::path& path, const std::string&
 
 void write_film(const std::filesystem::path& path, const StoredFilm& stored) {
     const Film& film = stored.film;
+    const Image<Film::Pixel>& pixels = film.pixels();
     std::vector<ExrChannel> channels = rgb_channels("", film.image());
     for (std::size_t r = 0; r < Film::kReplicates; ++r) {
         for (std::size_t c = 0; c < 3; ++c)
             for (const bool high : {true, false})
-                channels.push_back(integers(sum_name(r, c, high), film, [&](const Film::Pixel& pixel) {
+                channels.push_back(exr_channel(sum_name(r, c, high), pixels, [&](const Film::Pixel& pixel) {
                     const auto bits = std::bit_cast<std::uint64_t>(pixel.sum[r][c]);
                     return static_cast<std::uint32_t>(high ? bits >> 32 : bits);
                 }));
-        channels.push_back(integers(count_name(r), film, [&](const Film::Pixel& pixel) { return pixel.count[r]; }));
+        const auto count = [&](const Film::Pixel& pixel) { return pixel.count[r]; };
+        channels.push_back(exr_channel(count_name(r), pixels, count));
     }
-    channels.push_back(integers("invalid", film, [](const Film::Pixel& pixel) { return pixel.invalid; }));
-    channels.push_back(integers("target", film, [](const Film::Pixel& pixel) { return pixel.target; }));
+    channels.push_back(exr_channel("invalid", pixels, &Film::Pixel::invalid));
+    channels.push_back(exr_channel("target", pixels, &Film::Pixel::target));
     std::vector<ExrAttribute> attributes{{kPrefix + kFirstSample, std::to_string(stored.first_sample)}};
     for (const auto& [name, value] : stored.settings) attributes.push_back({kPrefix + name, value});
     write_exr(path, film.width(), film.height(), channels, attributes);
