@@ -197,6 +197,24 @@ template <typename Batch> struct Lanes {
     float operator[](std::size_t lane) const { return values[lane]; }
 };
 
+/// A range of the indices of the bits that are set in a mask, from the lowest on: for (std::size_t lane : SetBits(mask)).
+class SetBits {
+public:
+    constexpr explicit SetBits(unsigned mask) : mask_(mask) {}
+
+    constexpr SetBits begin() const { return *this; }
+    constexpr SetBits end() const { return SetBits(0); }
+    constexpr std::size_t operator*() const { return static_cast<std::size_t>(std::countr_zero(mask_)); }
+    constexpr SetBits& operator++() {
+        mask_ &= mask_ - 1;
+        return *this;
+    }
+    constexpr bool operator==(const SetBits&) const = default;
+
+private:
+    unsigned mask_;
+};
+
 /// Stores each lane of the batch whose bit is set in `lanes`: lane i goes to to[i]. The other floats at `to` stay
 /// unchanged.
 template <typename Arch> void store_lanes(xsimd::batch<float, Arch> batch, unsigned lanes, float* to) {
@@ -204,8 +222,7 @@ template <typename Arch> void store_lanes(xsimd::batch<float, Arch> batch, unsig
     if constexpr (sizeof(batch) == 64) return _mm512_mask_store_ps(to, static_cast<__mmask16>(lanes), batch);
 #endif
     const Lanes values(batch);
-    for (; lanes != 0; lanes &= lanes - 1)
-        to[std::countr_zero(lanes)] = values[static_cast<std::size_t>(std::countr_zero(lanes))];
+    for (const std::size_t lane : SetBits(lanes)) to[lane] = values[lane];
 }
 /// Stores `value` in to[i] for each bit i that is set in `lanes`. The other elements stay unchanged.
 template <std::size_t N> void store_lanes(std::uint32_t value, unsigned lanes, std::array<std::uint32_t, N>& to) {
@@ -214,7 +231,7 @@ template <std::size_t N> void store_lanes(std::uint32_t value, unsigned lanes, s
         return _mm512_mask_storeu_epi32(to.data(), static_cast<__mmask16>(lanes),
                                         _mm512_set1_epi32(static_cast<int>(value)));
 #endif
-    for (; lanes != 0; lanes &= lanes - 1) to[static_cast<std::size_t>(std::countr_zero(lanes))] = value;
+    for (const std::size_t lane : SetBits(lanes)) to[lane] = value;
 }
 
 namespace detail {

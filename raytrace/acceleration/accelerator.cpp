@@ -84,8 +84,7 @@ struct Accelerator::PacketInstances {
         std::array<Ray, kSize> local;
         // Lanes that are not active get the ray of the first active one.
         local.fill(scene.to_instance_space(instance, rays[static_cast<std::size_t>(std::countr_zero(active))]));
-        for (unsigned some = active & (active - 1); some != 0; some &= some - 1) {
-            const auto ray = static_cast<std::size_t>(std::countr_zero(some));
+        for (const std::size_t ray : SetBits(active & (active - 1))) {
             local[ray] = scene.to_instance_space(instance, rays[ray]);
         }
         const RayPacket packet(local, shape.bounds);
@@ -93,8 +92,7 @@ struct Accelerator::PacketInstances {
             PacketTraversal(shape, packet, local, active, instance.object, NoInstances(), best).run();
             return;
         }
-        for (; active != 0; active &= active - 1) {
-            const auto ray = static_cast<std::size_t>(std::countr_zero(active));
+        for (const std::size_t ray : SetBits(active)) {
             Hit hit = best.get(ray);
             scene.instance_test<false>(rays[ray], nullptr)(instance, hit);
             best.set(ray, hit);

@@ -62,16 +62,16 @@ private:
         if (test.candidates() == 0) return false;
         if (test.needs_distance() != 0) test.compute_distances(*sheared_, block);
         using Batch = FloatBatch<kBlockSize>;
-        unsigned hits = test.certain() & lane_bits((test.t() > Batch(sheared_->t_min)) & (test.t() <= Batch(best.t)));
+        const unsigned hits =
+            test.certain() & lane_bits((test.t() > Batch(sheared_->t_min)) & (test.t() <= Batch(best.t)));
         if (hits != 0) {
             const Lanes t(test.t()), u(test.u()), v(test.v());
-            for (; hits != 0; hits &= hits - 1) {
-                const auto lane = static_cast<std::size_t>(std::countr_zero(hits));
+            for (const std::size_t lane : SetBits(hits)) {
                 if (consider(block, lane, {t[lane], u[lane], v[lane]}, best)) return true;
             }
         }
-        for (unsigned lanes = test.candidates() & ~test.certain(); lanes != 0; lanes &= lanes - 1)
-            if (test_exactly(block, static_cast<std::size_t>(std::countr_zero(lanes)), best)) return true;
+        for (const std::size_t lane : SetBits(test.candidates() & ~test.certain()))
+            if (test_exactly(block, lane, best)) return true;
         return false;
     }
 
@@ -83,8 +83,7 @@ private:
 
     bool test_spheres(const SphereBlock& block, Hit& best) {
         const SphereBlockTest test(*sphere_ray_, block, best.t);
-        for (unsigned lanes = test.hits(); lanes != 0; lanes &= lanes - 1) {
-            const auto lane = static_cast<std::size_t>(std::countr_zero(lanes));
+        for (const std::size_t lane : SetBits(test.hits())) {
             Hit hit{reported_object(block.object[lane]), 0, 0, 0, test.t(lane)};
             if (!counts(hit, best)) continue;
             if (is_transparent(hit)) {

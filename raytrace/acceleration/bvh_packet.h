@@ -118,12 +118,10 @@ private:
         const BvhNode& node = node_at(bvh_, next);
         const auto [distance, entered] = packet_.enter_any(node, farthest_);
         if (entered == 0) return 0;
-        for (unsigned children = entered; children != 0; children &= children - 1)
-            prefetch(bvh_, node.children[static_cast<std::size_t>(std::countr_zero(children))]);
+        for (const std::size_t child : SetBits(entered)) prefetch(bvh_, node.children[child]);
         const Lanes nearest(distance);
         const std::size_t bottom = size_;
-        for (unsigned children = entered; children != 0; children &= children - 1) {
-            const auto child = static_cast<std::size_t>(std::countr_zero(children));
+        for (const std::size_t child : SetBits(entered)) {
             const auto [entry, enters] = packet_.enter(node, child, ends());
             const unsigned rays = lane_bits(enters) & active_;
             if (rays == 0) continue;
@@ -151,8 +149,7 @@ private:
         } else if (leaf.kind() == PrimitiveKind::kSphere && std::popcount(active) >= kMinRaysPerSphereTest) {
             test(bvh_.spheres[leaf.index()], active);
         } else {
-            for (; active != 0; active &= active - 1) {
-                const auto ray = static_cast<std::size_t>(std::countr_zero(active));
+            for (const std::size_t ray : SetBits(active)) {
                 const auto instance = instances_(rays_[ray]);
                 Hit hit = best_.get(ray);
                 LeafTest<false, decltype(instance)>(bvh_, rays_[ray], object_, instance)(leaf, hit);
@@ -200,8 +197,7 @@ private:
             unsigned candidates = test.candidates() & ~repeated_lanes;
             if (candidates == 0) continue;
             const Lanes t(test.t()), u(test.u()), v(test.v());
-            for (; candidates != 0; candidates &= candidates - 1) {
-                const auto i = static_cast<std::size_t>(std::countr_zero(candidates));
+            for (const std::size_t i : SetBits(candidates)) {
                 const std::size_t lane = i % kBlockSize, ray = rays[i / kBlockSize];
                 if (!(test.certain() >> i & 1))
                     consider_exactly(block, lane, ray);
@@ -229,8 +225,8 @@ private:
             const unsigned needs_distance = test.needs_distance();
             if ((needs_distance & candidates) != 0)
                 consider_with_distance(needs_distance & candidates, block, lane, test);
-            for (unsigned rays = candidates & ~certain & ~needs_distance; rays != 0; rays &= rays - 1)
-                consider_exactly(block, lane, static_cast<std::size_t>(std::countr_zero(rays)));
+            for (const std::size_t ray : SetBits(candidates & ~certain & ~needs_distance))
+                consider_exactly(block, lane, ray);
         }
     }
 
@@ -247,8 +243,7 @@ private:
             const unsigned nearer = test.hits() & lane_bits(test.t() < ends());
             const Batch zero(0.0f);
             const Lanes t(test.t());
-            for (unsigned ties = test.hits() & ~nearer; ties != 0; ties &= ties - 1) {
-                const auto ray = static_cast<std::size_t>(std::countr_zero(ties));
+            for (const std::size_t ray : SetBits(test.hits() & ~nearer)) {
                 consider(ray, {reported_object(block.object[lane]), 0, 0, 0, t[ray]});
             }
             if (nearer != 0) store_hits(nearer, test.t(), zero, zero, block.object[lane], 0);
@@ -267,8 +262,7 @@ private:
     template <typename Block>
     void consider_each(unsigned rays, const Block& block, std::size_t lane, const CandidateTest<Batch>& test) {
         const Lanes t(test.t()), u(test.u()), v(test.v());
-        for (; rays != 0; rays &= rays - 1) {
-            const auto ray = static_cast<std::size_t>(std::countr_zero(rays));
+        for (const std::size_t ray : SetBits(rays)) {
             consider(block, lane, ray, {t[ray], u[ray], v[ray]});
         }
     }
@@ -279,8 +273,7 @@ private:
         const Lanes u(test.u()), v(test.v());
         const unsigned first_half = kCorners == 3 ? ~0u : lane_bits(test.first_half());
         const auto corners = block.corners(lane);
-        for (; rays != 0; rays &= rays - 1) {
-            const auto ray = static_cast<std::size_t>(std::countr_zero(rays));
+        for (const std::size_t ray : SetBits(rays)) {
             const std::size_t second = (first_half >> ray & 1u) != 0 ? 1 : 2;
             const float t = static_cast<float>(plane_distance(Vec3d(rays_[ray].origin), Vec3d(rays_[ray].direction),
                                                               Vec3d(corners[0]), Vec3d(corners[second]),

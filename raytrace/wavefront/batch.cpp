@@ -111,8 +111,7 @@ public:
         const Floats weight = light_sample_weight(vertex_, light);
         const LaneVectors found(path_.throughput * scattered * (weight / light.pdf)),
             origins(ray_origins(light.wi, lit)), p(vertex_.point.p);
-        for (; lit != 0; lit &= lit - 1) {
-            const auto i = static_cast<std::size_t>(std::countr_zero(lit));
+        for (const std::size_t i : SetBits(lit)) {
             ++counts.shadow;
             const LightLiSample sample = samples[i];
             Ray ray{origins.vec(i), sample.wi};
@@ -161,8 +160,7 @@ private:
         unsigned smooth = lane_bits(fraction > Floats(0.0f)) & used_lanes & rays;
         if (smooth == 0) return origins;
         const LaneVectors p(point.p), p_error(point.p_error), ng(point.ng), offsets(point.terminator_offset * fraction);
-        for (; smooth != 0; smooth &= smooth - 1) {
-            const auto i = static_cast<std::size_t>(std::countr_zero(smooth));
+        for (const std::size_t i : SetBits(smooth)) {
             SurfaceGeometryT<float> own;
             own.p = p.vec(i), own.p_error = p_error.vec(i), own.ng = ng.vec(i);
             origins.set(i, origin_on_smooth_surface(plan_, own, offsets.vec(i), paths_[i].ray->time));

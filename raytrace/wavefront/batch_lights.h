@@ -23,8 +23,7 @@ public:
             choices_[i].probability = choice->probability;
         }
         const unsigned done = plan.scene.needs.emitter_textures ? 0 : sample_quads(plan.scene.lights, paths, p);
-        for (unsigned left = chosen_ & ~done; left != 0; left &= left - 1) {
-            const auto i = static_cast<std::size_t>(std::countr_zero(left));
+        for (const std::size_t i : SetBits(chosen_ & ~done)) {
             if (const auto light = sample_li(plan.scene, *plan.lights, paths[i].state->previous_vertex.receiver,
                                              choices_[i], paths[i].random_samples->light))
                 set(i, *light);
@@ -58,8 +57,7 @@ private:
         unsigned quads = 0;
         LaneVectors corner, edge_u, edge_v;
         LaneValues ux, uy, two_sided;
-        for (unsigned left = chosen_; left != 0; left &= left - 1) {
-            const auto i = static_cast<std::size_t>(std::countr_zero(left));
+        for (const std::size_t i : SetBits(chosen_)) {
             if (choices_[i].index >= lights.size()) continue;
             const auto* light = std::get_if<SurfaceLight>(&lights[choices_[i].index]);
             const Quad* quad = light != nullptr ? std::get_if<Quad>(&light->shape) : nullptr;
@@ -77,8 +75,7 @@ private:
         const auto emits = seen.emits(two_sided.doubles() > Doubles(0.0));
         const LaneVectors wi(sample.wi);
         const LaneValues distances(sample.distance), pdfs(sample.pdf);
-        for (unsigned left = quads & lane_bits(emits & is_usable_pdf(sample.pdf)); left != 0; left &= left - 1) {
-            const auto i = static_cast<std::size_t>(std::countr_zero(left));
+        for (const std::size_t i : SetBits(quads & lane_bits(emits & is_usable_pdf(sample.pdf)))) {
             const Rgb radiance = std::get<SurfaceLight>(lights[choices_[i].index]).radiance;
             set(i, light_sample({wi.vec(i), distances.values[i], radiance, pdfs.values[i], false}, choices_[i]));
         }
