@@ -37,8 +37,8 @@ void write_image(const std::filesystem::path& path, const ImageRgb& image, const
 /// Programs call this check before a long render.
 void check_writable_image(const std::filesystem::path& path);
 
-/// Returns a channel with the value get(pixel) of each pixel: a float or an unsigned integer. `get` may be a pointer to a
-/// member.
+/// Returns a channel with the value get(pixel) of each pixel, a float or an unsigned integer. `get` may be a pointer to
+/// a member.
 template <typename Pixel, typename Get>
 ExrChannel exr_channel(std::string name, const Image<Pixel>& image, const Get& get) {
     using Value = std::remove_cvref_t<std::invoke_result_t<const Get&, const Pixel&>>;

@@ -57,8 +57,8 @@ std::optional<LightSample> sample_light(const Light& light, Vec3 p, Vec2 u);
 float light_pdf(const SurfaceLight& light, Vec3 p, Vec3 q);
 /// Returns whether p lies on an emitting side. A point in a flat light's own plane does not.
 bool emits_towards(const SurfaceLight& light, Vec3 p);
-/// Returns the fraction of the axis's intensity at an angle of this cosine to the axis, in [0, 1]. T is float or a batch
-/// of floats.
+/// Returns the fraction of the axis's intensity at an angle of this cosine to the axis, in [0, 1]. T is float or a
+/// batch of floats.
 template <typename T> T spot_falloff(const SpotLight& light, T cosine) {
     const float range = max(light.cos_inner - light.cos_outer, 1e-6f); // equal angles give a hard edge
     const T s = clamp((cosine - T(light.cos_outer)) / T(range), T(0.0f), T(1.0f));

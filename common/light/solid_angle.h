@@ -19,8 +19,8 @@ struct LightTriangle {
 AreaSampling<double> area_seen(const LightTriangle& triangle, Vec3d p);
 QuadSeen<double> area_seen(const Quad& quad, Vec3d p);
 
-/// Returns the solid angle of a triangle whose corners are relative to the viewer. It is negative if the viewer sees the
-/// front (Van Oosterom and Strackee 1983, "The Solid Angle of a Plane Triangle"). T is double or a batch of floats.
+/// Returns the solid angle of a triangle whose corners are relative to the viewer. It is negative if the viewer sees
+/// the front (Van Oosterom and Strackee 1983, "The Solid Angle of a Plane Triangle"). T is double or a batch of floats.
 template <typename T> T solid_angle(Vec3T<T> a, Vec3T<T> b, Vec3T<T> c) {
     using std::atan2;
     const T la = length(a), lb = length(b), lc = length(c);

@@ -197,7 +197,8 @@ template <typename Batch> struct Lanes {
     float operator[](std::size_t lane) const { return values[lane]; }
 };
 
-/// A range of the indices of the bits that are set in a mask, from the lowest on: for (std::size_t lane : SetBits(mask)).
+/// This range consists of the indices of the bits that are set in a mask, from the lowest on. Its use is
+/// `for (const std::size_t lane : SetBits(mask))`.
 class SetBits {
 public:
     constexpr explicit SetBits(unsigned mask) : mask_(mask) {}
