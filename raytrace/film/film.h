@@ -43,7 +43,7 @@ public:
 
     int width() const { return pixels_.width(); }
     int height() const { return pixels_.height(); }
-    // Each of the following functions returns the value of Pixel's function of the same name.
+    /// Each of the following functions returns the value of Pixel's function of the same name.
     Rgbd mean(int x, int y) const { return pixels_(x, y).mean(); }
     Rgbd variance(int x, int y) const { return pixels_(x, y).variance(); }
     std::uint32_t samples(int x, int y) const { return pixels_(x, y).samples(); }
