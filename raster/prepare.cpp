@@ -123,7 +123,7 @@ void prepare_probes(const RasterSettings& settings, RasterSceneData& data, const
 
 /// Renders the data that Shading::kLit reads: shadow maps, then the probes, whose light is shadowed by the maps.
 void prepare_lit(const RasterSettings& settings, RasterSceneData& data, const RasterSceneData* before) {
-    if (settings.shadows && !data.scene.lights.empty()) {
+    if (settings.shadows && data.light_count() > 0) {
         data.shadows = std::make_shared<const Shadows>(data, settings);
         data.memory_bytes += data.shadows->memory_bytes();
     }
@@ -145,8 +145,12 @@ SharedList<PackedShape> packed_shapes(const Scene& scene, const RasterSceneData*
 
 /// Implements prepare(). If `before` is not null, its probes and the packed meshes that both scenes share are reused.
 RasterScene prepare_after(const RasterSceneData* before, const Scene& scene, const RasterSettings& settings) {
+    std::optional<EnvironmentSun> sun;
+    if (settings.shading == Shading::kLit && settings.environment) sun = find_sun(scene.environment);
     RasterSceneData data{.scene = scene,
-                         .sky_irradiance = environment_irradiance(scene.environment, settings.threads),
+                         .sun = sun,
+                         .sky_irradiance =
+                             environment_irradiance(scene.environment, sun ? &*sun : nullptr, settings.threads),
                          .shapes = packed_shapes(scene, before),
                          .texture_samplers = texture_samplers(scene.textures),
                          .ambient = mean_radiance(scene.environment)};

@@ -50,7 +50,10 @@ struct RasterSceneData {
     /// (raster/probes/glass_shapes.h).
     std::vector<std::uint32_t> glass{};
     std::int64_t primitives = 0;          ///< triangles, quads and spheres of all objects
-    IrradianceHarmonics sky_irradiance; ///< irradiance from the environment
+    /// This is the sun of an environment image, if Shading::kLit shows one. Diffuse surfaces and media receive its
+    /// light as that of light(scene.lights.size()).
+    std::optional<EnvironmentSun> sun{};
+    IrradianceHarmonics sky_irradiance; ///< irradiance from the environment without its sun
     SharedList<PackedShape> shapes{};     ///< parallel to Scene::shapes
     std::vector<TextureSampler> texture_samplers{}; ///< one per image
     Rgb ambient{};                        ///< mean radiance of the environment, the ambient light of Shading::kPhong
@@ -63,6 +66,9 @@ struct RasterSceneData {
     std::shared_ptr<const RadianceMap> environment_map{}; ///< of the environment alone; null if the settings need none
     std::shared_ptr<const ReflectionProbes> reflection_probes{}; ///< null if the settings need none
     std::shared_ptr<const GlassShapes> glass_shapes{}; ///< null if the settings need none
+    /// Returns a light: one of Scene::lights, or the sun, which comes after them.
+    Light light(std::size_t index) const { return index < scene.lights.size() ? scene.lights[index] : sun->light; }
+    std::size_t light_count() const { return scene.lights.size() + (sun ? 1 : 0); }
     /// Returns whether any object but `excluded` has an alpha mask or alpha blending.
     bool has_layers(std::uint32_t excluded = kNoObject) const {
         const auto counts = [&](std::uint32_t object) { return object != excluded; };

@@ -35,7 +35,7 @@ struct MeshScene {
                                   .objects = std::vector<raster::RasterObject>(1),
                                   .polygonal = {0},
                                   .spheres = {},
-                                  .sky_irradiance = raster::environment_irradiance(scene.environment, 1),
+                                  .sky_irradiance = raster::environment_irradiance(scene.environment, nullptr, 1),
                                   .shapes = packed(scene.shapes[0])} {}
     MeshScene(const MeshScene&) = delete;
     MeshScene& operator=(const MeshScene&) = delete;

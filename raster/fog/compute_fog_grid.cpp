@@ -249,8 +249,8 @@ void FogGrid::compute(const RasterSceneData& data, const RasterSettings& setting
         stopped_.set_size(columns_, rows_ * (slices_ + 1));
     else
         stopped_ = {};
-    std::vector<FrameLight> lights;
-    if (settings.components.direct) lights = frame_lights(data.scene.lights, *projection_);
+    std::vector<FrameLight> lights = scene_lights(data, settings, *projection_);
+    for (const FrameLight& sun : sun_lights(data, settings, *projection_)) lights.push_back(sun);
     const LightSet light_set(lights, nullptr);
     std::optional<SpaceShadows> shadows;
     if (settings.shadows && data.shadows) shadows.emplace(data, projection_->eye(), options.time);

@@ -44,7 +44,7 @@ RgbT<Floats> radiance(const ImageEnvironment& e, const Vec3T<Floats>& w) {
 
 } // namespace
 
-void draw_background(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
+void draw_background(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer, bool sun,
                      Planes3& image) {
     if (settings.shading != Shading::kLit || !settings.components.emission || !shows_environment(data, settings))
         return;
@@ -58,7 +58,10 @@ void draw_background(const RasterSceneData& data, const RasterSettings& settings
         for_each_batch(gbuffer.width(), gbuffer.height(), settings.threads, [&](int x, int y) {
             const xsimd::batch_bool<float> visible = gbuffer.visible(x, y);
             if (xsimd::all(visible)) return;
-            image.set(x, y, blend(visible, image.color(x, y), radiance(environment, directions(x, y))));
+            const Vec3T<Floats> w = directions(x, y);
+            RgbT<Floats> arriving = radiance(environment, w);
+            if (data.sun && !sun) arriving = data.sun->without_sun(w, arriving);
+            image.set(x, y, blend(visible, image.color(x, y), arriving));
         });
     }, data.scene.environment);
 }

@@ -11,8 +11,9 @@ bool shows_environment(const RasterSceneData& data, const RasterSettings& settin
 /// Returns whether nothing emits light, so that the image is black.
 bool is_dark(const RasterSceneData& data, const RasterSettings& settings);
 
-/// Sets the radiance in `image` of the pixels without a visible surface.
-void draw_background(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
+/// Sets the radiance in `image` of the pixels without a visible surface: that of the environment, with or without its
+/// sun.
+void draw_background(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer, bool sun,
                      Planes3& image);
 
 } // namespace duet::raster

@@ -221,10 +221,9 @@ private:
 } // namespace
 
 void compute_direct_light(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
-                          const LightVisibility* shadows, DirectLight& light, const ChosenLights& chosen) {
+                          std::span<const FrameLight> lights, const LightVisibility* shadows, DirectLight& light,
+                          const ChosenLights& chosen) {
     const int width = gbuffer.width(), height = gbuffer.height();
-    std::vector<FrameLight> lights;
-    if (settings.components.direct) lights = frame_lights(data.scene.lights, gbuffer.projection);
     const bool noisy = shadows != nullptr && std::ranges::any_of(lights, [&](const FrameLight& its) {
         const std::size_t source = shadows->source(its.index);
         return source != LightVisibility::kUnshadowed && shadows->noisy(source);
@@ -253,10 +252,11 @@ void compute_direct_light(const RasterSceneData& data, const RasterSettings& set
 }
 
 void compute_shadowed_light(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
-                            float time, DirectLight& light, const ChosenLights& chosen) {
+                            std::span<const FrameLight> lights, float time, DirectLight& light,
+                            const ChosenLights& chosen) {
     std::optional<SurfaceShadows> shadows;
     if (settings.shadows && data.shadows) shadows.emplace(data, gbuffer, time, settings.threads);
-    compute_direct_light(data, settings, gbuffer, shadows ? &*shadows : nullptr, light, chosen);
+    compute_direct_light(data, settings, gbuffer, lights, shadows ? &*shadows : nullptr, light, chosen);
 }
 
 } // namespace duet::raster

@@ -4,10 +4,11 @@
 #pragma once
 
 #include "raster/gbuffer/gbuffer.h"
-#include "raster/raster_scene.h"
+#include "raster/lighting/frame_lights.h"
 #include "raster/shadows/light_visibility.h"
 
 #include <limits>
+#include <span>
 
 namespace duet::raster {
 
@@ -33,12 +34,15 @@ struct ChosenLights {
     float random = 0;
 };
 
-/// Computes the direct light of all pixels. Lobes whose alpha is below MetalBsdf::kSmoothAlpha are mirrors, which the
-/// reflections show. `shadows` may be null. `light` may be that of an earlier frame, whose memory is then reused.
+/// Computes the light that all pixels receive from the given lights. Lobes whose alpha is below
+/// MetalBsdf::kSmoothAlpha are mirrors, which the reflections show. `shadows` may be null. `light` may be that of an
+/// earlier frame, whose memory is then reused.
 void compute_direct_light(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
-                          const LightVisibility* shadows, DirectLight& light, const ChosenLights& chosen = {});
+                          std::span<const FrameLight> lights, const LightVisibility* shadows, DirectLight& light,
+                          const ChosenLights& chosen = {});
 /// Does the same with the shadow maps of the time `time`, if the settings and the scene have any.
 void compute_shadowed_light(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
-                            float time, DirectLight& light, const ChosenLights& chosen = {});
+                            std::span<const FrameLight> lights, float time, DirectLight& light,
+                            const ChosenLights& chosen = {});
 
 } // namespace duet::raster

@@ -66,6 +66,21 @@ std::vector<FrameLight> frame_lights(std::span<const Light> lights, const Screen
     return result;
 }
 
+std::vector<FrameLight> scene_lights(const RasterSceneData& data, const RasterSettings& settings,
+                                     const ScreenProjection& projection) {
+    if (!settings.components.direct) return {};
+    return frame_lights(data.scene.lights, projection);
+}
+
+std::vector<FrameLight> sun_lights(const RasterSceneData& data, const RasterSettings& settings,
+                                   const ScreenProjection& projection) {
+    if (!data.sun || !settings.components.environment) return {};
+    const Light sun = data.sun->light;
+    std::vector<FrameLight> result = frame_lights(std::span(&sun, 1), projection);
+    for (FrameLight& light : result) light.index = data.scene.lights.size(), light.diffuse_only = true;
+    return result;
+}
+
 LightDirection direction_to(const FrameLight& light, const Vec3T<Floats>& p) {
     if (light.kind == FrameLight::Kind::kSun) return {broadcast<Floats>(light.axis), Floats(kInfinity)};
     const Vec3T<Floats> way = broadcast<Floats>(light.center()) - p;

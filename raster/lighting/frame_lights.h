@@ -4,7 +4,7 @@
 #include "common/light/light.h"
 #include "common/medium/medium.h"
 #include "raster/gbuffer/screen_projection.h"
-#include "raster/settings.h"
+#include "raster/raster_scene.h"
 
 #include <span>
 #include <vector>
@@ -16,13 +16,14 @@ struct FrameLight {
     enum class Kind { kTriangle, kQuad, kSphere, kPoint, kSpot, kSun };
 
     Kind kind;
-    std::size_t index = 0; ///< index into Scene::lights
+    std::size_t index = 0; ///< argument of RasterSceneData::light()
     Rgb emitted;           ///< radiance, W/(m² sr); intensity of a point or spot light, W/sr; irradiance of a sun, W/m²
     Vec3 position;         ///< corner of a flat light, center of a sphere, position of a point or spot light
     Vec3 u, v;             ///< edges of a flat light; its front is the side to which u × v points
     Vec3 axis;             ///< unit normal of a flat light, direction of a spot, direction toward a sun
     float radius = 0;      ///< radius of a sphere
     bool two_sided = false;
+    bool diffuse_only = false; ///< whether the specular lobes see this light in the environment instead
     /// A spot's intensity rises from 0 at the cosine cos_outer to its full value at cos_outer + 1 / inverse_range.
     float cos_outer = -1, inverse_range = 0;
 
@@ -52,6 +53,12 @@ LightDirection direction_to(const FrameLight& light, const Vec3T<Floats>& p);
 
 /// Converts the lights that emit, and leaves out black ones.
 std::vector<FrameLight> frame_lights(std::span<const Light> lights, const ScreenProjection& projection);
+/// Converts Scene::lights. Returns none if the settings leave direct light out.
+std::vector<FrameLight> scene_lights(const RasterSceneData& data, const RasterSettings& settings,
+                                     const ScreenProjection& projection);
+/// Converts the environment's sun. Returns none if there is none or the settings leave the environment's light out.
+std::vector<FrameLight> sun_lights(const RasterSceneData& data, const RasterSettings& settings,
+                                   const ScreenProjection& projection);
 
 /// Converts the scene's media, whose boxes become relative to the eye. Returns none if the settings leave media out.
 std::vector<Medium> frame_media(std::span<const Medium> media, const RasterSettings& settings,

@@ -129,12 +129,13 @@ Color LitBatch::from_sphere(const FrameLight& light, const Lanes& diffuse_lanes)
     return black_outside(lanes, sum) * broadcast<Floats>(light.emitted);
 }
 
-Color LitBatch::from_direction(const Vec3T<Floats>& wi, const Floats& irradiance, const Lanes& diffuse_lanes) const {
+Color LitBatch::from_direction(const Vec3T<Floats>& wi, const Floats& irradiance, const Lanes& diffuse_lanes,
+                               std::size_t lobe_count) const {
     const Floats cosine = dot(wi, z_);
     const Lanes lanes = lanes_ & (cosine > kNone) & (irradiance > kNone);
     if (lane_bits(lanes) == 0) return Color(kNone);
     Color sum = black_outside(diffuse_lanes, diffuse_);
-    for (std::size_t i = 0; i < lobe_count_; ++i) {
+    for (std::size_t i = 0; i < lobe_count; ++i) {
         const Lobe& lobe = lobes_[i];
         if (lane_bits(lanes & lobe.lanes) == 0) continue;
         const Vec3T<Floats> w(dot(wi, x_), dot(wi, y_), max(cosine, Floats(1e-6f)));
@@ -154,7 +155,7 @@ Color LitBatch::from_position(const FrameLight& light, const Lanes& diffuse_lane
     const Vec3T<Floats> wi = way * inverse;
     Floats fraction = inverse * inverse;
     if (light.kind == FrameLight::Kind::kSpot) fraction = dimmed_by_cone(light, wi, fraction);
-    return from_direction(wi, fraction, diffuse_lanes) * broadcast<Floats>(light.emitted);
+    return from_direction(wi, fraction, diffuse_lanes, lobe_count_) * broadcast<Floats>(light.emitted);
 }
 
 Color LitBatch::reflected(const FrameLight& light, Lobes lobes) const {
@@ -170,7 +171,8 @@ Color LitBatch::reflected(const FrameLight& light, Lobes lobes) const {
     case FrameLight::Kind::kSpot:
         return from_position(light, diffuse);
     case FrameLight::Kind::kSun:
-        return from_direction(broadcast<Floats>(light.axis), kOne, diffuse) * broadcast<Floats>(light.emitted);
+        return from_direction(broadcast<Floats>(light.axis), kOne, diffuse, light.diffuse_only ? 0 : lobe_count_) *
+               broadcast<Floats>(light.emitted);
     }
     return Color(kNone);
 }

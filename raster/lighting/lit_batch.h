@@ -52,7 +52,8 @@ private:
     template <std::size_t N> RgbT<Floats> from_polygon(const FrameLight& light, const Lanes& diffuse_lanes) const;
     RgbT<Floats> from_sphere(const FrameLight& light, const Lanes& diffuse_lanes) const;
     RgbT<Floats> from_position(const FrameLight& light, const Lanes& diffuse_lanes) const;
-    RgbT<Floats> from_direction(const Vec3T<Floats>& wi, const Floats& irradiance, const Lanes& diffuse_lanes) const;
+    RgbT<Floats> from_direction(const Vec3T<Floats>& wi, const Floats& irradiance, const Lanes& diffuse_lanes,
+                                std::size_t lobe_count) const;
 
     Vec3T<Floats> p_, x_, y_, z_; ///< the point relative to the eye; the axes of the frame
     Vec3T<Floats> wo_;            ///< local unit direction to the viewer

@@ -53,12 +53,15 @@ std::vector<SkippedWork> list_skipped(const RasterSceneData& data, const RasterS
 void list_shadow_approximations(const RasterSceneData& data, const RasterSettings& settings,
                                 std::vector<std::string>& result) {
     const Scene& scene = data.scene;
-    if (!settings.components.direct || scene.lights.empty()) return;
+    const bool direct = settings.components.direct && !scene.lights.empty(),
+               sun = settings.components.environment && data.sun;
+    if (!direct && !sun) return;
+    if (sun) result.emplace_back("The sun of the environment lights diffuse surfaces as if it were a point.");
     if (!settings.shadows || !data.shadows) {
         result.emplace_back("Direct light is unshadowed.");
         return;
     }
-    if (scene.needs.delta_lights)
+    if (scene.needs.delta_lights || sun)
         result.emplace_back("Shadows of point, spot and sun lights are filtered over about three texels of a map.");
     if (scene.needs.surface_lights)
         result.emplace_back(

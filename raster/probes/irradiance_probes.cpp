@@ -95,9 +95,10 @@ IrradianceProbes::IrradianceProbes(const RasterSceneData& data, const RasterSett
         // A probe's pixels are far apart, so almost all lights are near to some of them. The probe averages over all
         // pixels, which removes the noise of choosing few lights.
         constexpr std::size_t kMostLights = 8;
-        const ChosenLights lights{kMostLights, unit_float(high_bits(mix_bits(i)))};
+        const ProbeCapture::Selection selection{
+            .excluded = data.glass, .sun = false, .lights = {kMostLights, unit_float(high_bits(mix_bits(i)))}};
         for (const int side : {kSide, kFineSide}) {
-            captures[i] = std::make_unique<ProbeCapture>(data, settings, position, side, 0, data.glass, lights);
+            captures[i] = std::make_unique<ProbeCapture>(data, settings, position, side, 0, selection);
             if (effective_pixels(*captures[i]) >= kFewestPixels) break;
         }
         captures[i]->add_fog(data, settings, {});

@@ -16,21 +16,22 @@
 namespace duet::raster {
 namespace {
 
-/// Selects what a capture renders: the objects not in `excluded`, with their light, or one object alone.
-struct Selection {
+/// Selects what a capture renders: all but the given objects, with their light, or these objects alone.
+struct Shown {
     const std::vector<std::uint32_t>& objects;
     bool excluded;
-    ChosenLights chosen{};
+    bool sun = true;
+    ChosenLights lights{};
 };
 
 ProbeCapture::Face capture(const RasterSceneData& data, const RasterSettings& settings, const Camera& camera, int side,
-                           const Selection& selection, std::size_t face_index) {
+                           const Shown& shown, std::size_t face_index) {
     const PassView pass = center_view({camera, side, side});
     const SampleOffset offset = pass.samples.front();
     const TileGrid grid{{0, 0, side, side}};
     const auto geometry = data.geometries->take(), layers = data.geometries->take();
     const auto selected = [&](std::uint32_t object) {
-        return std::binary_search(selection.objects.begin(), selection.objects.end(), object) != selection.excluded;
+        return std::binary_search(shown.objects.begin(), shown.objects.end(), object) != shown.excluded;
     };
     process_geometry(data, grid, pass, settings, *geometry, selected);
     if (data.has_layers()) process_layers(data, grid, pass, settings, *layers, selected);
@@ -41,34 +42,37 @@ ProbeCapture::Face capture(const RasterSceneData& data, const RasterSettings& se
                             pass, grid,     offset,    control};
     // The G-buffer has room for one surface, so a surface with alpha replaces what lies behind it in as many pixels as
     // it blocks of the light (stochastic transparency). An object that is rendered alone replaces it in all.
-    const auto stops = [&](int x, int y, float left) { return !selection.excluded || blocks_in_dither(x, y, left); };
+    const auto stops = [&](int x, int y, float left) { return !shown.excluded || blocks_in_dither(x, y, left); };
     fill_gbuffer(sample, face.gbuffer, face.emission, [&](std::size_t, HitTile& tile, HitLists& lists) {
         lists.for_each_blocking_hit(data.scene, stops, [&](int x, int y, const Hit& hit) {
             tile.exchange(x, y, hit);
             store_hit(sample, x, y, hit, tile.reversed_depth(x, y), face.gbuffer, face.emission);
         });
     });
-    if (!selection.excluded) return face;
-    draw_background(data, settings, face.gbuffer, face.direct);
-    if (data.scene.lights.empty()) return face;
-    ChosenLights chosen = selection.chosen;
+    if (!shown.excluded) return face;
+    draw_background(data, settings, face.gbuffer, shown.sun, face.direct);
+    ChosenLights chosen = shown.lights;
     chosen.random = std::fmod(chosen.random + 0.381966f * static_cast<float>(face_index), 1.0f);
-    DirectLight light;
-    compute_shadowed_light(data, settings, face.gbuffer, pass.time, light, chosen);
-    add_direct_light(face.gbuffer, light, 1, face.direct);
+    const ScreenProjection& projection = face.gbuffer.projection;
+    for (const auto& lights : {scene_lights(data, settings, projection), sun_lights(data, settings, projection)}) {
+        if (lights.empty()) continue;
+        DirectLight light;
+        compute_shadowed_light(data, settings, face.gbuffer, lights, pass.time, light, chosen);
+        add_direct_light(face.gbuffer, light, 1, face.direct);
+    }
     return face;
 }
 
 std::vector<ProbeCapture::Face> capture_all(const RasterSceneData& data, RasterSettings settings, Vec3d center,
-                                            int side, int guard, const Selection& selection) {
+                                            int side, int guard, const Shown& shown) {
     settings.threads = 1;
     settings.components = {};
-    settings.skips.back_faces = settings.skips.back_faces && selection.excluded; // one object is seen from within, too
+    settings.skips.back_faces = settings.skips.back_faces && shown.excluded; // one object is seen from within, too
     const double size = static_cast<double>(length(data.scene.bounds.diagonal())) + 1e-30;
     std::vector<ProbeCapture::Face> faces;
     for (Camera view : cube_views(center, {}, size, side, guard)) {
         view.shutter_open = view.shutter_close = data.scene.camera.shutter_open;
-        faces.push_back(capture(data, settings, view, side, selection, faces.size()));
+        faces.push_back(capture(data, settings, view, side, shown, faces.size()));
     }
     return faces;
 }
@@ -82,9 +86,10 @@ Vec3 point_on_face(const ProbeCapture::Pixel& p, int side) {
 } // namespace
 
 ProbeCapture::ProbeCapture(const RasterSceneData& data, const RasterSettings& settings, Vec3d center, int side,
-                           int guard, const std::vector<std::uint32_t>& excluded, const ChosenLights& chosen)
+                           int guard, const Selection& selection)
     : side_(side), guard_(guard),
-      faces_(capture_all(data, settings, center, side + 2 * guard, guard, {excluded, true, chosen})) {}
+      faces_(capture_all(data, settings, center, side + 2 * guard, guard,
+                         {selection.excluded, true, selection.sun, selection.lights})) {}
 
 ProbeCapture::ProbeCapture(const RasterSceneData& data, const RasterSettings& settings, Vec3d center,
                            std::uint32_t object, int side)

@@ -20,10 +20,15 @@ public:
         Planes3 direct;   ///< direct light that the surfaces reflect; the background's radiance
         Planes3 haze;     ///< FogGrid::haze toward the probe; empty if there are no media
     };
-    /// Renders side × side pixels for each face, and `guard` more on each side, on the calling thread. The objects in
-    /// `excluded`, which is sorted, are left out. `chosen` selects the lights.
+    /// Selects what a capture shows.
+    struct Selection {
+        const std::vector<std::uint32_t>& excluded; ///< sorted indices of the objects that are left out
+        bool sun = true;                            ///< whether the background includes the environment's sun
+        ChosenLights lights{};
+    };
+    /// Renders side × side pixels for each face, and `guard` more on each side, on the calling thread.
     ProbeCapture(const RasterSceneData& data, const RasterSettings& settings, Vec3d center, int side, int guard,
-                 const std::vector<std::uint32_t>& excluded, const ChosenLights& chosen = {});
+                 const Selection& selection);
 
     /// Renders one object alone, without light: its surface as seen from within or from outside.
     ProbeCapture(const RasterSceneData& data, const RasterSettings& settings, Vec3d center, std::uint32_t object,

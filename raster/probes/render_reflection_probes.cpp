@@ -111,7 +111,8 @@ RadianceMap render_map(const RasterSceneData& data, const RasterSettings& settin
     const bool enclosed = is_inside(data, site.object, site.center);
     const auto capture = [&](const std::vector<std::uint32_t>& excluded) {
         constexpr std::size_t kMostLights = 16; // per cluster of pixels; models/lanterns.json then takes seconds
-        ProbeCapture result(data, settings, site.center, side / 2, side / 2 / kGuardShare, excluded, {kMostLights});
+        ProbeCapture result(data, settings, site.center, side / 2, side / 2 / kGuardShare,
+                            {.excluded = excluded, .lights = {kMostLights}});
         add_reflected_light(data, settings, enclosed, result);
         return result;
     };

@@ -9,6 +9,7 @@
 #include "raster/shader/sphere_interpolation.h"
 #include "raster/visibility/hit_tile.h"
 
+#include <cstring>
 #include <optional>
 #include <vector>
 

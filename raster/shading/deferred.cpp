@@ -82,20 +82,25 @@ public:
 
     void done(const char* stage) { frame_.seconds.emplace_back(stage, watch_.lap()); }
 
-    /// Adds the light of Scene::lights.
+    /// Adds the light of Scene::lights and of the environment's sun.
     void add_direct(Planes3& radiance, ComponentRecorder& recorder) {
-        if (!settings_.components.direct || data_.scene.lights.empty()) return;
         const GBuffer& gbuffer = *frame_.gbuffer;
-        const int threads = settings_.threads;
-        compute_shadowed_light(data_, settings_, gbuffer, options_.time, frame_.direct);
-        done("direct light and shadows");
-        add_direct_light(gbuffer, frame_.direct, threads, radiance);
-        recorder.record(&LightComponentImages::direct);
-        if (recorder.records()) {
-            compute_direct_light(data_, settings_, gbuffer, nullptr, frame_.direct);
-            recorder.record_shadowed(frame_.direct);
+        const auto add = [&](std::span<const FrameLight> lights) {
+            if (lights.empty()) return;
+            compute_shadowed_light(data_, settings_, gbuffer, lights, options_.time, frame_.direct);
+            done("direct light and shadows");
+            add_direct_light(gbuffer, frame_.direct, settings_.threads, radiance);
+            done("shadow denoiser");
+        };
+        if (const auto lights = scene_lights(data_, settings_, gbuffer.projection); !lights.empty()) {
+            add(lights);
+            recorder.record(&LightComponentImages::direct);
+            if (recorder.records()) {
+                compute_direct_light(data_, settings_, gbuffer, lights, nullptr, frame_.direct);
+                recorder.record_shadowed(frame_.direct);
+            }
         }
-        done("shadow denoiser");
+        add(sun_lights(data_, settings_, gbuffer.projection)); // recorded with the other light of the environment
     }
     /// Finds what the image's surfaces hide from each other, and the light that they send instead. `direct` returns the
     /// direct light of a pixel.
@@ -198,7 +203,7 @@ void shade_gbuffer(const RasterSceneData& data, const RasterSettings& settings, 
     Stopwatch watch;
     LightStages stages(data, settings, options, frame, watch);
 
-    if (options.background) draw_background(data, settings, gbuffer, radiance);
+    if (options.background) draw_background(data, settings, gbuffer, true, radiance);
     recorder.record(&LightComponentImages::emission);
     stages.done("background");
     // If the hits lie on the caller's own rays, neighboring pixels do not show neighboring points, so nothing is

@@ -12,7 +12,7 @@ public:
     static constexpr std::size_t kUnshadowed = static_cast<std::size_t>(-1);
 
     virtual ~LightVisibility() = default;
-    /// Returns the index of a light's source, or kUnshadowed. `light` is an index into Scene::lights.
+    /// Returns the index of a light's source, or kUnshadowed. `light` is an argument of RasterSceneData::light().
     virtual std::size_t source(std::size_t light) const = 0;
     /// Returns whether visibility() is a noisy estimate. If so, it must be averaged over blocks of 4 × 4 pixels, whose
     /// estimates differ.

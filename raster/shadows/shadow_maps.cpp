@@ -37,6 +37,8 @@ bool is_floor(const Scene& scene, std::uint32_t object, Vec3 sun_direction) {
     return lowest > -kFloor * length(Vec3d(box.diagonal()));
 }
 
+bool is_sun(const Light& light) { return std::holds_alternative<SunLight>(light); }
+
 /// Returns the points that the scene's camera sees, from a low-resolution depth image.
 std::vector<VisiblePoint> visible_points(const RasterSceneData& data, int threads) {
     const Scene& scene = data.scene;
@@ -96,10 +98,9 @@ Shadows::Shadows(const RasterSceneData& data, const RasterSettings& settings)
                            (i + 0.5) / kMoments
                                   : camera.shutter_open);
     std::vector<VisiblePoint> visible;
-    if (std::ranges::any_of(scene_.lights, [](const Light& light) { return std::holds_alternative<SunLight>(light); }))
-        visible = visible_points(data, settings.threads);
+    if (data.sun || std::ranges::any_of(scene_.lights, is_sun)) visible = visible_points(data, settings.threads);
     fit_sides(data, visible);
-    source_of_.assign(scene_.lights.size(), sources_.size());
+    source_of_.assign(data.light_count(), sources_.size());
     for (std::size_t i = 0; i < sources_.size(); ++i) {
         for (const std::size_t light : sources_[i].lights) source_of_[light] = i;
         const std::vector<Camera> views = views_of(data, visible, sources_[i]);
@@ -112,7 +113,7 @@ Shadows::Shadows(const RasterSceneData& data, const RasterSettings& settings)
 /// lights use cubes. A sun without casters has no maps.
 std::vector<Camera> Shadows::views_of(const RasterSceneData& data, const std::vector<VisiblePoint>& visible,
                                       const Source& source) const {
-    const Light& light = scene_.lights[source.lights.front()];
+    const Light light = data.light(source.lights.front());
     if (const auto* spot = std::get_if<SpotLight>(&light)) return spot_views(*spot, scene_size_, side_, kGuardTexels);
     const auto* sun = std::get_if<SunLight>(&light);
     if (sun == nullptr) return {};
@@ -129,8 +130,8 @@ void Shadows::fit_sides(const RasterSceneData& data, const std::vector<VisiblePo
     for (const Source& source : sources_) {
         const std::size_t its_views = views_of(data, visible, source).size();
         views += its_views;
-        const bool sun = std::holds_alternative<SunLight>(scene_.lights[source.lights.front()]);
-        if (its_views == 0 && !sun) cubes += std::max<std::size_t>(source.cells.size(), 1);
+        if (its_views == 0 && !is_sun(data.light(source.lights.front())))
+            cubes += std::max<std::size_t>(source.cells.size(), 1);
     }
     const auto fit = [&](int& side, std::size_t maps, std::int64_t most) {
         const auto all = static_cast<std::int64_t>(maps * moments_.size());
@@ -145,8 +146,9 @@ std::vector<Shadows::Source> Shadows::find_sources(const RasterSceneData& data, 
     const auto only_emits = [&](std::uint32_t object) { return std::ranges::binary_search(data.emitters, object); };
     std::vector<Source> sources;
     std::map<std::pair<std::uint32_t, std::array<long, 4>>, std::vector<std::size_t>> groups;
-    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-        const auto* surface = std::get_if<SurfaceLight>(&scene.lights[i]);
+    for (std::size_t i = 0; i < data.light_count(); ++i) {
+        const Light light = data.light(i);
+        const auto* surface = std::get_if<SurfaceLight>(&light);
         if (surface == nullptr) {
             sources.push_back({{i}, {}, false, {}});
         } else {
@@ -163,7 +165,7 @@ std::vector<Shadows::Source> Shadows::find_sources(const RasterSceneData& data, 
     const float radius = static_cast<float>(scene_size_ / 2);
     const auto power = [&](const Source& source) {
         float sum = 0;
-        for (const std::size_t i : source.lights) sum += light_power(scene.lights[i], radius);
+        for (const std::size_t i : source.lights) sum += light_power(data.light(i), radius);
         return sum;
     };
     std::stable_sort(sources.begin(), sources.end(),
@@ -182,7 +184,7 @@ Shadows::Maps Shadows::draw(const RasterSceneData& data, const RasterSettings& s
     }
     for (const Emitter& cell : source.cells)
         maps.soft.emplace_back(draw_cell(data, source, cell, moment, settings.threads), cell);
-    const Light& light = scene_.lights[source.lights.front()];
+    const Light light = data.light(source.lights.front());
     const auto* spot = std::get_if<SpotLight>(&light);
     const auto* point = std::get_if<PointLight>(&light);
     if (!views.empty() || (spot == nullptr && point == nullptr)) return maps;

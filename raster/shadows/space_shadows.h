@@ -11,8 +11,8 @@ public:
     /// Keeps a reference to `data`, which must have its shadow maps.
     SpaceShadows(const RasterSceneData& data, const Vec3d& eye, float time);
 
-    /// Returns the visible fraction of a light, an index into Scene::lights, at points relative to the eye. Each cell
-    /// of an area light is visible if its center is.
+    /// Returns the visible fraction of a light, an argument of RasterSceneData::light(), at points relative to the eye.
+    /// Each cell of an area light is visible if its center is.
     Floats visibility(std::size_t light, const Vec3T<Floats>& p) const;
 
 private:

@@ -51,14 +51,15 @@ struct Origin {
     std::uint32_t excluded = kNoObject; ///< object that does not shade this light
 };
 
-Origin origin_of(const Scene& scene, const Shadows::Source& source) {
+Origin origin_of(const RasterSceneData& data, const Shadows::Source& source) {
     Origin origin;
-    const Light& light = scene.lights[source.lights.front()];
+    const Light light = data.light(source.lights.front());
     if (const auto* sun = std::get_if<SunLight>(&light)) origin.sun = -Vec3d(sun->direction);
     if (const auto* point = std::get_if<PointLight>(&light)) origin.box.extend(Vec3d(point->position));
     if (const auto* spot = std::get_if<SpotLight>(&light)) origin.box.extend(Vec3d(spot->position));
     for (const std::size_t i : source.lights) {
-        const auto* surface = std::get_if<SurfaceLight>(&scene.lights[i]);
+        const Light its = data.light(i);
+        const auto* surface = std::get_if<SurfaceLight>(&its);
         if (surface == nullptr) continue;
         if (source.emits_only) origin.excluded = surface->object;
         const auto add = [&](Vec3 p) { origin.box.extend(Vec3d(p)); };
@@ -145,7 +146,7 @@ UnblockedTiles::UnblockedTiles(const RasterSceneData& data, const GBuffer& gbuff
     const std::vector<Caster> casters = casters_of(data, gbuffer);
     if (casters.size() > kMostCasters || data.scene.needs.motion) return;
     std::vector<Origin> origins;
-    for (const Shadows::Source& source : data.shadows->sources()) origins.push_back(origin_of(data.scene, source));
+    for (const Shadows::Source& source : data.shadows->sources()) origins.push_back(origin_of(data, source));
     const double far = 2 * length(Vec3d(data.scene.bounds.diagonal()));
     const int rows = (gbuffer.height() + kSide - 1) / kSide;
     sources_.assign(static_cast<std::size_t>(columns_ * rows), 0);

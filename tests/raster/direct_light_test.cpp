@@ -53,7 +53,8 @@ struct SceneGBuffer {
     void light_into(DirectLight& result, int threads, const LightVisibility* shadows = nullptr,
                     std::size_t most = ChosenLights::kAll) {
         settings.threads = threads;
-        compute_direct_light(prepared->data(), settings, *gbuffer, shadows, result, {most});
+        compute_direct_light(prepared->data(), settings, *gbuffer,
+                             scene_lights(prepared->data(), settings, gbuffer->projection), shadows, result, {most});
     }
     /// Evaluates all lights at all pixels.
     Planes3 all_lights() const {

@@ -1,5 +1,7 @@
 #include "raster/lighting/environment_irradiance.h"
 
+#include "raster/lighting/latlong_grid.h"
+
 #include <doctest/doctest.h>
 
 #include <random>
@@ -11,14 +13,10 @@ namespace {
 
 /// Returns a lat-long image of a function of direction.
 template <typename F> Environment shown_image(int width, F radiance_of, float rotation = 0) {
-    const int height = width / 2;
-    ImageRgb image(width, height);
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            const double theta = kPiDouble * (y + 0.5) / height, longitude = 2 * kPiDouble * ((x + 0.5) / width - 0.5);
-            image(x, y) = radiance_of(Vec3(
-                Vec3d(std::sin(theta) * std::sin(longitude), std::cos(theta), -std::sin(theta) * std::cos(longitude))));
-        }
+    const LatlongGrid grid{width, width / 2};
+    ImageRgb image(grid.width, grid.height);
+    for (int y = 0; y < grid.height; ++y)
+        for (int x = 0; x < grid.width; ++x) image(x, y) = radiance_of(Vec3(grid.direction(x, y)));
     return make_image_environment(std::move(image), 1, rotation);
 }
 
@@ -36,7 +34,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("an image of a constant gives π times it") {
         const Environment environment = shown_image(64, [](Vec3) { return Rgb(0.5f, 1.0f, 2.0f); });
-        const IrradianceHarmonics coefficients = environment_irradiance(environment, 2);
+        const IrradianceHarmonics coefficients = environment_irradiance(environment, nullptr, 2);
         for (const Vec3 n : directions()) {
             const Rgb e = irradiance_at(coefficients, harmonics(n));
             CHECK(e.r == doctest::Approx(0.5 * kPiDouble).epsilon(1e-3));
@@ -49,8 +47,8 @@ TEST_SUITE("unit") {
         const SkyEnvironment sky{{1.0f, 0.8f, 0.6f}, {0.2f, 0.5f, 1.0f}};
         const Environment closed = sky;
         const Environment environment = shown_image(256, [&](Vec3 w) { return lerp(sky.down, sky.up, (w.y + 1) / 2); });
-        const IrradianceHarmonics exactly = environment_irradiance(closed, 1);
-        const IrradianceHarmonics coefficients = environment_irradiance(environment, 2);
+        const IrradianceHarmonics exactly = environment_irradiance(closed, nullptr, 1);
+        const IrradianceHarmonics coefficients = environment_irradiance(environment, nullptr, 2);
         // The radiance is linear in the direction, so spherical harmonics of the first order are exact except for the
         // image's resolution.
         for (const Vec3 n : directions())
@@ -64,7 +62,7 @@ TEST_SUITE("unit") {
     TEST_CASE("second-order detail, and the image's rotation, against the integral") {
         const auto light = [](Vec3 w) { return Rgb(1 + w.x * w.z + 0.5f * w.y * w.y, 1 + 0.4f * w.x, 1 - w.x * w.y); };
         const Environment environment = shown_image(256, light, 0.7f);
-        const IrradianceHarmonics coefficients = environment_irradiance(environment, 2);
+        const IrradianceHarmonics coefficients = environment_irradiance(environment, nullptr, 2);
         for (const Vec3 n : {Vec3(0, 1, 0), Vec3(1, 0, 0), normalize(Vec3(1, 2, 3)), normalize(Vec3(-1, -1, 0.5f))}) {
             Rgbd sum;
             constexpr int kRings = 200, kSectors = 400;
@@ -84,7 +82,7 @@ TEST_SUITE("unit") {
 
     TEST_CASE("a small bright sun never gives negative irradiance") {
         const Environment environment = shown_image(128, [](Vec3 w) { return w.y > 0.99f ? Rgb(1000.0f) : Rgb(0.0f); });
-        const IrradianceHarmonics coefficients = environment_irradiance(environment, 2);
+        const IrradianceHarmonics coefficients = environment_irradiance(environment, nullptr, 2);
         for (const Vec3 n : directions()) {
             const Rgb e = irradiance_at(coefficients, harmonics(n));
             CHECK(min(min(e.r, e.g), e.b) >= 0);
@@ -93,6 +91,6 @@ TEST_SUITE("unit") {
 
     TEST_CASE("the projection is the same for any number of threads") {
         const Environment environment = shown_image(128, [](Vec3 w) { return Rgb(1 + w.x, 1 + w.y, 1 + w.z); });
-        CHECK(environment_irradiance(environment, 1) == environment_irradiance(environment, 7));
+        CHECK(environment_irradiance(environment, nullptr, 1) == environment_irradiance(environment, nullptr, 7));
     }
 }

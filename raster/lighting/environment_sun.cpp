@@ -1,0 +1,94 @@
+#include "raster/lighting/environment_sun.h"
+
+#include "raster/lighting/latlong_grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace duet::raster {
+namespace {
+
+constexpr double kRadius = 10; ///< degrees from the sun's center to the edge of its glow in the haze
+constexpr double kRing = 12;   ///< degrees to the outer edge of the ring that shows the radiance around the disk
+/// A disk is a sun if it adds at least this fraction to the environment's light. Shadows of weaker ones are faint.
+constexpr double kLeastShare = 0.03;
+/// At least this fraction of the light must come from within half the radius. It is a quarter for a disk of even
+/// radiance, whose shadows are not sharp.
+constexpr double kLeastInCenter = 0.5;
+
+double cosine_of(double degrees) { return std::cos(radians(degrees)); }
+
+/// Calls visit(w, solid angle) for each direction w of the grid within an angle of `center`.
+template <typename Visit>
+void visit_disk(const LatlongGrid& grid, const Vec3d& center, double degrees, const Visit& visit) {
+    const double middle = std::acos(std::clamp(center.y, -1.0, 1.0)) / kPiDouble * grid.height,
+                 reach = degrees / 180 * grid.height;
+    const int last = std::min(grid.height - 1, static_cast<int>(middle + reach));
+    for (int row = std::max(0, static_cast<int>(middle - reach)); row <= last; ++row)
+        for (int column = 0; column < grid.width; ++column)
+            if (const Vec3d w = grid.direction(column, row); dot(w, center) >= cosine_of(degrees))
+                visit(w, grid.solid_angle(row));
+}
+
+/// Returns the direction of the brightest pixel.
+Vec3d brightest(const Environment& environment, const LatlongGrid& grid) {
+    Vec3d result;
+    float most = -1;
+    for (int row = 0; row < grid.height; ++row)
+        for (int column = 0; column < grid.width; ++column) {
+            const Vec3d w = grid.direction(column, row);
+            if (const float its = luminance(radiance(environment, Vec3(w))); its > most) most = its, result = w;
+        }
+    return result;
+}
+
+/// Returns the mean radiance between two angles from `center`.
+Rgb mean_of_ring(const Environment& environment, const LatlongGrid& grid, const Vec3d& center) {
+    Rgbd sum;
+    double all = 0;
+    visit_disk(grid, center, kRing, [&](const Vec3d& w, double solid_angle) {
+        if (dot(w, center) > cosine_of(kRadius)) return;
+        sum += Rgbd(radiance(environment, Vec3(w))) * solid_angle, all += solid_angle;
+    });
+    return all > 0 ? Rgb(sum / all) : Rgb();
+}
+
+/// Represents the light that a disk adds to its surroundings.
+struct Excess {
+    Rgbd irradiance; ///< on a surface that faces the disk, as if all came from its center
+    Vec3d direction; ///< sum of the directions that it comes from, weighted by luminance
+};
+Excess excess_of_disk(const Environment& environment, const LatlongGrid& grid, const Vec3d& center, double degrees,
+                      const Rgb& around) {
+    Excess result;
+    visit_disk(grid, center, degrees, [&](const Vec3d& w, double solid_angle) {
+        const Rgb light = radiance(environment, Vec3(w));
+        const auto more = [](float all, float rest) { return static_cast<double>(max(all - rest, 0.0f)); };
+        const Rgbd its = Rgbd(more(light.r, around.r), more(light.g, around.g), more(light.b, around.b)) * solid_angle;
+        result.irradiance += its, result.direction += w * luminance(its);
+    });
+    return result;
+}
+
+} // namespace
+
+std::optional<EnvironmentSun> find_sun(const Environment& environment) {
+    const auto* image = std::get_if<ImageEnvironment>(&environment);
+    if (image == nullptr || image->image.empty() || is_black(environment)) return {};
+    const LatlongGrid grid{image->image.width(), image->image.height()};
+    const Vec3d peak = brightest(environment, grid);
+    const Vec3d sum =
+        excess_of_disk(environment, grid, peak, kRadius, mean_of_ring(environment, grid, peak)).direction;
+    if (!(length(sum) > 0)) return {};
+    const Vec3d center = normalize(sum);
+    const Rgb around = mean_of_ring(environment, grid, center);
+    const auto added = [&](double degrees) {
+        return excess_of_disk(environment, grid, center, degrees, around).irradiance;
+    };
+    const Rgbd all = added(kRadius);
+    const double share = luminance(all) / (4 * kPiDouble * luminance(Rgbd(mean_radiance(environment))));
+    if (!(share >= kLeastShare) || luminance(added(kRadius / 2)) < kLeastInCenter * luminance(all)) return {};
+    return EnvironmentSun{{-Vec3(center), Rgb(all)}, around, static_cast<float>(cosine_of(kRadius))};
+}
+
+} // namespace duet::raster
