@@ -82,13 +82,15 @@ std::optional<EnvironmentSun> find_sun(const Environment& environment) {
     if (!(length(sum) > 0)) return {};
     const Vec3d center = normalize(sum);
     const Rgb around = mean_of_ring(environment, grid, center);
-    const auto added = [&](double degrees) {
-        return excess_of_disk(environment, grid, center, degrees, around).irradiance;
-    };
-    const Rgbd all = added(kRadius);
-    const double share = luminance(all) / (4 * kPiDouble * luminance(Rgbd(mean_radiance(environment))));
-    if (!(share >= kLeastShare) || luminance(added(kRadius / 2)) < kLeastInCenter * luminance(all)) return {};
-    return EnvironmentSun{{-Vec3(center), Rgb(all)}, around, static_cast<float>(cosine_of(kRadius))};
+    const Excess all = excess_of_disk(environment, grid, center, kRadius, around),
+                 middle = excess_of_disk(environment, grid, center, kRadius / 2, around);
+    const double added = luminance(all.irradiance);
+    if (!(added >= kLeastShare * 4 * kPiDouble * luminance(Rgbd(mean_radiance(environment))))) return {};
+    if (luminance(middle.irradiance) < kLeastInCenter * added) return {};
+    // The mean of unit vectors that are spread evenly within a small angle r of the center has the length 1 − r²/4.
+    const double spread = max(1 - length(all.direction) / added, 0.0);
+    const auto sine = static_cast<float>(2 * std::sqrt(spread)), cosine = static_cast<float>(cosine_of(kRadius));
+    return EnvironmentSun{{-Vec3(center), Rgb(all.irradiance)}, sine, around, cosine};
 }
 
 } // namespace duet::raster

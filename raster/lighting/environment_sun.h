@@ -13,6 +13,7 @@ namespace duet::raster {
 /// Represents the brightest disk of the environment by a light, which sends what the disk adds to its surroundings.
 struct EnvironmentSun {
     SunLight light;
+    float sine;          ///< sine of the angular radius of an even disk whose light is spread as far
     Rgb around;          ///< mean radiance around the disk, in W/(m² sr)
     float cosine_radius; ///< cosine of the angle between the sun's direction and the disk's edge
 

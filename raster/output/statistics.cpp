@@ -56,7 +56,9 @@ void list_shadow_approximations(const RasterSceneData& data, const RasterSetting
     const bool direct = settings.components.direct && !scene.lights.empty(),
                sun = settings.components.environment && data.sun;
     if (!direct && !sun) return;
-    if (sun) result.emplace_back("The sun of the environment lights diffuse surfaces as if it were a point.");
+    if (sun)
+        result.emplace_back(
+            "The sun of the environment lights diffuse surfaces as if all its light came from its middle.");
     if (!settings.shadows || !data.shadows) {
         result.emplace_back("Direct light is unshadowed.");
         return;

@@ -103,6 +103,18 @@ SharpShadowMap::Texels SharpShadowMap::texels(const Vec3T<Floats>& p, Mask& insi
     return {x, y, depth};
 }
 
+Vec3T<Floats> SharpShadowMap::surface(const Vec3T<Floats>& p) const {
+    Mask inside;
+    const auto [x, y, depth] = texels(p, inside);
+    const Floats zero(0.0f), half(0.5f), last(static_cast<float>(map_.side() - 1));
+    const Floats column = xsimd::floor(clamp(x, zero, last)), row = xsimd::floor(clamp(y, zero, last));
+    const Floats stored = gather(map_.reversed_depth().pixels().data(),
+                                 truncated(row) * Ints(map_.side()) + truncated(column));
+    const Floats seen = Floats(near_) / max(stored, Floats(1e-25f));
+    return p + broadcast<Floats>(direction_) * (seen - depth) +
+           broadcast<Floats>(origin_dx_) * (column + half - x) + broadcast<Floats>(origin_dy_) * (row + half - y);
+}
+
 Floats SharpShadowMap::visibility(const Vec3T<Floats>& p, Mask& inside) const {
     const auto [x, y, depth] = texels(p, inside);
     if (!xsimd::any(inside)) return Floats(1.0f);

@@ -17,6 +17,15 @@ public:
     /// B-spline, or over a box of 4 × 4 texels if the map is dithered. `inside` receives the lanes that lie in the map;
     /// other lanes are unspecified.
     Floats visibility(const Vec3T<Floats>& p, const Vec3T<Floats>& n, xsimd::batch_bool<float>& inside) const;
+    /// Returns the surface points, relative to the eye, that the texels at points see at their centers. The map must be
+    /// orthographic. A point outside of the map gets the nearest texel. The surface is very far away if the texel sees
+    /// nothing.
+    Vec3T<Floats> surface(const Vec3T<Floats>& p) const;
+    /// Returns the depth of points in the map, in meters from the side of the light. `inside` receives the lanes that
+    /// lie in the map.
+    Floats depth(const Vec3T<Floats>& p, xsimd::batch_bool<float>& inside) const { return texels(p, inside).depth; }
+    const Vec3& direction() const { return direction_; } ///< of light, if the map is orthographic; unit
+    float texel() const { return length(origin_dx_); }   ///< width of a texel in meters, if the map is orthographic
     /// Returns the lit fraction of points in space, which have no normal, interpolated between the four nearest texels.
     Floats visibility(const Vec3T<Floats>& p, xsimd::batch_bool<float>& inside) const;
 

@@ -64,16 +64,21 @@ Floats sum_of_four(const Floats& x) {
 
 } // namespace
 
-struct SoftShadowMap::Outline {
+/// Represents the light as seen from a receiver: points corner + a·u + b·v with a, b in [0, 1], or a disk.
+struct LightOutline {
     Vec3s corner, u, v, dual_u, dual_v;
     Floats per_u, per_v; ///< lengths of dual_u and dual_v
     Emitter::Kind shape; ///< kSphere stands for a disk
     Vec3s axis; ///< unit direction from the receiver's side to the light's plane
 };
 
-struct SoftShadowMap::Receiver {
-    const DepthCube& cube;
-    const Outline& light;
+namespace {
+
+/// Represents points that receive light. surface(q, texel) returns the point that the map sees in direction q from
+/// the light's center, and the width of its texel there.
+template <typename Surface> struct Receiver {
+    const Surface& surface;
+    const LightOutline& light;
     Vec3s p, n;
     Floats per_height; ///< 1 / the height of p above the light's plane, along −axis
     Floats slack;
@@ -84,7 +89,7 @@ struct SoftShadowMap::Receiver {
     /// in all other lanes.
     Floats blocker(const Vec3s& q) const {
         Floats texel;
-        const Vec3s to = cube.surface(q, texel) - p;
+        const Vec3s to = surface(q, texel) - p;
         const Floats f = dot(to, light.axis) * per_height;
         const Floats rise = dot(to, n), distance2 = dot(to, to);
         // The line meets the light's plane at coordinates a / f and b / f. All comparisons are multiplied by f, which
@@ -117,6 +122,53 @@ struct SoftShadowMap::Receiver {
     }
 };
 
+/// Returns the visible fraction of a light, for points relative to its center. `surface` is that of a Receiver.
+template <typename Surface>
+Floats visible_fraction(const Surface& surface, const LightOutline& light, const Vec3s& own, const Vec3s& n, int y,
+                        const Mask& lanes) {
+    const Floats height = max(-dot(own, light.axis), Floats(1e-20f));
+    const Vec3s from = own - light.corner;
+    const Receiver<Surface> receiver{surface, light, own, n, Floats(1.0f) / height, height * Floats(kRounding),
+                            dot(from, light.dual_u), dot(from, light.dual_v)};
+
+    Floats sum(0.0f), count(0.0f);
+    for (const Tap& tap : kSearch.row(y)) {
+        const Floats f = load(tap.fraction, 0);
+        const Floats found = receiver.blocker(own * (Floats(1.0f) - f) + receiver.on_light(tap) * f);
+        const Mask blocks = lanes & (found > Floats(0.0f));
+        sum += xsimd::select(blocks, found, Floats(0.0f));
+        count += xsimd::select(blocks, Floats(1.0f), Floats(0.0f));
+    }
+    if (!xsimd::any(count > Floats(0.0f))) return Floats(1.0f);
+    // Four neighbors in a row share what they found, because a thin blocker may escape the few taps of one of them.
+    sum = sum_of_four(sum), count = sum_of_four(count);
+    const Mask any = count > Floats(0.0f);
+    const Floats f = sum / max(count, Floats(1.0f));
+    Floats dark(0.0f);
+    for (const Tap& tap : kFilter.row(y)) {
+        const Vec3s l = receiver.on_light(tap);
+        const auto found_at = [&](const Floats& at) { return receiver.blocker(own * (Floats(1.0f) - at) + l * at); };
+        Floats found = found_at(f);
+        // If the line misses a blocker beside it at another depth, it is tested at that depth, too.
+        if (const Mask beside = found < Floats(0.0f); xsimd::any(any & beside))
+            found = xsimd::select(beside, found_at(-found), found);
+        dark += xsimd::select(found > Floats(0.0f), Floats(1.0f), Floats(0.0f));
+    }
+    return xsimd::select(any, Floats(1.0f) - dark * Floats(1.0f / SoftShadowMap::kFilterTaps), Floats(1.0f));
+}
+
+/// Returns a disk around the light's center that is seen along `axis`, a unit vector, from a distance. `sine` is that
+/// of its angular radius.
+LightOutline disk(const Vec3s& axis, const Floats& distance, const Floats& sine) {
+    const FrameT<Floats> frame = frame_from_normal(axis);
+    const Floats radius = distance * sine / xsimd::sqrt(Floats(1.0f) - sine * sine), over = Floats(1.0f) / radius;
+    const Vec3s none{Floats(0.0f), Floats(0.0f), Floats(0.0f)};
+    return {none, frame.s * radius, frame.t * radius, frame.s * over, frame.t * over, over, over,
+            Emitter::Kind::kSphere, axis};
+}
+
+} // namespace
+
 SoftShadowMap::SoftShadowMap(const CellMaps& maps, const Emitter& emitter)
     : cube_(maps.all), near_visibility_(maps.near_visibility), reach_(maps.reach), kind_(emitter.kind),
       radius_(static_cast<float>(emitter.radius)) {
@@ -133,7 +185,7 @@ std::size_t SoftShadowMap::memory_bytes() const {
     return cube_.memory_bytes() + (distant_ ? distant_->memory_bytes() : 0) + near_visibility_.memory_bytes();
 }
 
-SoftShadowMap::Outline SoftShadowMap::outline_from(const Vec3s& p) const {
+LightOutline SoftShadowMap::outline_from(const Vec3s& p) const {
     if (kind_ != Emitter::Kind::kSphere) {
         const Floats toward = xsimd::select(p.z < Floats(0.0f), Floats(1.0f), Floats(-1.0f));
         return {broadcast<Floats>(corner_), broadcast<Floats>(u_), broadcast<Floats>(v_),
@@ -142,12 +194,7 @@ SoftShadowMap::Outline SoftShadowMap::outline_from(const Vec3s& p) const {
     }
     // A sphere is replaced by the disk through its center that fills the cone tangent to it.
     const Floats distance = xsimd::sqrt(max(dot(p, p), Floats(1e-30f)));
-    const Vec3s axis = p * (Floats(-1.0f) / distance);
-    const FrameT<Floats> frame = frame_from_normal(axis);
-    const Floats sine = min(Floats(radius_) / distance, Floats(0.999f));
-    const Floats radius = Floats(radius_) / xsimd::sqrt(Floats(1.0f) - sine * sine), over = Floats(1.0f) / radius;
-    const Vec3s none{Floats(0.0f), Floats(0.0f), Floats(0.0f)};
-    return {none, frame.s * radius, frame.t * radius, frame.s * over, frame.t * over, over, over, kind_, axis};
+    return disk(p * (Floats(-1.0f) / distance), distance, min(Floats(radius_) / distance, Floats(0.999f)));
 }
 
 /// Returns the vector in the cube's frame.
@@ -179,42 +226,24 @@ Floats SoftShadowMap::visibility(const Vec3d& eye, const Vec3s& p) const {
 
 Floats SoftShadowMap::visibility(const Vec3d& eye, const Vec3s& p, const Vec3s& n, int y, const Mask& lanes) const {
     const Vec3s own = local(p + broadcast<Floats>(Vec3(eye - cube_.center))), normal = local(n);
-    return combined(own, [&](const DepthCube& cube) { return filtered(cube, own, normal, y, lanes); });
+    return combined(own, [&](const DepthCube& cube) {
+        const auto surface = [&](const Vec3s& w, Floats& texel) { return cube.surface(w, texel); };
+        return visible_fraction(surface, outline_from(own), own, normal, y, lanes);
+    });
 }
 
-/// Returns the visible fraction by one cube, for points and normals in its frame.
-Floats SoftShadowMap::filtered(const DepthCube& cube, const Vec3s& own, const Vec3s& n, int y,
-                               const Mask& lanes) const {
-    const Outline light = outline_from(own);
-    const Floats height = max(-dot(own, light.axis), Floats(1e-20f));
-    const Vec3s from = own - light.corner;
-    const Receiver receiver{cube, light, own, n, Floats(1.0f) / height, height * Floats(kRounding),
-                            dot(from, light.dual_u), dot(from, light.dual_v)};
-
-    Floats sum(0.0f), count(0.0f);
-    for (const Tap& tap : kSearch.row(y)) {
-        const Floats f = load(tap.fraction, 0);
-        const Floats found = receiver.blocker(own * (Floats(1.0f) - f) + receiver.on_light(tap) * f);
-        const Mask blocks = lanes & (found > Floats(0.0f));
-        sum += xsimd::select(blocks, found, Floats(0.0f));
-        count += xsimd::select(blocks, Floats(1.0f), Floats(0.0f));
-    }
-    if (!xsimd::any(count > Floats(0.0f))) return Floats(1.0f);
-    // Four neighbors in a row share what they found, because a thin blocker may escape the few taps of one of them.
-    sum = sum_of_four(sum), count = sum_of_four(count);
-    const Mask any = count > Floats(0.0f);
-    const Floats f = sum / max(count, Floats(1.0f));
-    Floats dark(0.0f);
-    for (const Tap& tap : kFilter.row(y)) {
-        const Vec3s l = receiver.on_light(tap);
-        const auto found_at = [&](const Floats& at) { return receiver.blocker(own * (Floats(1.0f) - at) + l * at); };
-        Floats found = found_at(f);
-        // If the line misses a blocker beside it at another depth, it is tested at that depth, too.
-        if (const Mask beside = found < Floats(0.0f); xsimd::any(any & beside))
-            found = xsimd::select(beside, found_at(-found), found);
-        dark += xsimd::select(found > Floats(0.0f), Floats(1.0f), Floats(0.0f));
-    }
-    return xsimd::select(any, Floats(1.0f) - dark * Floats(1.0f / kFilterTaps), Floats(1.0f));
+Floats sun_visibility(const SharpShadowMap& map, float sine, const Vec3s& p, const Vec3s& n, int y, const Mask& lanes,
+                      Mask& inside) {
+    // The disk is where the map begins, which is before all casters, straight above each point.
+    const Vec3s toward = broadcast<Floats>(-map.direction());
+    const Floats distance = max(map.depth(p, inside), Floats(1e-20f));
+    const Vec3s center = p + toward * distance;
+    const auto surface = [&](const Vec3s& w, Floats& texel) {
+        texel = Floats(map.texel());
+        return map.surface(center + w) - center;
+    };
+    return visible_fraction(surface, disk(toward, distance, Floats(sine)), p - center, n, y, lanes & inside);
 }
+
 
 } // namespace duet::raster

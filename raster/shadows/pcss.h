@@ -8,10 +8,13 @@
 #include "raster/shadows/depth_cube.h"
 #include "raster/shadows/emitter.h"
 #include "raster/shadows/near_casters.h"
+#include "raster/shadows/pcf.h"
 
 #include <optional>
 
 namespace duet::raster {
+
+struct LightOutline; // as seen from a receiver
 
 /// Holds the map of one area light, or of one cell of it.
 class SoftShadowMap {
@@ -33,14 +36,8 @@ public:
     static constexpr int kSearchTaps = 4, kFilterTaps = 4; ///< per pixel; a block of 4 × 4 pixels has 64 of each
 
 private:
-    struct Receiver;
-    /// Represents the light as seen from a receiver: points corner + a·u + b·v with a, b in [0, 1], or a disk.
-    struct Outline;
-
-    Outline outline_from(const Vec3T<Floats>& p) const;
+    LightOutline outline_from(const Vec3T<Floats>& p) const;
     Vec3T<Floats> local(const Vec3T<Floats>& w) const;
-    Floats filtered(const DepthCube& cube, const Vec3T<Floats>& p, const Vec3T<Floats>& n, int y,
-                    const xsimd::batch_bool<float>& lanes) const;
     template <typename Lookup> Floats combined(const Vec3T<Floats>& p, const Lookup& lookup) const;
 
     DepthCube cube_;
@@ -51,5 +48,10 @@ private:
     float radius_ = 0;
     Vec3 corner_, u_, v_, dual_u_, dual_v_; ///< geometry of a flat light in the cube's frame; its normal is +z
 };
+
+/// Returns the visible fraction of a sun's disk, whose angular radius has the given sine, by the map of its center: an
+/// estimate as that of SoftShadowMap. `inside` receives the lanes that lie in the map; others are unspecified.
+Floats sun_visibility(const SharpShadowMap& map, float sine, const Vec3T<Floats>& p, const Vec3T<Floats>& n, int y,
+                      const xsimd::batch_bool<float>& lanes, xsimd::batch_bool<float>& inside);
 
 } // namespace duet::raster

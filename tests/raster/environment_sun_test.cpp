@@ -50,6 +50,7 @@ TEST_SUITE("unit") {
         const auto sun = find_sun(sky_with_disk(toward, 4, Rgb(100, 80, 60)));
         REQUIRE(sun);
         CHECK(dot(-Vec3d(sun->light.direction), toward) > std::cos(radians(0.3))); // a pixel has 1.4 degrees
+        CHECK(sun->sine == doctest::Approx(std::sin(radians(4.0))).epsilon(0.05));
         for (std::size_t c = 0; c < 3; ++c) {
             const double expected = solid_angle_of_disk(4) * static_cast<double>(Rgb(100, 80, 60)[c]);
             CHECK(sun->light.irradiance[c] == doctest::Approx(expected).epsilon(0.03)); // by the edge's pixels
@@ -97,7 +98,8 @@ TEST_SUITE("unit") {
     }
 
     TEST_CASE("the sun of an image casts a shadow") {
-        for (const char* at : {"0", "2"}) { // the middle of the ball's shadow, and a place beside it
+        // These are the middle of the ball's shadow, its penumbra, which begins at 0.44, and a place beside it.
+        for (const char* at : {"0", "0.5", "2"}) {
             CAPTURE(at);
             Scene scene = parse_scene("test.json", std::string(R"({
                 "camera": {"eye": [0, 3, 8], "look_at": [)") + at + R"(, 0, 0], "fov_degrees": 2},
