@@ -12,8 +12,9 @@ constexpr float kSteepest = 0.5f, kOfElevation = 0.85f;
 /// A texel's surface is continued to the point by its slope in the map. It is a roof over the point if it is then
 /// higher above the receiver's plane than kRoof times the height that a facet at kSteepest reaches within one texel. A
 /// facet that begins beside the point would be lower than the plane there. A surface that ends between two texels is
-/// steep, and so counts as a roof, too.
-constexpr float kRoof = 0.7f;
+/// steep, and so counts as a roof, too. A surface whose normal is turned from the receiver's by an angle of at least
+/// this cosine is no facet of the same surface, so it is a roof at any height.
+constexpr float kRoof = 0.7f, kTurned = 0.5f;
 /// Texels on the side of the point that is nearer to the light are ignored if their surface falls below the receiver's
 /// plane by more than this fraction of the elevation. They lie beyond the end of the receiver's surface.
 constexpr float kFalling = 0.23f;
@@ -162,6 +163,16 @@ Floats SharpShadowMap::visibility(const Vec3T<Floats>& p, const Vec3T<Floats>& n
     if (!xsimd::any(inside & any_above)) return Floats(1.0f); // only a surface above the plane may shade
     const Floats roof_height = plane.steepest * Floats(kRoof);
     const Mask may_be_roof(!dithered); // a dithered map has several surfaces in turn
+    // Returns where the surface with these slopes above the plane is turned from the plane by more than kTurned. In a
+    // perspective view, slopes of the map's values are no slopes of the surface.
+    const Floats per_texel(map_.orthographic() ? 1 / length(origin_dx_) : 0), one(1.0f);
+    const Floats plane_x = plane.dx * per_texel, plane_y = plane.dy * per_texel,
+                 plane_length = one + plane_x * plane_x + plane_y * plane_y;
+    const auto turned = [&](const Floats& slope_x, const Floats& slope_y) {
+        const Floats sx = multiply_add(slope_x, per_texel, plane_x), sy = multiply_add(slope_y, per_texel, plane_y);
+        const Floats product = max(one + sx * plane_x + sy * plane_y, zero);
+        return product * product < Floats(kTurned * kTurned) * plane_length * (one + sx * sx + sy * sy);
+    };
     Floats dark(0.0f), known(0.0f);
     for (std::size_t j = 0; j < taps; ++j) {
         const Floats off_y = off(y0, j, y);
@@ -170,9 +181,10 @@ Floats SharpShadowMap::visibility(const Vec3T<Floats>& p, const Vec3T<Floats>& n
             const Floats off_x = off(x0, i, x), here = height[j][i];
             // The slope is that between two texels on one side of the point.
             const std::size_t a = i < 2 ? 0 : 2, b = j < 2 ? 0 : 2;
-            const Floats continued =
-                here - (height[j][a + 1] - height[j][a]) * off_x - (height[b + 1][i] - height[b][i]) * off_y;
-            const Mask roof = may_be_roof & (here > plane.rounding) & (continued > plane.rounding + roof_height);
+            const Floats slope_x = height[j][a + 1] - height[j][a], slope_y = height[b + 1][i] - height[b][i];
+            const Floats continued = here - slope_x * off_x - slope_y * off_y;
+            const Floats least = xsimd::select(turned(slope_x, slope_y), plane.rounding, roof_height);
+            const Mask roof = may_be_roof & (here > plane.rounding) & (continued > plane.rounding + least);
             const Floats distance = xsimd::sqrt(off_x * off_x + off_y * off_y);
             const Mask shades = (here > plane.rounding + plane.rising * distance) | roof;
             row_dark += xsimd::select(shades, across[i], zero);

@@ -15,7 +15,7 @@ using namespace duet::raster;
 
 namespace {
 
-constexpr int kWidth = 256;
+constexpr int kWidth = 1024; ///< a pixel has 0.35 degrees
 
 /// Returns an image of a function of the direction.
 template <typename F> Environment shown_image(F radiance_of, float rotation = 0) {
@@ -49,11 +49,11 @@ TEST_SUITE("unit") {
         const Vec3d toward = normalize(Vec3d(0.3, 0.5, -0.7));
         const auto sun = find_sun(sky_with_disk(toward, 4, Rgb(100, 80, 60)));
         REQUIRE(sun);
-        CHECK(dot(-Vec3d(sun->light.direction), toward) > std::cos(radians(0.3))); // a pixel has 1.4 degrees
+        CHECK(dot(-Vec3d(sun->light.direction), toward) > std::cos(radians(0.05)));
         CHECK(sun->sine == doctest::Approx(std::sin(radians(4.0))).epsilon(0.05));
         for (std::size_t c = 0; c < 3; ++c) {
             const double expected = solid_angle_of_disk(4) * static_cast<double>(Rgb(100, 80, 60)[c]);
-            CHECK(sun->light.irradiance[c] == doctest::Approx(expected).epsilon(0.03)); // by the edge's pixels
+            CHECK(sun->light.irradiance[c] == doctest::Approx(expected).epsilon(0.015)); // by the pixels of its edge
             CHECK(sun->around[c] == doctest::Approx(Rgb(0.5f, 0.6f, 0.9f)[c]).epsilon(1e-5));
         }
     }
