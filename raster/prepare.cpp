@@ -146,7 +146,7 @@ SharedList<PackedShape> packed_shapes(const Scene& scene, const RasterSceneData*
 /// Implements prepare(). If `before` is not null, its probes and the packed meshes that both scenes share are reused.
 RasterScene prepare_after(const RasterSceneData* before, const Scene& scene, const RasterSettings& settings) {
     std::optional<EnvironmentSun> sun;
-    if (settings.shading == Shading::kLit && settings.environment) sun = find_sun(scene.environment);
+    if (settings.shading == Shading::kLit && settings.environment) sun = find_sun(scene.environment, settings.threads);
     RasterSceneData data{.scene = scene,
                          .sun = sun,
                          .sky_irradiance =

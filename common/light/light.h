@@ -60,7 +60,7 @@ bool emits_towards(const SurfaceLight& light, Vec3 p);
 /// Returns the fraction of the axis's intensity at an angle of this cosine to the axis, in [0, 1]. T is float or a
 /// batch of floats.
 template <typename T> T spot_falloff(const SpotLight& light, T cosine) {
-    const float range = max(light.cos_inner - light.cos_outer, 1e-6f); // equal angles give a hard edge
+    const float range = max(light.cos_inner - light.cos_outer, 1e-12f); // equal angles give a hard edge
     const T s = clamp((cosine - T(light.cos_outer)) / T(range), T(0.0f), T(1.0f));
     return s * s * (T(3.0f) - T(2.0f) * s);
 }

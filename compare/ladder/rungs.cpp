@@ -88,7 +88,7 @@ std::array<RungPlan, kRungCount> plan_rungs(const Scene& scene, const PreparedPa
     const RungPlan environment{
         {light_renderers("environment", sky, kEnvironmentAlone, Integrator::kEnvironment, true)},
         "Irradiance in closed form or by spherical harmonics, times the fraction of the environment that the image's "
-        "depths leave visible.",
+        "depths leave visible. The sun of an environment image is a light with shadow maps.",
         "Light and BSDF samples of the environment, with shadow rays.",
         ""};
     const RungPlan reflections{

@@ -17,7 +17,9 @@ const Floats kNone(0.0f);
 AmbientLight environment_in_fog(const RasterSceneData& data, const RasterSettings& settings,
                                 const ScreenProjection& projection) {
     if (!shows_environment(data, settings)) return {};
-    return [light = broadcast<Floats>(data.ambient),
+    Rgb mean = data.ambient;
+    if (data.sun) mean = mean - data.sun->light.irradiance * (kInvPi / 4); // sun_lights() has this part
+    return [light = broadcast<Floats>(mean),
             media = frame_media(data.scene.media, settings, projection)](const Vec3s& p) {
         Color sum(kNone);
         for (const Vec3 axis : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)})

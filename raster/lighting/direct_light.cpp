@@ -3,7 +3,6 @@
 #include "raster/gbuffer/facet_normal.h"
 #include "raster/lighting/light_set.h"
 #include "raster/lighting/lit_batch.h"
-#include "raster/shadows/surface_shadows.h"
 
 #include <optional>
 #include <utility>
@@ -249,14 +248,6 @@ void compute_direct_light(const RasterSceneData& data, const RasterSettings& set
         else
             for (int x = 0; x < width; x += kTileSide) lighter.light_tile(x, first);
     });
-}
-
-void compute_shadowed_light(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
-                            std::span<const FrameLight> lights, float time, DirectLight& light,
-                            const ChosenLights& chosen) {
-    std::optional<SurfaceShadows> shadows;
-    if (settings.shadows && data.shadows) shadows.emplace(data, gbuffer, time, settings.threads);
-    compute_direct_light(data, settings, gbuffer, lights, shadows ? &*shadows : nullptr, light, chosen);
 }
 
 } // namespace duet::raster

@@ -40,9 +40,5 @@ struct ChosenLights {
 void compute_direct_light(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
                           std::span<const FrameLight> lights, const LightVisibility* shadows, DirectLight& light,
                           const ChosenLights& chosen = {});
-/// Does the same with the shadow maps of the time `time`, if the settings and the scene have any.
-void compute_shadowed_light(const RasterSceneData& data, const RasterSettings& settings, const GBuffer& gbuffer,
-                            std::span<const FrameLight> lights, float time, DirectLight& light,
-                            const ChosenLights& chosen = {});
 
 } // namespace duet::raster

@@ -26,7 +26,8 @@ struct EnvironmentSun {
     }
 };
 
-/// Returns the sun of an image, or nothing if no small disk is bright enough to cast a visible shadow.
-std::optional<EnvironmentSun> find_sun(const Environment& environment);
+/// Returns the sun of an image, or nothing if no small disk is bright enough to cast a visible shadow, or if the image
+/// is too coarse to show one. The result is the same for any number of threads.
+std::optional<EnvironmentSun> find_sun(const Environment& environment, int threads);
 
 } // namespace duet::raster

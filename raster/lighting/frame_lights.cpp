@@ -21,7 +21,7 @@ struct Converter {
         FrameLight result(Kind::kSpot, light.intensity);
         result.position = relative(light.position), result.axis = light.direction;
         result.cos_outer = light.cos_outer;
-        result.inverse_range = 1 / max(light.cos_inner - light.cos_outer, 1e-6f); // equal angles give a hard edge
+        result.inverse_range = 1 / max(light.cos_inner - light.cos_outer, 1e-12f); // equal angles give a hard edge
         return result;
     }
     FrameLight operator()(const SunLight& light) const {
@@ -74,7 +74,7 @@ std::vector<FrameLight> scene_lights(const RasterSceneData& data, const RasterSe
 
 std::vector<FrameLight> sun_lights(const RasterSceneData& data, const RasterSettings& settings,
                                    const ScreenProjection& projection) {
-    if (!data.sun || !settings.components.environment) return {};
+    if (!data.sun || !settings.environment || !settings.components.environment) return {};
     const Light sun = data.sun->light;
     std::vector<FrameLight> result = frame_lights(std::span(&sun, 1), projection);
     for (FrameLight& light : result) light.index = data.scene.lights.size(), light.diffuse_only = true;

@@ -63,9 +63,9 @@ void list_shadow_approximations(const RasterSceneData& data, const RasterSetting
         result.emplace_back("Direct light is unshadowed.");
         return;
     }
-    if (scene.needs.delta_lights || sun)
+    if (scene.needs.delta_lights)
         result.emplace_back("Shadows of point, spot and sun lights are filtered over about three texels of a map.");
-    if (scene.needs.surface_lights)
+    if (scene.needs.surface_lights || sun)
         result.emplace_back(
             "Soft shadows are estimated from the depths that the light's center sees, by few taps per pixel that "
             "neighbors share.");

@@ -6,6 +6,7 @@
 #include "raster/shader/octahedral_map.h"
 #include "raster/shadows/cube_map.h"
 #include "raster/shadows/light_views.h"
+#include "raster/shadows/surface_shadows.h"
 #include "raster/visibility/hit_lists.h"
 
 #include "common/system/control.h"
@@ -53,11 +54,16 @@ ProbeCapture::Face capture(const RasterSceneData& data, const RasterSettings& se
     draw_background(data, settings, face.gbuffer, shown.sun, face.direct);
     ChosenLights chosen = shown.lights;
     chosen.random = std::fmod(chosen.random + 0.381966f * static_cast<float>(face_index), 1.0f);
-    const ScreenProjection& projection = face.gbuffer.projection;
-    for (const auto& lights : {scene_lights(data, settings, projection), sun_lights(data, settings, projection)}) {
-        if (lights.empty()) continue;
+    const std::vector<FrameLight> lights = scene_lights(data, settings, face.gbuffer.projection);
+    std::vector<FrameLight> suns = sun_lights(data, settings, face.gbuffer.projection);
+    if (lights.empty() && suns.empty()) return face;
+    if (!shown.sun) // then specular lobes do not see the sun in the background
+        for (FrameLight& sun : suns) sun.diffuse_only = false;
+    const std::optional<SurfaceShadows> shadows = surface_shadows(data, settings, face.gbuffer, pass.time);
+    for (const std::span<const FrameLight> some : {std::span(lights), std::span<const FrameLight>(suns)}) {
+        if (some.empty()) continue;
         DirectLight light;
-        compute_shadowed_light(data, settings, face.gbuffer, lights, pass.time, light, chosen);
+        compute_direct_light(data, settings, face.gbuffer, some, shadows ? &*shadows : nullptr, light, chosen);
         add_direct_light(face.gbuffer, light, 1, face.direct);
     }
     return face;

@@ -8,6 +8,7 @@
 #include "raster/probes/refraction.h"
 #include "raster/screen_space/subsurface.h"
 #include "raster/shading/blended_layers.h"
+#include "raster/shadows/surface_shadows.h"
 
 #include "common/system/control.h"
 #include "common/system/stopwatch.h"
@@ -85,22 +86,24 @@ public:
     /// Adds the light of Scene::lights and of the environment's sun.
     void add_direct(Planes3& radiance, ComponentRecorder& recorder) {
         const GBuffer& gbuffer = *frame_.gbuffer;
-        const auto add = [&](std::span<const FrameLight> lights) {
-            if (lights.empty()) return;
-            compute_shadowed_light(data_, settings_, gbuffer, lights, options_.time, frame_.direct);
+        const std::vector<FrameLight> lights = scene_lights(data_, settings_, gbuffer.projection),
+                                      suns = sun_lights(data_, settings_, gbuffer.projection);
+        if (lights.empty() && suns.empty()) return;
+        const std::optional<SurfaceShadows> shadows = surface_shadows(data_, settings_, gbuffer, options_.time);
+        const auto add = [&](std::span<const FrameLight> some) {
+            if (some.empty()) return;
+            compute_direct_light(data_, settings_, gbuffer, some, shadows ? &*shadows : nullptr, frame_.direct);
             done("direct light and shadows");
             add_direct_light(gbuffer, frame_.direct, settings_.threads, radiance);
             done("shadow denoiser");
         };
-        if (const auto lights = scene_lights(data_, settings_, gbuffer.projection); !lights.empty()) {
-            add(lights);
+        add(lights);
+        if (recorder.records() && !lights.empty()) {
             recorder.record(&LightComponentImages::direct);
-            if (recorder.records()) {
-                compute_direct_light(data_, settings_, gbuffer, lights, nullptr, frame_.direct);
-                recorder.record_shadowed(frame_.direct);
-            }
+            compute_direct_light(data_, settings_, gbuffer, lights, nullptr, frame_.direct);
+            recorder.record_shadowed(frame_.direct);
         }
-        add(sun_lights(data_, settings_, gbuffer.projection)); // recorded with the other light of the environment
+        add(suns); // recorded with the other light of the environment
     }
     /// Finds what the image's surfaces hide from each other, and the light that they send instead. `direct` returns the
     /// direct light of a pixel.

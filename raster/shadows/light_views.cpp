@@ -67,7 +67,7 @@ std::array<SunRect, kRanges> range_rects(std::span<const VisiblePoint> visible, 
 
 } // namespace
 
-std::vector<Camera> sun_views(const SunLight& sun, const Box3& casters, const Camera& camera,
+std::vector<Camera> sun_views(const SunLight& sun, double sine, const Box3& casters, const Camera& camera,
                               std::span<const VisiblePoint> visible, int side, double guard) {
     const Vec3d direction = normalize(Vec3d(sun.direction));
     const FrameT<double> frame = frame_from_normal(direction);
@@ -79,6 +79,14 @@ std::vector<Camera> sun_views(const SunLight& sun, const Box3& casters, const Ca
         first = min(first, p.z), last = max(last, p.z);
     }
     const double depth = last - first;
+    if (sine > 0) {
+        double deepest = last;
+        for (const VisiblePoint& s : visible) deepest = max(deepest, dot(s.p, direction));
+        // A penumbra reaches this far beyond the casters, and its points see what is as far beyond it.
+        const double penumbra = sine * (deepest - first);
+        const SunRect sharp = whole;
+        whole.extend(sharp.least, 2 * penumbra), whole.extend(sharp.most, 2 * penumbra);
+    }
     const double slack = 0.01 *
         (length(Vec3d(whole.most.x - whole.least.x, whole.most.y - whole.least.y, depth)) + 1e-30);
     const auto view = [&](Vec2d middle, double width) {

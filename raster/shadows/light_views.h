@@ -28,7 +28,10 @@ struct VisiblePoint {
 /// them, and others to the points within successively shorter distances (Lauritzen, Salvi and Lefohn 2011, "Sample
 /// Distribution Shadow Maps"). They help in a room, where the nearest surfaces are not at the camera's target. `guard`
 /// is the number of texels, of `side`, left around the fitted bounds.
-std::vector<Camera> sun_views(const SunLight& sun, const Box3& casters, const Camera& camera,
+///
+/// If the sun is a disk, `sine` is that of its angular radius. The last view then also covers all penumbrae, and what
+/// their points see of the disk.
+std::vector<Camera> sun_views(const SunLight& sun, double sine, const Box3& casters, const Camera& camera,
                               std::span<const VisiblePoint> visible, int side, double guard);
 
 /// Returns the view of a spot's cone, or none if the cone is too wide for one map. `guard` is the number of texels, of

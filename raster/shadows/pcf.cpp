@@ -12,8 +12,8 @@ constexpr float kSteepest = 0.5f, kOfElevation = 0.85f;
 /// A texel's surface is continued to the point by its slope in the map. It is a roof over the point if it is then
 /// higher above the receiver's plane than kRoof times the height that a facet at kSteepest reaches within one texel. A
 /// facet that begins beside the point would be lower than the plane there. A surface that ends between two texels is
-/// steep, and so counts as a roof, too. A surface whose normal is turned from the receiver's by an angle of at least
-/// this cosine is no facet of the same surface, so it is a roof at any height.
+/// steep, and so counts as a roof, too. A surface whose normal is turned so far from the receiver's that the cosine
+/// is below kTurned is no facet of the same surface, so it is a roof at any height.
 constexpr float kRoof = 0.7f, kTurned = 0.5f;
 /// Texels on the side of the point that is nearer to the light are ignored if their surface falls below the receiver's
 /// plane by more than this fraction of the elevation. They lie beyond the end of the receiver's surface.
@@ -102,6 +102,13 @@ SharpShadowMap::Texels SharpShadowMap::texels(const Vec3T<Floats>& p, Mask& insi
         high(static_cast<float>(map_.side() - ShadowMap::kMargin));
     inside = (depth > Floats(near_)) & (x >= low) & (y >= low) & (x <= high) & (y <= high);
     return {x, y, depth};
+}
+
+Floats SharpShadowMap::depth(const Vec3T<Floats>& p, float spread, Mask& inside) const {
+    const auto [x, y, depth] = texels(p, inside);
+    const Floats reach = depth * Floats(spread / texel()), end = Floats(static_cast<float>(map_.side())) - reach;
+    inside = inside & (x >= reach) & (y >= reach) & (x <= end) & (y <= end);
+    return depth;
 }
 
 Vec3T<Floats> SharpShadowMap::surface(const Vec3T<Floats>& p) const {

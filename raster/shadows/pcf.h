@@ -22,8 +22,8 @@ public:
     /// nothing.
     Vec3T<Floats> surface(const Vec3T<Floats>& p) const;
     /// Returns the depth of points in the map, in meters from the side of the light. `inside` receives the lanes that
-    /// lie in the map.
-    Floats depth(const Vec3T<Floats>& p, xsimd::batch_bool<float>& inside) const { return texels(p, inside).depth; }
+    /// lie in the map with their surroundings, up to `spread` times their depth. The map must be orthographic.
+    Floats depth(const Vec3T<Floats>& p, float spread, xsimd::batch_bool<float>& inside) const;
     const Vec3& direction() const { return direction_; } ///< of light, if the map is orthographic; unit
     float texel() const { return length(origin_dx_); }   ///< width of a texel in meters, if the map is orthographic
     /// Returns the lit fraction of points in space, which have no normal, interpolated between the four nearest texels.

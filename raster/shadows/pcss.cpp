@@ -236,7 +236,7 @@ Floats sun_visibility(const SharpShadowMap& map, float sine, const Vec3s& p, con
                       Mask& inside) {
     // The disk is where the map begins, which is before all casters, straight above each point.
     const Vec3s toward = broadcast<Floats>(-map.direction());
-    const Floats distance = max(map.depth(p, inside), Floats(1e-20f));
+    const Floats distance = max(map.depth(p, sine, inside), Floats(1e-20f));
     const Vec3s center = p + toward * distance;
     const auto surface = [&](const Vec3s& w, Floats& texel) {
         texel = Floats(map.texel());
@@ -244,6 +244,5 @@ Floats sun_visibility(const SharpShadowMap& map, float sine, const Vec3s& p, con
     };
     return visible_fraction(surface, disk(toward, distance, Floats(sine)), p - center, n, y, lanes & inside);
 }
-
 
 } // namespace duet::raster

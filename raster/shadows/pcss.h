@@ -50,7 +50,8 @@ private:
 };
 
 /// Returns the visible fraction of a sun's disk, whose angular radius has the given sine, by the map of its center: an
-/// estimate as that of SoftShadowMap. `inside` receives the lanes that lie in the map; others are unspecified.
+/// estimate as that of SoftShadowMap. `inside` receives the lanes for which the map shows what may hide the disk;
+/// others are unspecified.
 Floats sun_visibility(const SharpShadowMap& map, float sine, const Vec3T<Floats>& p, const Vec3T<Floats>& n, int y,
                       const xsimd::batch_bool<float>& lanes, xsimd::batch_bool<float>& inside);
 

@@ -121,7 +121,8 @@ std::vector<Camera> Shadows::views_of(const RasterSceneData& data, const std::ve
     for (std::uint32_t i = 0; i < scene_.objects.size(); ++i)
         if (!is_floor(scene_, i, sun->direction)) bounds.extend(data.objects[i].bounds);
     if (bounds.empty()) return {};
-    return sun_views(*sun, bounds, scene_.camera, visible, side_, kGuardTexels);
+    const double sine = source.lights.front() == scene_.lights.size() ? static_cast<double>(data.sun->sine) : 0;
+    return sun_views(*sun, sine, bounds, scene_.camera, visible, side_, kGuardTexels);
 }
 
 /// Halves the resolution of the maps until they take at most kViewTexels and kCubeTexels.

@@ -46,4 +46,11 @@ Floats SurfaceShadows::visibility(std::size_t source, const Vec3T<Floats>& point
     return maps_.visibility(source, visibility_in_sharp, visibility_in);
 }
 
+std::optional<SurfaceShadows> surface_shadows(const RasterSceneData& data, const RasterSettings& settings,
+                                              const GBuffer& gbuffer, float time) {
+    std::optional<SurfaceShadows> result;
+    if (settings.shadows && data.shadows) result.emplace(data, gbuffer, time, settings.threads);
+    return result;
+}
+
 } // namespace duet::raster

@@ -43,4 +43,9 @@ private:
     float sine_ = 0;                     ///< of the disk's angular radius
 };
 
+/// Returns the shadows at `time`, or nothing if the settings or the scene have none. It keeps references to `data` and
+/// `gbuffer`.
+std::optional<SurfaceShadows> surface_shadows(const RasterSceneData& data, const RasterSettings& settings,
+                                              const GBuffer& gbuffer, float time);
+
 } // namespace duet::raster

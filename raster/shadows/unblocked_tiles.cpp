@@ -48,6 +48,7 @@ std::vector<Caster> casters_of(const RasterSceneData& data, const GBuffer& gbuff
 struct Origin {
     Box3d box;
     Vec3d sun; ///< unit direction to the sun; (0, 0, 0) for other lights
+    double sine = 0; ///< of the angular radius of the sun
     std::uint32_t excluded = kNoObject; ///< object that does not shade this light
 };
 
@@ -55,6 +56,7 @@ Origin origin_of(const RasterSceneData& data, const Shadows::Source& source) {
     Origin origin;
     const Light light = data.light(source.lights.front());
     if (const auto* sun = std::get_if<SunLight>(&light)) origin.sun = -Vec3d(sun->direction);
+    if (source.lights.front() == data.scene.lights.size()) origin.sine = static_cast<double>(data.sun->sine);
     if (const auto* point = std::get_if<PointLight>(&light)) origin.box.extend(Vec3d(point->position));
     if (const auto* spot = std::get_if<SpotLight>(&light)) origin.box.extend(Vec3d(spot->position));
     for (const std::size_t i : source.lights) {
@@ -156,9 +158,10 @@ UnblockedTiles::UnblockedTiles(const RasterSceneData& data, const GBuffer& gbuff
         if (points.box.empty()) return;
         for (std::size_t k = 0; k < origins.size(); ++k) {
             const Origin& origin = origins[k];
-            const Vec3d shift = origin.sun * far;
-            const Box3d light = length_squared(shift) > 0 ? Box3d{points.box.low + shift, points.box.high + shift}
-                                                          : origin.box;
+            const Vec3d shift = origin.sun * far, wider = Vec3d(1, 1, 1) * (origin.sine * far);
+            const Box3d light = length_squared(shift) > 0
+                                    ? Box3d{points.box.low + shift - wider, points.box.high + shift + wider}
+                                    : origin.box;
             const bool clear = std::ranges::all_of(casters, [&](const Caster& caster) {
                 return caster.object == origin.excluded || (caster.convex && caster.object == points.object) ||
                        misses_shaft(points.box, light, caster.box);
