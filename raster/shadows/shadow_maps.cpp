@@ -121,8 +121,7 @@ std::vector<Camera> Shadows::views_of(const RasterSceneData& data, const std::ve
     for (std::uint32_t i = 0; i < scene_.objects.size(); ++i)
         if (!is_floor(scene_, i, sun->direction)) bounds.extend(data.objects[i].bounds);
     if (bounds.empty()) return {};
-    const double sine = source.lights.front() == scene_.lights.size() ? static_cast<double>(data.sun->sine) : 0;
-    return sun_views(*sun, sine, bounds, scene_.camera, visible, side_, kGuardTexels);
+    return sun_views(*sun, static_cast<double>(source.sine), bounds, scene_.camera, visible, side_, kGuardTexels);
 }
 
 /// Halves the resolution of the maps until they take at most kViewTexels and kCubeTexels.
@@ -151,7 +150,7 @@ std::vector<Shadows::Source> Shadows::find_sources(const RasterSceneData& data, 
         const Light light = data.light(i);
         const auto* surface = std::get_if<SurfaceLight>(&light);
         if (surface == nullptr) {
-            sources.push_back({{i}, {}, false, {}});
+            sources.push_back({{i}, {}, false, i < scene.lights.size() ? 0 : data.sun->sine, {}});
         } else {
             const bool emits_only = only_emits(surface->object);
             groups[{surface->object, emits_only ? std::array<long, 4>{} : plane_key(*surface, scene_size_)}].push_back(
@@ -160,7 +159,7 @@ std::vector<Shadows::Source> Shadows::find_sources(const RasterSceneData& data, 
     }
     for (auto& [key, lights] : groups) {
         const std::vector<SurfaceLight> surfaces = surface_lights(scene, lights);
-        sources.push_back({std::move(lights), pieces(Emitter::of(surfaces), cells), only_emits(key.first), {}});
+        sources.push_back({std::move(lights), pieces(Emitter::of(surfaces), cells), only_emits(key.first), 0, {}});
     }
     if (sources.size() <= kMaxSources) return sources;
     const float radius = static_cast<float>(scene_size_ / 2);

@@ -40,6 +40,7 @@ public:
         std::vector<std::size_t> lights;
         std::vector<Emitter> cells; ///< pieces of a surface light, each with its own maps; else empty
         bool emits_only = false;    ///< whether its object only emits and is excluded from its own maps
+        float sine = 0;             ///< of the angular radius of the environment's sun; 0 for other lights
         std::vector<Maps> moments;      ///< parallel to moments_
     };
     const std::vector<Source>& sources() const { return sources_; }

@@ -9,9 +9,11 @@ using Mask = Floats::batch_bool_type;
 
 SurfaceShadows::SurfaceShadows(const RasterSceneData& data, const GBuffer& gbuffer, float time, int threads)
     : shadows_(*data.shadows), maps_(shadows_, gbuffer.projection.eye(), time), gbuffer_(gbuffer),
-      eye_(gbuffer.projection.eye()), to_moment_(shadows_.motions(time)), unblocked_(data, gbuffer, threads) {
+      eye_(gbuffer.projection.eye()), to_moment_(shadows_.motions(time)), unblocked_(data, gbuffer, threads) {}
+
+bool SurfaceShadows::is_wide_sun(std::size_t source) const {
     constexpr float kWide = 0.01f; // twice that of the sun in the sky, whose shadows are nearly sharp
-    if (data.sun && data.sun->sine > kWide) soft_sun_ = source(data.scene.lights.size()), sine_ = data.sun->sine;
+    return shadows_.sources()[source].sine > kWide;
 }
 
 SurfaceShadows::Receivers SurfaceShadows::at_moment(const Receivers& receivers, int x, int y) const {
@@ -40,8 +42,9 @@ Floats SurfaceShadows::visibility(std::size_t source, const Vec3T<Floats>& point
     // Up to four cells alternate between the rows of a block, so a batch samples one cell only.
     if (!soft.empty() && soft.size() <= 4) return visibility_in(soft[static_cast<std::size_t>(y) % soft.size()]);
     const auto visibility_in_sharp = [&](const SharpShadowMap& map, Mask& inside) {
-        return source == soft_sun_ ? sun_visibility(map, sine_, at.p, at.n, y, lanes, inside)
-                                   : map.visibility(at.p, at.n, inside);
+        return is_wide_sun(source)
+                   ? sun_visibility(map, shadows_.sources()[source].sine, at.p, at.n, y, lanes, inside)
+                   : map.visibility(at.p, at.n, inside);
     };
     return maps_.visibility(source, visibility_in_sharp, visibility_in);
 }

@@ -20,7 +20,7 @@ public:
         const std::size_t source = shadows_.source_of(light);
         return source < shadows_.sources().size() ? source : kUnshadowed;
     }
-    bool noisy(std::size_t source) const override { return source == soft_sun_ || !maps_.soft(source).empty(); }
+    bool noisy(std::size_t source) const override { return is_wide_sun(source) || !maps_.soft(source).empty(); }
     /// Returns a noisy estimate. Each pixel of a block of 4 × 4 has taps of its own, and add_direct_light()
     /// (raster/lighting/shadow_denoiser.h) averages over the block. If an area light has at most four cells, each pixel
     /// samples one of them, else all.
@@ -31,6 +31,7 @@ private:
     struct Receivers {
         Vec3T<Floats> p, n;
     };
+    bool is_wide_sun(std::size_t source) const;
     Receivers at_moment(const Receivers& receivers, int x, int y) const;
 
     const Shadows& shadows_;
@@ -39,8 +40,6 @@ private:
     Vec3d eye_;
     std::vector<std::optional<Mat4d>> to_moment_; ///< for each object, from its current position; empty if none moves
     UnblockedTiles unblocked_;
-    std::size_t soft_sun_ = kUnshadowed; ///< source of the environment's sun, if its disk is wide
-    float sine_ = 0;                     ///< of the disk's angular radius
 };
 
 /// Returns the shadows at `time`, or nothing if the settings or the scene have none. It keeps references to `data` and

@@ -56,7 +56,7 @@ Origin origin_of(const RasterSceneData& data, const Shadows::Source& source) {
     Origin origin;
     const Light light = data.light(source.lights.front());
     if (const auto* sun = std::get_if<SunLight>(&light)) origin.sun = -Vec3d(sun->direction);
-    if (source.lights.front() == data.scene.lights.size()) origin.sine = static_cast<double>(data.sun->sine);
+    origin.sine = static_cast<double>(source.sine);
     if (const auto* point = std::get_if<PointLight>(&light)) origin.box.extend(Vec3d(point->position));
     if (const auto* spot = std::get_if<SpotLight>(&light)) origin.box.extend(Vec3d(spot->position));
     for (const std::size_t i : source.lights) {

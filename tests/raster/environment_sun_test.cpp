@@ -13,6 +13,7 @@
 
 using namespace duet;
 using namespace duet::raster;
+using test::mean_green;
 
 namespace {
 
@@ -32,12 +33,6 @@ Environment sky_with_disk(const Vec3d& sun, double degrees, Rgb added, float rot
     return shown_image([&, cosine = std::cos(radians(degrees))](const Vec3d& w) {
         return Rgb(0.5f, 0.6f, 0.9f) + (dot(w, sun) > cosine ? added : Rgb());
     }, rotation);
-}
-
-double mean_green(const ImageRgb& image) {
-    double sum = 0;
-    for (std::size_t i = 0; i < image.size(); ++i) sum += static_cast<double>(image[i].g);
-    return sum / static_cast<double>(image.size());
 }
 
 std::optional<EnvironmentSun> sun_of(const Environment& environment) { return find_sun(environment, 2); }

@@ -16,6 +16,13 @@ inline double relmse(const ImageRgb& a, const ImageRgb& b) {
     return sum / (3 * static_cast<double>(a.size()));
 }
 
+/// Returns the mean of the green channel.
+inline double mean_green(const ImageRgb& image) {
+    double sum = 0;
+    for (std::size_t i = 0; i < image.size(); ++i) sum += static_cast<double>(image[i].g);
+    return sum / static_cast<double>(image.size());
+}
+
 inline ImageRgb path_traced(const Scene& scene, const View& view, int spp) {
     raytrace::PathTracerSettings settings;
     settings.samples_per_pixel = spp;

@@ -15,12 +15,6 @@ namespace {
 
 Scene scene_of(const std::string& text) { return parse_scene("test.json", text); }
 
-double mean_green(const ImageRgb& image) {
-    double sum = 0;
-    for (std::size_t i = 0; i < image.size(); ++i) sum += static_cast<double>(image[i].g);
-    return sum / static_cast<double>(image.size());
-}
-
 double rasterized_mean(const Scene& scene) {
     Control control;
     const raster::RasterSettings settings;
