@@ -27,6 +27,7 @@ constexpr float kInset = 0.02f;
 /// These are the weights of probes inside objects, and of probes that a point does not see. Where such probes are the
 /// nearest, the irradiance changes over this fraction of a cell.
 constexpr float kInside = 1e-2f, kHidden = 3e-3f;
+constexpr float kBlind = 0.1f; ///< a point with a smaller sum of weights may lie in an object
 constexpr float kBehind = 0.05f; ///< added to each weight, so that probes behind the surface have some, too
 
 /// Returns the weight of a probe with these distances at points with the normals n, by its visibility from there.
@@ -107,12 +108,12 @@ RgbT<Floats> IrradianceProbes::mean_radiance(const Vec3d& eye, const Vec3s& p, c
     return result + (far - result) * share;
 }
 
-/// Returns the displacement of a point for the visibility test: at most half of the vector to the viewer, plus an
-/// offset along the normal.
-Vec3s IrradianceProbes::bias(const Vec3s& n, const Vec3s& to_viewer) const {
+/// Returns the displacements of a point for the visibility test: an offset along the normal, and at most half of the
+/// vector to the viewer.
+std::array<Vec3s, 2> IrradianceProbes::bias(const Vec3s& n, const Vec3s& to_viewer) const {
     const auto step = static_cast<float>(std::min({step_.x, step_.y, step_.z}));
     const Floats over = inverse_sqrt(max(dot(to_viewer, to_viewer), Floats(std::numeric_limits<float>::min())));
-    return n * Floats(kNormalBias * step) + to_viewer * min(Floats(kViewBias * step) * over, Floats(0.5f));
+    return {n * Floats(kNormalBias * step), to_viewer * min(Floats(kViewBias * step) * over, Floats(0.5f))};
 }
 
 namespace {
@@ -138,16 +139,28 @@ void discount_unseen(const std::array<std::uint8_t, 8>& sights, std::array<Float
 IrradianceProbes::Weights IrradianceProbes::weights(const Vec3d& eye, const Vec3s& p, const Vec3s& n,
                                                     const Vec3s& to_viewer, const Mask& mask) const {
     const Place place = place_of(eye, p);
-    const Vec3s at = p + bias(n, to_viewer);
+    const std::array<Vec3s, 2> biases = bias(n, to_viewer);
+    const Vec3s free = p + biases[1], above = free + biases[0];
     Weights result{place.cells, {}, Floats(0.0f), place.beyond};
     for_each_value(place.cells, lane_bits(mask), [&](std::int32_t base, const Mask& own) {
         const auto cell = static_cast<std::size_t>(base);
         std::array<Floats, 8> corners;
-        for (unsigned i = 0; i < 8; ++i) {
-            const Probe& probe = probes_[corner_of(cell, i)];
-            const Vec3s to_probe = broadcast<Floats>(Vec3(probe.position - eye)) - at;
-            corners[i] = place.weight(i) * visibility(probe.distance, to_probe, n);
-        }
+        const auto add = [&](const Vec3s& at, const Floats& share) {
+            Floats sum(0.0f);
+            for (unsigned i = 0; i < 8; ++i) {
+                const Probe& probe = probes_[corner_of(cell, i)];
+                const Vec3s to_probe = broadcast<Floats>(Vec3(probe.position - eye)) - at;
+                const Floats weight = place.weight(i) * visibility(probe.distance, to_probe, n);
+                corners[i] += weight * share, sum += weight;
+            }
+            return sum;
+        };
+        corners.fill(Floats(0.0f));
+        const Floats sight = add(above, Floats(1.0f));
+        // The normal may lead into an object just above the surface, where no probe is seen. The way to the viewer is
+        // free.
+        const Floats blind = max(Floats(1.0f) - sight * Floats(1 / kBlind), Floats(0.0f));
+        if (xsimd::any(own & (blind > Floats(0.0f)))) add(free, blind);
         if (std::ranges::any_of(sights_[cell], [](std::uint8_t seen) { return seen != 0xff; }))
             discount_unseen(sights_[cell], corners);
         Floats sum(0.0f);
