@@ -27,7 +27,7 @@ constexpr float kInset = 0.02f;
 /// These are the weights of probes inside objects, and of probes that a point does not see. Where such probes are the
 /// nearest, the irradiance changes over this fraction of a cell.
 constexpr float kInside = 1e-2f, kHidden = 3e-3f;
-constexpr float kBlind = 0.1f; ///< a point with a smaller sum of weights may lie in an object
+constexpr float kBlind = 0.05f; ///< where the weights add up to less, the point may have been moved into an object
 constexpr float kBehind = 0.05f; ///< added to each weight, so that probes behind the surface have some, too
 
 /// Returns the weight of a probe with these distances at points with the normals n, by its visibility from there.

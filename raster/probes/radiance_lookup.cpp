@@ -11,8 +11,8 @@ using Mask = Floats::batch_bool_type;
 using Vec3s = Vec3T<Floats>;
 using Rgbs = RgbT<Floats>;
 
-/// Below this GGX width, the dominant direction and the mirrored direction meet the same surfaces.
-constexpr float kSharpest = 0.02f;
+/// Lobes below this GGX width, that of the first filtered map, are traced like mirrors.
+constexpr float kNarrow = sqr(1.0f / RadianceMap::kLevels);
 
 } // namespace
 
@@ -60,16 +60,16 @@ Rgbs RadianceLookup::operator()(const Vec3s& p, const Vec3s& n, const Vec3s& w, 
 
 Rgbs RadianceLookup::from_probe(std::size_t probe, const Query& query, const Mask& lanes) const {
     const Vec3d eye = gbuffer_.projection.eye();
-    const auto trace = [&](const Vec3s& w, bool lights) {
-        return probes_->trace(probe, eye, query.p, w, lights, lanes);
-    };
-    Vec3s hit = trace(query.w, xsimd::all(query.mirror));
-    if (probes_->map(probe).has_lights() && xsimd::any(query.mirror) && !xsimd::all(query.mirror))
-        hit = select(query.mirror, trace(query.w, true), hit);
-    const Mask sharp = query.alpha < Floats(kSharpest);
-    // The axis of a wide lobe meets other surfaces than w, so it is traced separately.
+    const RadianceMap& map = probes_->map(probe);
+    const Mask narrow = query.alpha < Floats(kNarrow), traced = lanes & narrow;
+    const auto trace = [&](bool lights) { return probes_->trace(probe, eye, query.p, query.w, lights, traced); };
+    Vec3s hit = trace(xsimd::all(query.mirror));
+    if (map.has_lights() && xsimd::any(query.mirror) && !xsimd::all(query.mirror))
+        hit = select(query.mirror, trace(true), hit);
+    if (xsimd::all(narrow | ~lanes)) return query.at(map, hit, hit);
     const Vec3s unit_axis = query.axis * inverse_sqrt(max(dot(query.axis, query.axis), Floats(1e-20f)));
-    return query.at(probes_->map(probe), hit, xsimd::all(sharp) ? hit : trace(unit_axis, false));
+    const Vec3s blurred = probes_->trace_lobe(probe, eye, query.p, unit_axis, query.alpha, lanes & ~narrow);
+    return query.at(map, hit, select(narrow, hit, blurred));
 }
 
 } // namespace duet::raster

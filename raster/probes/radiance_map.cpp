@@ -54,15 +54,19 @@ OctahedralMap halved(const OctahedralMap& fine) {
     return coarse;
 }
 
+/// Holds the channels of a batch of texels.
+using Texels = std::array<Floats, OctahedralMap::kChannels>;
+
 /// Returns the mean of the lobe's samples about each of some unit directions.
-RgbT<Floats> filtered(const std::vector<OctahedralMap>& mips, const LobeSamples& samples, const Vec3T<Floats>& axis) {
+Texels filtered(const std::vector<OctahedralMap>& mips, const LobeSamples& samples, const Vec3T<Floats>& axis) {
     const FrameT<Floats> frame = frame_from_normal(axis);
-    RgbT<Floats> sum;
+    Texels sum;
+    sum.fill(Floats(0.0f));
     for (std::size_t i = 0; i < kSamples; ++i) {
         if (samples.weight[i] == 0) continue;
         const Vec3T<Floats> w = frame.to_world(Vec3T<Floats>(samples.w[i]));
-        const auto [r, g, b] = mips[samples.level[i]].nearest<3>(w);
-        sum += RgbT<Floats>{r, g, b} * Floats(samples.weight[i]);
+        const Texels texels = mips[samples.level[i]].nearest<OctahedralMap::kChannels>(w);
+        for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += texels[c] * Floats(samples.weight[i]);
     }
     return sum;
 }
@@ -79,11 +83,13 @@ void filter(const std::vector<OctahedralMap>& mips, const LobeSamples& samples, 
             const Vec3 w = map.direction(column(i), row(i));
             x[i] = w.x, y[i] = w.y, z[i] = w.z;
         }
+        std::array<PacketOf<float>, OctahedralMap::kChannels> means;
         for (std::size_t i = 0; i < kPacketSize; i += Floats::size) {
-            const RgbT<Floats> mean = filtered(mips, samples, {load(x, i), load(y, i), load(z, i)});
-            store(x, i, mean.r), store(y, i, mean.g), store(z, i, mean.b);
+            const Texels mean = filtered(mips, samples, {load(x, i), load(y, i), load(z, i)});
+            for (std::size_t c = 0; c < means.size(); ++c) store(means[c], i, mean[c]);
         }
-        for (std::size_t i = 0; i < kPacketSize; ++i) map.texel(column(i), row(i)) = {x[i], y[i], z[i], 0};
+        for (std::size_t i = 0; i < kPacketSize; ++i)
+            for (std::size_t c = 0; c < means.size(); ++c) map.texel(column(i), row(i))[c] = means[c][i];
     });
     map.finish();
 }
@@ -103,7 +109,7 @@ RadianceMap::RadianceMap(int side, const Source& without_lights, const Source& w
     const auto sample = [&](const Source& source, OctahedralMap& map) {
         for_each_texel(map, threads, [&](Vec3 w) -> OctahedralMap::Texel {
             const auto [radiance, distance] = source(w);
-            return {radiance.r, radiance.g, radiance.b, min(distance, kFarthest)};
+            return {radiance.r, radiance.g, radiance.b, 1 / min(distance, kFarthest)};
         });
     };
     sample(without_lights, sharp_);
@@ -124,18 +130,31 @@ RgbT<Floats> RadianceMap::at(const Vec3T<Floats>& w) const {
     return {r, g, b};
 }
 
-RgbT<Floats> RadianceMap::at(const Vec3T<Floats>& axis, const Floats& alpha) const {
+/// Returns kCount channels, from index `first` on, filtered by lobes of GGX width alpha.
+template <std::size_t kCount>
+std::array<Floats, kCount> RadianceMap::lookup(const Vec3T<Floats>& axis, const Floats& alpha,
+                                               std::size_t first) const {
     const Floats level = xsimd::sqrt(alpha) * Floats(static_cast<float>(kLevels)); // 0: unfiltered
-    RgbT<Floats> sum;
+    std::array<Floats, kCount> sum;
+    sum.fill(Floats(0.0f));
     for (int k = 0; k <= kLevels; ++k) {
         // Levels are interpolated linearly: each has a tent of width 2 as its weight.
         const Floats weight = max(Floats(1.0f) - abs(level - Floats(static_cast<float>(k))), Floats(0.0f));
         if (!xsimd::any(weight > Floats(0.0f))) continue;
         const OctahedralMap& map = k == 0 ? sharp_ : rough_[static_cast<std::size_t>(k - 1)];
-        const auto [r, g, b] = map.at<3>(axis);
-        sum += RgbT<Floats>{r, g, b} * weight;
+        const std::array<Floats, kCount> texels = map.at<kCount>(axis, first);
+        for (std::size_t c = 0; c < kCount; ++c) sum[c] += texels[c] * weight;
     }
     return sum;
+}
+
+RgbT<Floats> RadianceMap::at(const Vec3T<Floats>& axis, const Floats& alpha) const {
+    const auto [r, g, b] = lookup<3>(axis, alpha, 0);
+    return {r, g, b};
+}
+
+Floats RadianceMap::distance(const Vec3T<Floats>& axis, const Floats& alpha) const {
+    return Floats(1.0f) / lookup<1>(axis, alpha, kInverseDistance)[0];
 }
 
 std::size_t RadianceMap::memory_bytes() const {

@@ -34,16 +34,22 @@ public:
 
     /// Returns the radiance without lights, filtered by lobes of GGX width alpha about directions of any length.
     RgbT<Floats> at(const Vec3T<Floats>& axis, const Floats& alpha) const;
+    /// Returns the harmonic mean of the surfaces' distances in these lobes, which background does not make infinite.
+    Floats distance(const Vec3T<Floats>& axis, const Floats& alpha) const;
     /// Returns the unfiltered radiance with lights, in directions of any length.
     RgbT<Floats> at(const Vec3T<Floats>& w) const;
     bool has_lights() const { return !bright_.empty(); }
     /// Returns the distance of the visible surface in directions of any length, with or without lights.
     Floats distance(const Vec3T<Floats>& w, bool lights) const {
-        return (lights && has_lights() ? bright_ : sharp_).nearest<1>(w, 3)[0];
+        return Floats(1.0f) / (lights && has_lights() ? bright_ : sharp_).nearest<1>(w, kInverseDistance)[0];
     }
     std::size_t memory_bytes() const;
 
 private:
+    static constexpr std::size_t kInverseDistance = 3; ///< the channel after those of the radiance; unit: 1/m
+    template <std::size_t kCount>
+    std::array<Floats, kCount> lookup(const Vec3T<Floats>& axis, const Floats& alpha, std::size_t first) const;
+
     OctahedralMap sharp_, bright_;             ///< unfiltered, without and with lights; bright_ may be empty
     std::array<OctahedralMap, kLevels> rough_; ///< rough_[k] has roughness (k + 1) / kLevels
 };

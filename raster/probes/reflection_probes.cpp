@@ -18,11 +18,12 @@ constexpr float kTolerance = 0.01f, kStep = 0.15f;
 /// they do not read the silhouette itself.
 constexpr float kBeside = 0.03f;
 
-/// Follows a batch of rays through a radiance map. Vectors are relative to the map's center.
-class MapTracer {
+/// Follows a batch of rays through a radiance map. Vectors are relative to the map's center. `distance` returns the
+/// distances of the surfaces in given directions.
+template <typename Distance> class MapTracer {
 public:
-    MapTracer(const RadianceMap& map, const Vec3s& start, const Vec3s& w, bool lights)
-        : map_(map), start_(start), w_(w), lights_(lights), length_(xsimd::sqrt(dot(start, start))) {}
+    MapTracer(const Vec3s& start, const Vec3s& w, const Distance& distance)
+        : start_(start), w_(w), distance_(distance), length_(xsimd::sqrt(dot(start, start))) {}
 
     /// Returns the hits of the given lanes; other lanes are unspecified.
     Vec3s hit(const Mask& lanes) const { return start_ + w_ * search(lanes); }
@@ -38,7 +39,7 @@ private:
     };
     Depths depths(const Floats& t) const {
         const Vec3s q = start_ + w_ * t;
-        return {xsimd::sqrt(dot(q, q)), map_.distance(q, lights_)};
+        return {xsimd::sqrt(dot(q, q)), distance_(q)};
     }
     /// Marches along the ray to the first surface that the map shows, and returns its t. If the ray ends behind a
     /// surface instead, the map does not show what the ray hits. The result is then the point before that surface's
@@ -84,9 +85,8 @@ private:
         return {front, back};
     }
 
-    const RadianceMap& map_;
     const Vec3s &start_, &w_;
-    bool lights_;
+    const Distance& distance_;
     Floats length_; ///< of start_
 };
 
@@ -94,9 +94,16 @@ private:
 
 Vec3s ReflectionProbes::trace(std::size_t probe, const Vec3d& eye, const Vec3s& p, const Vec3s& w, bool lights,
                               const Mask& lanes) const {
-    const Vec3 offset(eye - probes_[probe].center);
-    const Vec3s start = p + broadcast<Floats>(offset);
-    return MapTracer(probes_[probe].map, start, w, lights).hit(lanes);
+    const RadianceMap& map = probes_[probe].map;
+    const Vec3s start = probes_[probe].from_center(eye, p);
+    return MapTracer(start, w, [&](const Vec3s& q) { return map.distance(q, lights); }).hit(lanes);
+}
+
+Vec3s ReflectionProbes::trace_lobe(std::size_t probe, const Vec3d& eye, const Vec3s& p, const Vec3s& w,
+                                   const Floats& alpha, const Mask& lanes) const {
+    const RadianceMap& map = probes_[probe].map;
+    const Vec3s start = probes_[probe].from_center(eye, p);
+    return MapTracer(start, w, [&](const Vec3s& q) { return map.distance(q, alpha); }).hit(lanes);
 }
 
 std::size_t ReflectionProbes::memory_bytes() const {

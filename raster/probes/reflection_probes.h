@@ -25,6 +25,10 @@ public:
     /// are not in `lanes` are unspecified.
     Vec3T<Floats> trace(std::size_t probe, const Vec3d& eye, const Vec3T<Floats>& p, const Vec3T<Floats>& w,
                         bool lights, const xsimd::batch_bool<float>& lanes) const;
+    /// This is the same for lobes of GGX width alpha about w. The ray hits surfaces at the mean distance that the lobe
+    /// sees, so that the outlines of near surfaces blur.
+    Vec3T<Floats> trace_lobe(std::size_t probe, const Vec3d& eye, const Vec3T<Floats>& p, const Vec3T<Floats>& w,
+                             const Floats& alpha, const xsimd::batch_bool<float>& lanes) const;
     const RadianceMap& map(std::size_t probe) const { return probes_[probe].map; }
     std::size_t memory_bytes() const;
 
@@ -39,6 +43,10 @@ private:
     struct Probe {
         Vec3d center;
         RadianceMap map;
+
+        Vec3T<Floats> from_center(const Vec3d& eye, const Vec3T<Floats>& p) const {
+            return p + broadcast<Floats>(Vec3(eye - center));
+        }
     };
     std::vector<Probe> probes_;
     std::vector<std::size_t> of_object_;

@@ -44,8 +44,8 @@ public:
     /// Copies the border from the opposite texels. It must be called after the texels have changed.
     void finish();
 
-    /// Returns the first kCount channels in directions of any length, interpolated bilinearly.
-    template <std::size_t kCount> std::array<Floats, kCount> at(const Vec3T<Floats>& w) const;
+    /// Returns kCount channels, from index `first` on, in directions of any length, interpolated bilinearly.
+    template <std::size_t kCount> std::array<Floats, kCount> at(const Vec3T<Floats>& w, std::size_t first = 0) const;
     /// Returns kCount channels, from index `first` on, of the texels nearest to directions of any length.
     template <std::size_t kCount>
     std::array<Floats, kCount> nearest(const Vec3T<Floats>& w, std::size_t first = 0) const;
@@ -59,7 +59,8 @@ private:
     std::vector<Texel> texels_;
 };
 
-template <std::size_t kCount> std::array<Floats, kCount> OctahedralMap::at(const Vec3T<Floats>& w) const {
+template <std::size_t kCount>
+std::array<Floats, kCount> OctahedralMap::at(const Vec3T<Floats>& w, std::size_t first) const {
     const Vec2T<Floats> p = octahedral(w);
     const Floats half(0.5f * static_cast<float>(side_)), middle(half + Floats(0.5f));
     const Floats x = p.x * half + middle, y = p.y * half + middle; // relative to the border's first texel center
@@ -67,12 +68,12 @@ template <std::size_t kCount> std::array<Floats, kCount> OctahedralMap::at(const
     const auto cell = [&](const Floats& v) { return xsimd::max(xsimd::min(truncated(v), Ints(side_)), Ints(0)); };
     const Ints x0 = cell(x), y0 = cell(y);
     const Floats fx = x - xsimd::batch_cast<float>(x0), fy = y - xsimd::batch_cast<float>(y0);
-    const Ints first = (y0 * Ints(side_ + 2) + x0) * Ints(static_cast<std::int32_t>(kChannels));
+    const Ints texel = (y0 * Ints(side_ + 2) + x0) * Ints(static_cast<std::int32_t>(kChannels));
     const int row = (side_ + 2) * static_cast<int>(kChannels);
     std::array<Floats, kCount> result;
     for (std::size_t c = 0; c < kCount; ++c) {
-        const float* from = texels_.data()->data() + c;
-        const auto corner = [&](int offset) { return gather(from + offset, first); };
+        const float* from = texels_.data()->data() + first + c;
+        const auto corner = [&](int offset) { return gather(from + offset, texel); };
         const Floats low = lerp(corner(0), corner(static_cast<int>(kChannels)), fx);
         result[c] = lerp(low, lerp(corner(row), corner(row + static_cast<int>(kChannels)), fx), fy);
     }

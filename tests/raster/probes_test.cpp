@@ -77,9 +77,23 @@ TEST_SUITE("unit") {
                 const RgbT<Floats> c = map.at(all(w), Floats(alpha));
                 CHECK(c.r.get(0) == doctest::Approx(2).epsilon(1e-4));
                 CHECK(c.b.get(0) == doctest::Approx(3).epsilon(1e-4));
+                CHECK(map.distance(all(w), Floats(alpha)).get(0) == doctest::Approx(5).epsilon(1e-4).scale(0));
                 CHECK(std::abs(c.g.get(0) - 1) <= std::abs(w.y) + 0.03f); // lobes only blur the slope; measured: 0.027
             }
         CHECK(map.distance(all({1, 0, 0}), true).get(0) == 5);
+    }
+
+    TEST_CASE("a lobe sees the harmonic mean of distances, which a background does not make infinite") {
+        const raster::RadianceMap map(
+            64,
+            [](Vec3 w) {
+                return raster::RadianceMap::Arriving{Rgb(1), w.y > 0 ? 1.0f : kInfinity};
+            },
+            {}, 1);
+        for (const float alpha : {0.04f, 0.16f, 0.36f}) { // half of the lobe sees the surface; measured: 1.89
+            CHECK(map.distance(all({1, 0, 0}), Floats(alpha)).get(0) == doctest::Approx(2).epsilon(0.08).scale(0));
+            CHECK(map.distance(all({0, 1, 0}), Floats(alpha)).get(0) == doctest::Approx(1).epsilon(0.05).scale(0));
+        }
     }
 
     TEST_CASE("what lights emit shows in mirrors alone") {
