@@ -141,8 +141,7 @@ private:
     /// Calls visit(i) for those samples of the packet that lie in the tile.
     template <typename Visit>
     void for_each_pixel(const SamplePacket& packet, std::uint32_t lanes, const Visit& visit) const {
-        for (; lanes != 0; lanes &= lanes - 1) {
-            const auto i = static_cast<std::size_t>(std::countr_zero(lanes));
+        for (const std::size_t i : SetBits(lanes)) {
             const int x = packet.x + static_cast<int>(i % kPacketWidth),
                       y = packet.y + static_cast<int>(i / kPacketWidth);
             if (x < rect_.x1 && y < rect_.y1) visit(i);
@@ -160,8 +159,7 @@ private:
             }
         }
         object_.fill(-1), material_.fill(-1);
-        for (std::uint32_t left = samples_.visible; left != 0; left &= left - 1) {
-            const auto i = static_cast<std::size_t>(std::countr_zero(left));
+        for (const std::size_t i : SetBits(samples_.visible)) {
             const auto [object, primitive] = geometry_.primitive(reader_.run_of(samples_.id(i)), samples_.id(i));
             object_[i] = static_cast<std::int32_t>(object);
             material_[i] = static_cast<std::int32_t>(material_index(scene_, object, primitive));

@@ -142,12 +142,10 @@ void Assembler::dispatch(const TrianglePacket& out) {
     culled.backfaces += remove(kBackface);
     culled.subpixel += remove(kSubpixel);
     if (const Mesh* mesh = shape_.mesh())
-        for (std::uint32_t left = surviving; left != 0; left &= left - 1)
-            for (const std::uint32_t corner :
-                 mesh->triangles[out.first + static_cast<std::uint32_t>(std::countr_zero(left))])
-                prefetch(&mesh->positions[corner]);
-    for (std::uint32_t left = surviving; left != 0; left &= left - 1) {
-        const auto i = static_cast<std::uint32_t>(std::countr_zero(left)), index = out.first + i;
+        for (const std::size_t lane : SetBits(surviving))
+            for (const std::uint32_t corner : mesh->triangles[out.first + lane]) prefetch(&mesh->positions[corner]);
+    for (const std::size_t lane : SetBits(surviving)) {
+        const auto i = static_cast<std::uint32_t>(lane), index = out.first + i;
         if (out.cull_result[i] == kSmall) {
             add_candidate(out, i);
         } else if (out.cull_result[i] == kDraw) {

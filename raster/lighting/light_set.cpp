@@ -1,7 +1,5 @@
 #include "raster/lighting/light_set.h"
 
-#include <bit>
-
 namespace duet::raster {
 namespace {
 
@@ -146,8 +144,7 @@ void LightSet::reach(const SurfaceBounds& surfaces, float other_irradiance, Ligh
         const Lanes reaches = error >= kNone, far = reaches & (error < allowed);
         xsimd::select(far, Floats(1.0f), kNone).store_aligned(result.distant.data() + i);
         const auto add = [&](unsigned bits, std::vector<std::uint32_t>& to) {
-            for (; bits != 0; bits &= bits - 1)
-                to.push_back(static_cast<std::uint32_t>(i + static_cast<std::size_t>(std::countr_zero(bits))));
+            for (const std::size_t lane : SetBits(bits)) to.push_back(static_cast<std::uint32_t>(i + lane));
         };
         add(lane_bits(far), result.far), add(lane_bits(reaches) & ~lane_bits(far), result.near);
     }

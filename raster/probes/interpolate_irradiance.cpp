@@ -7,7 +7,6 @@
 #include "raster/visibility/shader.h"
 
 #include <algorithm>
-#include <bit>
 #include <limits>
 
 namespace duet::raster {
@@ -108,14 +107,6 @@ RgbT<Floats> IrradianceProbes::mean_radiance(const Vec3d& eye, const Vec3s& p, c
     return result + (far - result) * share;
 }
 
-/// Returns the displacements of a point for the visibility test: an offset along the normal, and at most half of the
-/// vector to the viewer.
-std::array<Vec3s, 2> IrradianceProbes::bias(const Vec3s& n, const Vec3s& to_viewer) const {
-    const auto step = static_cast<float>(std::min({step_.x, step_.y, step_.z}));
-    const Floats over = inverse_sqrt(max(dot(to_viewer, to_viewer), Floats(std::numeric_limits<float>::min())));
-    return {n * Floats(kNormalBias * step), to_viewer * min(Floats(kViewBias * step) * over, Floats(0.5f))};
-}
-
 namespace {
 
 /// Lowers the weights of probes that fewer than half of the cell's probes see, counted by weight. An example is a probe
@@ -127,8 +118,7 @@ void discount_unseen(const std::array<std::uint8_t, 8>& sights, std::array<Float
     const Floats over = Floats(2.0f) / all;
     for (std::size_t i = 0; i < 8; ++i) {
         Floats seen_by(0.0f);
-        for (std::uint32_t left = sights[i]; left != 0; left &= left - 1)
-            seen_by += before[static_cast<std::size_t>(std::countr_zero(left))];
+        for (const std::size_t other : SetBits(sights[i])) seen_by += before[other];
         const Floats share = min(seen_by * over, Floats(1.0f)), squared = share * share;
         weights[i] *= squared * squared;
     }
@@ -139,8 +129,10 @@ void discount_unseen(const std::array<std::uint8_t, 8>& sights, std::array<Float
 IrradianceProbes::Weights IrradianceProbes::weights(const Vec3d& eye, const Vec3s& p, const Vec3s& n,
                                                     const Vec3s& to_viewer, const Mask& mask) const {
     const Place place = place_of(eye, p);
-    const std::array<Vec3s, 2> biases = bias(n, to_viewer);
-    const Vec3s free = p + biases[1], above = free + biases[0];
+    const auto step = static_cast<float>(std::min({step_.x, step_.y, step_.z}));
+    const Floats over = inverse_sqrt(max(dot(to_viewer, to_viewer), Floats(std::numeric_limits<float>::min())));
+    const Vec3s free = p + to_viewer * min(Floats(kViewBias * step) * over, Floats(0.5f)),
+                above = free + n * Floats(kNormalBias * step);
     Weights result{place.cells, {}, Floats(0.0f), place.beyond};
     for_each_value(place.cells, lane_bits(mask), [&](std::int32_t base, const Mask& own) {
         const auto cell = static_cast<std::size_t>(base);
@@ -157,8 +149,8 @@ IrradianceProbes::Weights IrradianceProbes::weights(const Vec3d& eye, const Vec3
         };
         corners.fill(Floats(0.0f));
         const Floats sight = add(above, Floats(1.0f));
-        // The normal may lead into an object just above the surface, where no probe is seen. The way to the viewer is
-        // free.
+        // The normal may lead into an object just above the surface, where no probe is seen. The way to the viewer
+        // leads into none.
         const Floats blind = max(Floats(1.0f) - sight * Floats(1 / kBlind), Floats(0.0f));
         if (xsimd::any(own & (blind > Floats(0.0f)))) add(free, blind);
         if (std::ranges::any_of(sights_[cell], [](std::uint8_t seen) { return seen != 0xff; }))

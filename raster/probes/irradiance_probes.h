@@ -73,7 +73,6 @@ private:
     }
     struct Place;
     Place place_of(const Vec3d& eye, const Vec3T<Floats>& p) const;
-    std::array<Vec3T<Floats>, 2> bias(const Vec3T<Floats>& n, const Vec3T<Floats>& to_viewer) const;
     Weights weights(const Vec3d& eye, const Vec3T<Floats>& p, const Vec3T<Floats>& n, const Vec3T<Floats>& to_viewer,
                     const xsimd::batch_bool<float>& mask) const;
     RgbT<Floats> irradiance(const Weights& weights, const Vec3T<Floats>& n,

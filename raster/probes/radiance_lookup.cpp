@@ -2,8 +2,6 @@
 
 #include "common/material/metal.h"
 
-#include <bit>
-
 namespace duet::raster {
 namespace {
 
@@ -40,10 +38,8 @@ RadianceLookup::RadianceLookup(const RasterSceneData& data, const GBuffer& gbuff
     if (probes == nullptr) return;
     alignas(64) std::array<std::int32_t, Ints::size> each;
     load(gbuffer.object, x, y).store_aligned(each.data());
-    for (std::uint32_t left = lane_bits(gbuffer.visible(x, y)); left != 0; left &= left - 1) {
-        std::int32_t& lane = each[static_cast<std::size_t>(std::countr_zero(left))];
-        lane = static_cast<std::int32_t>(probes->probe_of(lane));
-    }
+    for (const std::size_t lane : SetBits(lane_bits(gbuffer.visible(x, y))))
+        each[lane] = static_cast<std::int32_t>(probes->probe_of(each[lane]));
     probe_ = Ints::load_aligned(each.data());
 }
 

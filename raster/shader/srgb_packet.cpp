@@ -123,10 +123,8 @@ std::uint32_t encode_any(const ColorPacket& colors, std::uint32_t visible, const
 
 void encode_one_by_one(const ColorPacket& colors, std::uint32_t samples, SrgbPacket& codes) {
     const SrgbEncoder& encode = srgb_encoder();
-    for (; samples != 0; samples &= samples - 1) {
-        const auto i = static_cast<std::size_t>(std::countr_zero(samples));
+    for (const std::size_t i : SetBits(samples))
         codes[i] = {encode(colors.r[i]), encode(colors.g[i]), encode(colors.b[i]), 255};
-    }
 }
 
 } // namespace

@@ -90,14 +90,13 @@ RgbT<Floats> TextureSampler::sample(const ImageTexture& texture, const TextureCo
     std::array<Quads, Floats::size> sums;
     sums.fill(Quads(0.0f));
     for (float i = 0;; ++i) {
-        std::uint32_t left = lane_bits(Floats(i) < probes.count) & coordinates.lanes;
-        if (left == 0) break;
+        const std::uint32_t probed = lane_bits(Floats(i) < probes.count) & coordinates.lanes;
+        if (probed == 0) break;
         const Vec2T<Floats> uv =
             in_period(middle + step * Floats(Floats(i) - Floats(0.5f) * (probes.count - Floats(1.0f))));
         fine.set_uv(uv);
-        if ((left & between) != 0) coarse.set_uv(uv);
-        for (; left != 0; left &= left - 1) {
-            const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+        if ((probed & between) != 0) coarse.set_uv(uv);
+        for (const std::size_t lane : SetBits(probed)) {
             Quads color = fine.color(lane);
             if ((between >> lane & 1) != 0) color = duet::lerp_fused(color, coarse.color(lane), Quads(blend[lane]));
             sums[lane] = sums[lane] + color;

@@ -99,8 +99,8 @@ TilePoints points_of(const GBuffer& gbuffer, int x0, int y0) {
                 low[axis] = min(low[axis], xsimd::select(visible, axes[axis], infinite));
                 high[axis] = max(high[axis], xsimd::select(visible, axes[axis], -infinite));
             }
-            for (std::uint32_t left = lanes; left != 0; left &= left - 1) {
-                const std::int32_t object = gbuffer.object(x + std::countr_zero(left), y);
+            for (const std::size_t lane : SetBits(lanes)) {
+                const std::int32_t object = gbuffer.object(x + static_cast<int>(lane), y);
                 first = std::min(first, object), last = std::max(last, object);
             }
         }

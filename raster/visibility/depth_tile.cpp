@@ -206,9 +206,8 @@ void DepthTile::draw(const DrawTriangle& triangle, const UnclippedTriangles& who
         const BlockRow blocks(edges, row);
         const int top = rect_.y0 + row * kBlock;
         const int y0 = std::max(r.y0 - top, 0), y1 = std::min(r.y1 - top, kBlock) - 1;
-        for (std::uint32_t left = blocks.some & touched & unoccluded_blocks(row, triangle.nearest); left != 0;
-             left &= left - 1) {
-            const int column = std::countr_zero(left);
+        for (const std::size_t block : SetBits(blocks.some & touched & unoccluded_blocks(row, triangle.nearest))) {
+            const auto column = static_cast<int>(block);
             const bool all = (blocks.all >> column & 1) && triangle.plane_reliable;
             const BlockCoverage covered =
                 all ? BlockCoverage() : BlockCoverage(edges, edges.at_block(column, row), y0, y1);
@@ -283,8 +282,8 @@ void DepthTile::draw(const CoverageMask& mask) {
     const std::uint32_t in_tile = ((column >= 0 ? 0x0f0fu : 0) | (column + 1 < kBlocks ? 0xf0f0u : 0)) &
                                   ((row >= 0 ? 0x00ffu : 0) | (row + 1 < kBlocks ? 0xff00u : 0));
     const DepthEvaluator<2> reversed_depth(mask.depth_plane, viewport_, -left, -top);
-    for (std::uint32_t packets = packets_of(samples) & in_tile; packets != 0; packets &= packets - 1) {
-        const auto packet = static_cast<std::size_t>(std::countr_zero(packets)), quarter = packet / 4;
+    for (const std::size_t packet : SetBits(packets_of(samples) & in_tile)) {
+        const std::size_t quarter = packet / 4;
         const auto block = static_cast<std::size_t>((row + static_cast<int>(quarter / 2)) * kBlocks + column +
                                                     static_cast<int>(quarter % 2));
         begin_block(block);

@@ -3,7 +3,6 @@
 
 #include "raster/visibility/packet_setups.h"
 
-#include <bit>
 #include <limits>
 #include <span>
 
@@ -229,8 +228,7 @@ void PacketInterpolator<S, D>::interpolate_at(const PacketSetups& samples, const
 template <VertexShader S, typename D>
 void PacketInterpolator<S, D>::recompute_inexact_samples(const SamplePacket& packet, const PacketSetups& samples,
                                                          ResultPacket& result) const {
-    for (std::uint32_t left = samples.on_mesh & ~result.inside; left != 0; left &= left - 1) {
-        const auto i = static_cast<std::size_t>(std::countr_zero(left));
+    for (const std::size_t i : SetBits(samples.on_mesh & ~result.inside)) {
         const Run& run = run_of(samples.id(i));
         const UnclippedTriangle whole = triangles_.unclipped(run, Triangles::index(run, samples.id(i)));
         const Interpolated here = interpolate(whole, packet.position(i));
