@@ -109,7 +109,7 @@ RadianceMap::RadianceMap(int side, const Source& without_lights, const Source& w
     const auto sample = [&](const Source& source, OctahedralMap& map) {
         for_each_texel(map, threads, [&](Vec3 w) -> OctahedralMap::Texel {
             const auto [radiance, distance] = source(w);
-            return {radiance.r, radiance.g, radiance.b, 1 / min(distance, kFarthest)};
+            return {radiance.r, radiance.g, radiance.b, 1 / clamp(distance, 1 / kFarthest, kFarthest)};
         });
     };
     sample(without_lights, sharp_);
