@@ -27,7 +27,7 @@ public:
     std::shared_ptr<const Value> get(const std::string& key, const std::function<Read<Value>()>& read) {
         return std::static_pointer_cast<const Value>(find(key, [&read] {
             Read<Value> made = read();
-            return Read<std::shared_ptr<const void>>{std::make_shared<const Value>(std::move(made.value)),
+            return Read<std::shared_ptr<const void>>{std::make_shared<Value>(std::move(made.value)),
                                                      std::move(made.files)};
         }));
     }

@@ -5,12 +5,13 @@
 namespace duet {
 
 void build_mipmaps(TextureSet& set) {
-    set.mip_levels.assign(set.images.size(), {});
-    for (const Texture& texture : set.textures) {
-        const auto* image = std::get_if<ImageTexture>(&texture);
-        if (image == nullptr || !uses_footprint(image->filter) || !set.mip_levels[image->image].empty()) continue;
-        set.mip_levels[image->image] = make_mip_levels(set.images[image->image]);
-    }
+    std::vector<bool> filtered(set.images.size());
+    for (const Texture& texture : set.textures)
+        if (const auto* image = std::get_if<ImageTexture>(&texture))
+            if (uses_footprint(image->filter)) filtered[image->image] = true;
+    set.mip_levels = {};
+    for (std::size_t i = 0; i < filtered.size(); ++i)
+        set.mip_levels.push_back(filtered[i] ? make_mip_levels(set.images[i]) : std::vector<ImageRgb>());
 }
 
 Rgb evaluate_texture(const TextureSet& set, const Texture& texture, const SurfacePoint& point) {

@@ -3,6 +3,7 @@
 
 #include "common/geometry/surface_point.h"
 #include "common/image/image.h"
+#include "common/system/shared_list.h"
 
 #include <cstdint>
 #include <variant>
@@ -39,13 +40,13 @@ struct NoiseTexture {
 };
 using Texture = std::variant<ImageTexture, CheckerTexture, NoiseTexture>;
 
-/// TextureSet holds all textures of a scene and the images that they share, in linear RGB.
+/// TextureSet holds all textures of a scene and the images that they share, in linear RGB. Copies share the images.
 struct TextureSet {
     std::vector<Texture> textures;
-    std::vector<ImageRgb> images;
+    SharedList<ImageRgb> images;
     /// These are the mip levels of each image, from make_mip_levels(). They are empty where no texture filters the
     /// image.
-    std::vector<std::vector<ImageRgb>> mip_levels{};
+    SharedList<std::vector<ImageRgb>> mip_levels{};
 };
 /// Builds TextureSet::mip_levels.
 void build_mipmaps(TextureSet& set);

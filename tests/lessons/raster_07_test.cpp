@@ -19,7 +19,7 @@ TEST_SUITE("lesson") {
         };
         TextureSet set;
         set.images.push_back(ImageRgb(13, 8));
-        for (Rgb& pixel : set.images[0].pixels()) pixel = {uniform(0, 1), uniform(0, 1), uniform(0, 1)};
+        for (Rgb& pixel : set.images.edit(0).pixels()) pixel = {uniform(0, 1), uniform(0, 1), uniform(0, 1)};
         const auto library = [&](Vec2 uv, TextureFilter filter) {
             SurfacePoint point{};
             point.uv = uv;

@@ -41,7 +41,7 @@ TEST_SUITE("lesson") {
         lesson::Random random(90);
         TextureSet set;
         set.images.push_back(ImageRgb(13, 8));
-        for (Rgb& pixel : set.images[0].pixels()) pixel = Rgb(random.next(), random.next(), random.next());
+        for (Rgb& pixel : set.images.edit(0).pixels()) pixel = Rgb(random.next(), random.next(), random.next());
         const ImageTexture texture{.image = 0, .scale = {1, 1}, .filter = TextureFilter::kNearest};
         int compared = 0;
         for (int i = 0; i < 20'000; ++i) {

@@ -136,7 +136,7 @@ TEST_SUITE("unit") {
             TextureSet set = random_texture(37, 101, {.image = 0, .scale = {1, 1}, .filter = filter});
             std::mt19937 random(5);
             for (int i = 0; i < 300; ++i)
-                set.images[0][random() % set.images[0].size()].g = std::numeric_limits<float>::infinity();
+                set.images.edit(0)[random() % set.images[0].size()].g = std::numeric_limits<float>::infinity();
             build_mipmaps(set);
             CHECK(differences(set) == 0);
         }

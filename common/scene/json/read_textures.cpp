@@ -36,13 +36,16 @@ ImageRgb read_reflectances(const fs::path& file, ChannelSelection selection) {
 } // namespace
 
 std::uint32_t ImageCache::load(const fs::path& file, ChannelSelection selection) {
-    std::vector<ImageRgb>& images = scene_->textures.images;
+    SharedList<ImageRgb>& images = scene_->textures.images;
     const std::string key = message(canonical_key(file), '\n', static_cast<int>(selection.values), ' ',
                                     static_cast<int>(selection.channel));
     const auto [entry, added] = index_.try_emplace(key, static_cast<std::uint32_t>(images.size()));
     if (!added) return entry->second;
     const auto read = [&] { return FileCache::Read<ImageRgb>{read_reflectances(file, selection), {file}}; };
-    images.push_back(files_ ? *files_->get<ImageRgb>("image " + key, read) : read().value);
+    if (files_)
+        images.push_back(files_->get<ImageRgb>("image " + key, read));
+    else
+        images.push_back(read().value);
     if (std::find(scene_->files.begin(), scene_->files.end(), file) == scene_->files.end())
         scene_->files.push_back(file);
     return entry->second;

@@ -119,7 +119,7 @@ TEST_SUITE("unit") {
         CHECK(half.maps[0].opacity.value == 0.5f);
         CHECK(opacity({0.25f, 0}).maps[0].opacity.value == 0.25f);
         CHECK_FALSE(opacity({1, 3}).needs.alpha);
-        scene.textures.images[0][1].r = 0.99f;
+        scene.textures.images.edit(0)[1].r = 0.99f;
         CHECK(opacity({1, 3}).needs.alpha);
     }
 
