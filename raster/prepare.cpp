@@ -7,6 +7,7 @@
 #include "raster/probes/glass_shapes.h"
 #include "raster/probes/irradiance_probes.h"
 #include "raster/probes/reflection_probes.h"
+#include "raster/probes/simplified_scene.h"
 #include "raster/raster_scene.h"
 #include "raster/shading/deferred.h"
 #include "raster/shadows/shadow_maps.h"
@@ -101,35 +102,6 @@ std::shared_ptr<const RadianceMap> environment_map(const RasterSettings& setting
     return std::make_shared<const RadianceMap>(side, arriving, RadianceMap::Source{}, settings.threads);
 }
 
-/// Renders the probes of deferred shading, if there is light that they can store and a surface that they can light. If
-/// `before` is not null, its probes are reused.
-void prepare_probes(const RasterSettings& settings, RasterSceneData& data, const RasterSceneData* before) {
-    const Scene& scene = data.scene;
-    if (scene.objects.empty() || is_dark(data, settings)) return;
-    if (settings.indirect_light) {
-        data.irradiance_probes =
-            before ? before->irradiance_probes : std::make_shared<const IrradianceProbes>(data, settings);
-        data.memory_bytes += static_cast<std::int64_t>(data.irradiance_probes->memory_bytes());
-    }
-    if (!any_used_material(scene, reflects)) return;
-    data.environment_map = before ? before->environment_map : environment_map(settings, scene);
-    data.reflection_probes =
-        before ? before->reflection_probes : std::make_shared<const ReflectionProbes>(data, settings);
-    data.glass_shapes = std::make_shared<const GlassShapes>(data, settings);
-    data.memory_bytes += static_cast<std::int64_t>(data.environment_map->memory_bytes() +
-                                                   data.reflection_probes->memory_bytes() +
-                                                   data.glass_shapes->memory_bytes());
-}
-
-/// Renders the data that Shading::kLit reads: shadow maps, then the probes, whose light is shadowed by the maps.
-void prepare_lit(const RasterSettings& settings, RasterSceneData& data, const RasterSceneData* before) {
-    if (settings.shadows && data.light_count() > 0) {
-        data.shadows = std::make_shared<const Shadows>(data, settings);
-        data.memory_bytes += data.shadows->memory_bytes();
-    }
-    prepare_probes(settings, data, before);
-}
-
 /// Packs the shapes of a scene. Those of meshes that `before` has as well are taken from there.
 SharedList<PackedShape> packed_shapes(const Scene& scene, const RasterSceneData* before) {
     SharedList<PackedShape> packed;
@@ -143,14 +115,13 @@ SharedList<PackedShape> packed_shapes(const Scene& scene, const RasterSceneData*
     return packed;
 }
 
-/// Implements prepare(). If `before` is not null, its probes and the packed meshes that both scenes share are reused.
-RasterScene prepare_after(const RasterSceneData* before, const Scene& scene, const RasterSettings& settings) {
-    std::optional<EnvironmentSun> sun;
-    if (settings.shading == Shading::kLit && settings.environment) sun = find_sun(scene.environment, settings.threads);
+/// Describes a scene, without the data that Shading::kLit reads. The packed meshes that it shares with the scene
+/// `before`, which may be null, are taken from there.
+RasterSceneData describe(const Scene& scene, const std::optional<EnvironmentSun>& sun, const IrradianceHarmonics& sky,
+                         const RasterSceneData* before) {
     RasterSceneData data{.scene = scene,
                          .sun = sun,
-                         .sky_irradiance =
-                             environment_irradiance(scene.environment, sun ? &*sun : nullptr, settings.threads),
+                         .sky_irradiance = sky,
                          .shapes = packed_shapes(scene, before),
                          .texture_samplers = texture_samplers(scene.textures),
                          .ambient = mean_radiance(scene.environment)};
@@ -183,6 +154,52 @@ RasterScene prepare_after(const RasterSceneData* before, const Scene& scene, con
                                   scene.objects.size() * sizeof(std::uint32_t));
     data.geometries = std::make_shared<ObjectPool<Geometry>>();
     data.deferred_frames = std::make_shared<ObjectPool<DeferredFrame>>();
+    return data;
+}
+
+/// Renders the irradiance probes. They see a scene of simplified meshes.
+std::shared_ptr<const IrradianceProbes> irradiance_probes(const RasterSettings& settings, const RasterSceneData& data) {
+    const std::optional<Scene> simple = simplified_scene(data, IrradianceProbes::detail(data));
+    if (!simple) return std::make_shared<const IrradianceProbes>(data, data, settings);
+    RasterSceneData seen = describe(*simple, data.sun, data.sky_irradiance, &data);
+    seen.shadows = data.shadows;
+    return std::make_shared<const IrradianceProbes>(data, seen, settings);
+}
+
+/// Renders the probes of deferred shading, if there is light that they can store and a surface that they can light. If
+/// `before` is not null, its probes are reused.
+void prepare_probes(const RasterSettings& settings, RasterSceneData& data, const RasterSceneData* before) {
+    const Scene& scene = data.scene;
+    if (scene.objects.empty() || is_dark(data, settings)) return;
+    if (settings.indirect_light) {
+        data.irradiance_probes = before ? before->irradiance_probes : irradiance_probes(settings, data);
+        data.memory_bytes += static_cast<std::int64_t>(data.irradiance_probes->memory_bytes());
+    }
+    if (!any_used_material(scene, reflects)) return;
+    data.environment_map = before ? before->environment_map : environment_map(settings, scene);
+    data.reflection_probes =
+        before ? before->reflection_probes : std::make_shared<const ReflectionProbes>(data, settings);
+    data.glass_shapes = std::make_shared<const GlassShapes>(data, settings);
+    data.memory_bytes += static_cast<std::int64_t>(data.environment_map->memory_bytes() +
+                                                   data.reflection_probes->memory_bytes() +
+                                                   data.glass_shapes->memory_bytes());
+}
+
+/// Renders the data that Shading::kLit reads: shadow maps, then the probes, whose light is shadowed by the maps.
+void prepare_lit(const RasterSettings& settings, RasterSceneData& data, const RasterSceneData* before) {
+    if (settings.shadows && data.light_count() > 0) {
+        data.shadows = std::make_shared<const Shadows>(data, settings);
+        data.memory_bytes += data.shadows->memory_bytes();
+    }
+    prepare_probes(settings, data, before);
+}
+
+/// Implements prepare(). If `before` is not null, its probes and the packed meshes that both scenes share are reused.
+RasterScene prepare_after(const RasterSceneData* before, const Scene& scene, const RasterSettings& settings) {
+    std::optional<EnvironmentSun> sun;
+    if (settings.shading == Shading::kLit && settings.environment) sun = find_sun(scene.environment, settings.threads);
+    RasterSceneData data = describe(
+        scene, sun, environment_irradiance(scene.environment, sun ? &*sun : nullptr, settings.threads), before);
     if (settings.shadow_map_side < 64 || settings.shadow_map_side > 8192)
         throw Error(message("shadow maps of ", settings.shadow_map_side, " texels a side: expected 64 to 8192"));
     if (settings.shadow_cells < 1 || settings.shadow_cells > Shadows::kMaxCells)

@@ -85,9 +85,10 @@ float rest_of_series(float last, float before) {
 
 float IrradianceProbes::spacing() const { return static_cast<float>(std::max({step_.x, step_.y, step_.z})); }
 
-IrradianceProbes::IrradianceProbes(const RasterSceneData& data, const RasterSettings& settings) {
-    place(data);
-    const SolidTest solids(data);
+IrradianceProbes::IrradianceProbes(const RasterSceneData& data, const RasterSceneData& seen,
+                                   const RasterSettings& settings) {
+    place(data, seen);
+    const SolidTest solids(seen);
     std::vector<std::unique_ptr<ProbeCapture>> captures(probes_.size());
     parallel_for(probes_.size(), settings.threads, [&](std::size_t i) {
         Vec3d& position = probes_[i].position = grid_point(i);
@@ -98,10 +99,10 @@ IrradianceProbes::IrradianceProbes(const RasterSceneData& data, const RasterSett
         const ProbeCapture::Selection selection{
             .excluded = data.glass, .sun = false, .lights = {kMostLights, unit_float(high_bits(mix_bits(i)))}};
         for (const int side : {kSide, kFineSide}) {
-            captures[i] = std::make_unique<ProbeCapture>(data, settings, position, side, 0, selection);
+            captures[i] = std::make_unique<ProbeCapture>(seen, settings, position, side, 0, selection);
             if (effective_pixels(*captures[i]) >= kFewestPixels) break;
         }
-        captures[i]->add_fog(data, settings, {});
+        captures[i]->add_fog(seen, settings, {});
     });
     drop_strays(captures);
     find_sights(captures);

@@ -17,8 +17,11 @@ namespace duet::raster {
 class IrradianceProbes {
 public:
     /// Renders the probes, and lets light bounce until a bounce adds less than 1 % to it, or 12 times. All further
-    /// bounces are added as a geometric series. The result is the same for any number of threads.
-    IrradianceProbes(const RasterSceneData& data, const RasterSettings& settings);
+    /// bounces are added as a geometric series. The result is the same for any number of threads. `seen` is the scene
+    /// that the probes see: that of `data`, or one of the same objects with simplified meshes.
+    IrradianceProbes(const RasterSceneData& data, const RasterSceneData& seen, const RasterSettings& settings);
+    /// Returns the size in meters of the smallest details that probes can show.
+    static double detail(const RasterSceneData& data);
 
     /// Returns the irradiance at points relative to the eye at `eye`, with unit normals; unspecified in lanes that
     /// `mask` leaves out. Nothing lies between the points and p + to_viewer.
@@ -44,7 +47,7 @@ private:
         OctahedralMap distance; ///< mean and mean square of the surfaces' distances; empty inside an object
     };
 
-    void place(const RasterSceneData& data);
+    void place(const RasterSceneData& data, const RasterSceneData& seen);
     Vec3d grid_point(std::size_t probe) const;
     bool move_out_of_solids(const SolidTest& solids, Vec3d& position) const;
     void set_distances(const ProbeCapture& capture, Probe& probe) const;

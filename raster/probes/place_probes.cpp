@@ -12,6 +12,9 @@ namespace {
 /// about a second.
 constexpr double kMostTriangles = 1e8;
 constexpr int kMostProbes = 512, kFewestProbes = 27;
+/// This is the detail that probes show, as a fraction of the distance between them: the width of a pixel at the
+/// distance of two thirds.
+constexpr double kDetail = 0.1;
 
 /// Returns the region that probes fill: the scene without very large objects, and not far beyond the camera's target.
 /// Points near the region use the nearest probes.
@@ -37,17 +40,28 @@ Box3d region_of(const RasterSceneData& data) {
     return box;
 }
 
+int most_probes(const Scene& scene) {
+    return std::max(PrepareLimits(scene).irradiance_probes(kMostProbes), kFewestProbes);
+}
+
+/// Returns the spacing of so many probes.
+double spacing_of(const Vec3d& extent, double probes) { return std::cbrt(extent.x * extent.y * extent.z / probes); }
+
 } // namespace
+
+double IrradianceProbes::detail(const RasterSceneData& data) {
+    const Box3d box = region_of(data);
+    return kDetail * spacing_of(box.high - box.low, most_probes(data.scene));
+}
 
 /// Spaces the probes so that cells are close to cubes. The outermost probes lie half a cell within the region, so that
 /// none is in an outer wall.
-void IrradianceProbes::place(const RasterSceneData& data) {
+void IrradianceProbes::place(const RasterSceneData& data, const RasterSceneData& seen) {
     const Box3d box = region_of(data);
     const Vec3d extent = box.high - box.low;
-    const int most_probes = std::max(PrepareLimits(data.scene).irradiance_probes(kMostProbes), kFewestProbes);
-    const double most = std::clamp(kMostTriangles / (6 * static_cast<double>(data.primitives) + 1e3),
-                                   static_cast<double>(kFewestProbes), static_cast<double>(most_probes));
-    double cell = std::cbrt(extent.x * extent.y * extent.z / most);
+    const double most = std::clamp(kMostTriangles / (6 * static_cast<double>(seen.primitives) + 1e3),
+                                   static_cast<double>(kFewestProbes), static_cast<double>(most_probes(data.scene)));
+    double cell = spacing_of(extent, most);
     const auto count = [&](std::size_t axis) {
         return std::clamp(static_cast<int>(std::lround(extent[axis] / cell)), 2, 64);
     };
