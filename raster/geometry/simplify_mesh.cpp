@@ -3,13 +3,14 @@
 #include "common/sampling/hash.h"
 #include "common/vec/box.h"
 
+#include <bit>
 #include <cmath>
 #include <unordered_map>
 
 namespace duet::raster {
 namespace {
 
-constexpr float kTextureCells = 16; ///< per unit of texture coordinates; vertices in different ones stay apart
+constexpr double kTextureCells = 16; ///< per unit of texture coordinates; vertices in different ones stay apart
 
 /// Numbers the distinct keys in the order in which they are first seen.
 class Numbering {
@@ -23,11 +24,15 @@ private:
     std::unordered_map<std::uint64_t, std::uint32_t> numbers_;
 };
 
+/// Adds the whole part of a number of any size to a key.
+std::uint64_t add_floor(std::uint64_t key, double x) {
+    return hash_combine(key, std::bit_cast<std::uint64_t>(std::floor(x) + 0.0)); // + 0.0: −0 and 0 are one number
+}
+
 /// Returns a number for the cell of a grid that contains p; distinct for distinct cells, except by a rare collision.
 std::uint64_t cell_key(Vec3d p, Vec3d origin, double cell) {
     std::uint64_t key = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        key = hash_combine(key, static_cast<std::uint64_t>(std::llround((p[axis] - origin[axis]) / cell)));
+    for (std::size_t axis = 0; axis < 3; ++axis) key = add_floor(key, (p[axis] - origin[axis]) / cell);
     return key;
 }
 
@@ -42,7 +47,7 @@ std::uint64_t vertex_key(const Mesh& mesh, std::size_t i, std::uint32_t cell) {
     }
     if (!mesh.uvs.empty())
         for (const float x : {mesh.uvs[i].x, mesh.uvs[i].y})
-            key = hash_combine(key, static_cast<std::uint64_t>(std::llround(x * kTextureCells)));
+            key = add_floor(key, static_cast<double>(x) * kTextureCells);
     return key;
 }
 
@@ -61,6 +66,8 @@ Mesh simplified(const Mesh& mesh, double cell) {
     };
     Box3 bounds;
     for (const Vec3 p : mesh.positions) bounds.extend(p);
+    constexpr double kMostCells = 0x1p50; // along the diagonal; beyond, doubles do not tell cells from each other
+    if (mesh.positions.empty() || !(length(Vec3d(bounds.high) - Vec3d(bounds.low)) < kMostCells * cell)) return mesh;
     Numbering number_of_cell, number_of_vertex;
     std::vector<Cell> cells;       // sums over the mesh's vertices
     std::vector<Vertex> vertices;  // likewise

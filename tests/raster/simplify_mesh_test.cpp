@@ -109,6 +109,9 @@ TEST_SUITE("unit") {
         const Mesh same = simplified(mesh, 1e-3);
         CHECK(same.triangles == mesh.triangles);
         CHECK(same.positions == mesh.positions);
+        CHECK(simplified(mesh, 1e-300).triangles == mesh.triangles);
+        CHECK(simplified(mesh, 0).triangles == mesh.triangles);
+        CHECK(simplified(Mesh(), 1).triangles.empty());
     }
 
     TEST_CASE("a scene is simplified where it has many small triangles") {
