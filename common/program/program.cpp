@@ -20,15 +20,14 @@ namespace duet {
 
 namespace {
 
-/// Makes memory cheap to allocate again: glibc keeps what is freed, in a heap of huge pages. By default it returns
-/// large blocks to the system, which then clears each page anew, a quarter of the time of a rasterized frame, whose
-/// images are allocated for each frame. Huge pages save page faults and TLB misses of blocks that are too small for
-/// HugePageAllocator, such as shadow maps.
+/// Makes memory cheap to allocate again: glibc keeps what is freed. By default it returns large blocks to the system,
+/// which then clears each page anew, a quarter of the time of a rasterized frame, whose images are allocated for each
+/// frame. The main thread's heap begins with huge pages. They save page faults and TLB misses of blocks that are too
+/// small for HugePageAllocator, such as shadow maps.
 void configure_heap() {
 #if defined(__GLIBC__) && !defined(DUET_SANITIZED) // the sanitizers have a heap of their own
-    constexpr int kNever = std::numeric_limits<int>::max(); // block size in bytes above which memory is returned
-    mallopt(M_MMAP_THRESHOLD, kNever);
-    mallopt(M_TRIM_THRESHOLD, kNever);
+    mallopt(M_MMAP_THRESHOLD, std::numeric_limits<int>::max()); // no block has a mapping of its own,
+    mallopt(M_TRIM_THRESHOLD, -1);                              // and the heap does not shrink
     // A large block, freed again, stays part of the heap. It has addresses but no memory until something writes there.
     constexpr std::size_t kReserved = std::size_t{1} << 30;
     void* heap = std::malloc(kReserved);

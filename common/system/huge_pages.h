@@ -29,7 +29,7 @@ inline void request_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] s
 /// This allocator aligns memory to cache lines of 64 bytes, so that a 64-byte SIMD store at a multiple of 64 bytes
 /// writes one line. (The memory of an ordinary allocator starts 16 bytes into a line, and each such store touches two.)
 ///
-/// It aligns blocks of at least two huge pages to huge pages, and requests these.
+/// It aligns blocks of at least two huge pages to huge pages, and requests these wherever a block contains whole ones.
 ///
 /// Elements are default-initialized: resizing a vector leaves new elements of trivial types uninitialized, so that
 /// large vectors are written only once.

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kTextureCells = 16; ///< per unit of texture coordinates; vertices in different ones stay apart
 
-/// Numbers the distinct keys in the order in which they are first seen.
+/// Maps each key to an index, in the order of first use.
 class Numbering {
 public:
     std::uint32_t operator()(std::uint64_t key) {
@@ -85,11 +85,10 @@ Mesh simplified(const Mesh& mesh, double cell) {
         ++vertex.count;
     }
     Mesh result;
-    result.closed = mesh.closed;
     for (const Vertex& vertex : vertices) {
         const Cell& its = cells[vertex.cell];
         result.positions.push_back(Vec3(its.p * (1 / its.count)));
-        if (!mesh.normals.empty()) result.normals.push_back(Vec3(normalize(vertex.n)));
+        if (!mesh.normals.empty()) result.normals.push_back(Vec3(normalize_or_zero(vertex.n)));
         if (!mesh.uvs.empty()) result.uvs.push_back(Vec2(vertex.uv * (1 / vertex.count)));
     }
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -100,6 +99,7 @@ Mesh simplified(const Mesh& mesh, double cell) {
         result.triangles.push_back(corners);
         if (!mesh.material_slots.empty()) result.material_slots.push_back(mesh.material_slots[i]);
     }
+    result.closed = is_closed_outwards(result);
     return result;
 }
 

@@ -88,7 +88,7 @@ float IrradianceProbes::spacing() const { return static_cast<float>(std::max({st
 IrradianceProbes::IrradianceProbes(const RasterSceneData& data, const RasterSceneData& seen,
                                    const RasterSettings& settings) {
     place(data, seen);
-    const SolidTest solids(seen);
+    const SolidTest solids(data, seen);
     std::vector<std::unique_ptr<ProbeCapture>> captures(probes_.size());
     parallel_for(probes_.size(), settings.threads, [&](std::size_t i) {
         Vec3d& position = probes_[i].position = grid_point(i);

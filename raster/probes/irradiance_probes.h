@@ -20,7 +20,8 @@ public:
     /// bounces are added as a geometric series. The result is the same for any number of threads. `seen` is the scene
     /// that the probes see: that of `data`, or one of the same objects with simplified meshes.
     IrradianceProbes(const RasterSceneData& data, const RasterSceneData& seen, const RasterSettings& settings);
-    /// Returns the size in meters of the smallest details that probes can show.
+    /// Returns the size in meters of the smallest details that probes can show if their number is limited by that of
+    /// the primitives; else 0.
     static double detail(const RasterSceneData& data);
 
     /// Returns the irradiance at points relative to the eye at `eye`, with unit normals; unspecified in lanes that

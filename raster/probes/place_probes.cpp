@@ -12,8 +12,8 @@ namespace {
 /// about a second.
 constexpr double kMostTriangles = 1e8;
 constexpr int kMostProbes = 512, kFewestProbes = 27;
-/// This is the detail that probes show, as a fraction of the distance between them: the width of a pixel at the
-/// distance of two thirds.
+/// This is the detail that probes show, as a fraction of the distance between them. It is a little less than the width
+/// of a pixel at the next probe, 1/8 of the distance.
 constexpr double kDetail = 0.1;
 
 /// Returns the region that probes fill: the scene without very large objects, and not far beyond the camera's target.
@@ -44,14 +44,22 @@ int most_probes(const Scene& scene) {
     return std::max(PrepareLimits(scene).irradiance_probes(kMostProbes), kFewestProbes);
 }
 
+/// Returns the number of probes that so many primitives allow, up to most_probes.
+double probe_count(std::int64_t primitives, int most) {
+    return std::clamp(kMostTriangles / (6 * static_cast<double>(primitives) + 1e3), static_cast<double>(kFewestProbes),
+                      static_cast<double>(most));
+}
+
 /// Returns the spacing of so many probes.
 double spacing_of(const Vec3d& extent, double probes) { return std::cbrt(extent.x * extent.y * extent.z / probes); }
 
 } // namespace
 
 double IrradianceProbes::detail(const RasterSceneData& data) {
+    const int most = most_probes(data.scene);
+    if (probe_count(data.primitives, most) == most) return 0;
     const Box3d box = region_of(data);
-    return kDetail * spacing_of(box.high - box.low, most_probes(data.scene));
+    return kDetail * spacing_of(box.high - box.low, most);
 }
 
 /// Spaces the probes so that cells are close to cubes. The outermost probes lie half a cell within the region, so that
@@ -59,8 +67,7 @@ double IrradianceProbes::detail(const RasterSceneData& data) {
 void IrradianceProbes::place(const RasterSceneData& data, const RasterSceneData& seen) {
     const Box3d box = region_of(data);
     const Vec3d extent = box.high - box.low;
-    const double most = std::clamp(kMostTriangles / (6 * static_cast<double>(seen.primitives) + 1e3),
-                                   static_cast<double>(kFewestProbes), static_cast<double>(most_probes(data.scene)));
+    const double most = probe_count(seen.primitives, most_probes(data.scene));
     double cell = spacing_of(extent, most);
     const auto count = [&](std::size_t axis) {
         return std::clamp(static_cast<int>(std::lround(extent[axis] / cell)), 2, 64);

@@ -115,7 +115,7 @@ bool is_room(const RasterSceneData& data, std::uint32_t i) {
 
 } // namespace
 
-SolidTest::SolidTest(const RasterSceneData& data) : data_(data) {
+SolidTest::SolidTest(const RasterSceneData& data, const RasterSceneData& simplified) : data_(simplified) {
     for (std::uint32_t i = 0; i < data.objects.size(); ++i)
         if (!is_room(data, i)) solids_.push_back(i);
 }

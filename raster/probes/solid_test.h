@@ -16,7 +16,9 @@ bool is_inside(const RasterSceneData& data, std::uint32_t object, Vec3d p);
 class SolidTest {
 public:
     /// Keeps a reference to `data`.
-    explicit SolidTest(const RasterSceneData& data);
+    explicit SolidTest(const RasterSceneData& data) : SolidTest(data, data) {}
+    /// Tests the objects of `simplified`, whose shapes may be simpler than those of `data`. Keeps a reference to it.
+    SolidTest(const RasterSceneData& data, const RasterSceneData& simplified);
     /// Returns whether the world-space point lies inside an object.
     bool inside(Vec3d p) const;
 
