@@ -18,7 +18,6 @@ public:
     std::uint32_t operator()(std::uint64_t key) {
         return numbers_.try_emplace(key, static_cast<std::uint32_t>(numbers_.size())).first->second;
     }
-    std::size_t size() const { return numbers_.size(); }
 
 private:
     std::unordered_map<std::uint64_t, std::uint32_t> numbers_;
@@ -69,8 +68,8 @@ Mesh simplified(const Mesh& mesh, double cell) {
     constexpr double kMostCells = 0x1p50; // along the diagonal; beyond, doubles do not tell cells from each other
     if (mesh.positions.empty() || !(length(Vec3d(bounds.high) - Vec3d(bounds.low)) < kMostCells * cell)) return mesh;
     Numbering number_of_cell, number_of_vertex;
-    std::vector<Cell> cells;       // sums over the mesh's vertices
-    std::vector<Vertex> vertices;  // likewise
+    std::vector<Cell> cells;      // sums over the mesh's vertices
+    std::vector<Vertex> vertices; // likewise
     std::vector<std::uint32_t> vertex_of(mesh.positions.size());
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
         const Vec3d p(mesh.positions[i]);
