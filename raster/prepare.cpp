@@ -115,16 +115,30 @@ SharedList<PackedShape> packed_shapes(const Scene& scene, const RasterSceneData*
     return packed;
 }
 
+/// Holds the light of an environment, which takes passes over all of its image.
+struct EnvironmentLight {
+    std::optional<EnvironmentSun> sun;
+    IrradianceHarmonics sky; ///< irradiance without the sun
+    Rgb mean;                ///< mean radiance, with the sun
+};
+EnvironmentLight environment_light(const Scene& scene, const RasterSettings& settings) {
+    EnvironmentLight light;
+    if (settings.shading == Shading::kLit && settings.environment)
+        light.sun = find_sun(scene.environment, settings.threads);
+    light.sky = environment_irradiance(scene.environment, light.sun ? &*light.sun : nullptr, settings.threads);
+    light.mean = mean_radiance(scene.environment);
+    return light;
+}
+
 /// Describes a scene, without the data that Shading::kLit reads. The packed meshes that it shares with the scene
 /// `before`, which may be null, are taken from there.
-RasterSceneData describe(const Scene& scene, const std::optional<EnvironmentSun>& sun, const IrradianceHarmonics& sky,
-                         const RasterSceneData* before) {
+RasterSceneData describe(const Scene& scene, const EnvironmentLight& environment, const RasterSceneData* before) {
     RasterSceneData data{.scene = scene,
-                         .sun = sun,
-                         .sky_irradiance = sky,
+                         .sun = environment.sun,
+                         .sky_irradiance = environment.sky,
                          .shapes = packed_shapes(scene, before),
                          .texture_samplers = texture_samplers(scene.textures),
-                         .ambient = mean_radiance(scene.environment)};
+                         .ambient = environment.mean};
     for (const Material& material : scene.materials) data.lobes_of_color.push_back(LobesOfColor::of(material));
     for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
         const Object& object = scene.objects[i];
@@ -161,7 +175,7 @@ RasterSceneData describe(const Scene& scene, const std::optional<EnvironmentSun>
 std::shared_ptr<const IrradianceProbes> irradiance_probes(const RasterSettings& settings, const RasterSceneData& data) {
     const std::optional<Scene> simple = simplified_scene(data, IrradianceProbes::detail(data));
     if (!simple) return std::make_shared<const IrradianceProbes>(data, data, settings);
-    RasterSceneData seen = describe(*simple, data.sun, data.sky_irradiance, &data);
+    RasterSceneData seen = describe(*simple, {data.sun, data.sky_irradiance, data.ambient}, &data);
     seen.shadows = data.shadows;
     return std::make_shared<const IrradianceProbes>(data, seen, settings);
 }
@@ -196,10 +210,7 @@ void prepare_lit(const RasterSettings& settings, RasterSceneData& data, const Ra
 
 /// Implements prepare(). If `before` is not null, its probes and the packed meshes that both scenes share are reused.
 RasterScene prepare_after(const RasterSceneData* before, const Scene& scene, const RasterSettings& settings) {
-    std::optional<EnvironmentSun> sun;
-    if (settings.shading == Shading::kLit && settings.environment) sun = find_sun(scene.environment, settings.threads);
-    RasterSceneData data = describe(
-        scene, sun, environment_irradiance(scene.environment, sun ? &*sun : nullptr, settings.threads), before);
+    RasterSceneData data = describe(scene, environment_light(scene, settings), before);
     if (settings.shadow_map_side < 64 || settings.shadow_map_side > 8192)
         throw Error(message("shadow maps of ", settings.shadow_map_side, " texels a side: expected 64 to 8192"));
     if (settings.shadow_cells < 1 || settings.shadow_cells > Shadows::kMaxCells)
